@@ -1,0 +1,3 @@
+"""The robot: what runs on the brick. CPython 3.5, standard library only; imports nothing of the other rooms."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,15 @@
+"""The one way in which the robot says no."""
+
+
+class Refused(Exception):
+    """A request that was not carried out and changed nothing. `code` is for programs, `message` says what and why, `hint` what to do."""
+
+    def __init__(self, code, message, hint=""):
+        Exception.__init__(self, message)
+        self.code = code
+        self.message = message
+        self.hint = hint
+
+    def as_dict(self):
+        """The refusal as it goes over the wire."""
+        return {"code": self.code, "message": self.message, "hint": self.hint}

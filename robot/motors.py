@@ -1,0 +1,53 @@
+"""The seams to hardware: a motor, a battery, a clock. The brick and the simulator implement them; the loop knows no more."""
+
+import select
+import time
+
+
+class MotorFault(Exception):
+    """A motor does not obey or answer; the message says which, why and what to do."""
+
+
+class Motor:
+    """One wheel's motor, on its own axis: positive is the motor's own positive turn, whatever its mounting."""
+
+    def angle_rad(self):
+        """The tacho angle in rad since the motor was found; in whole degrees on the EV3. Raises MotorFault."""
+        raise NotImplementedError
+
+    def write_duty(self, duty_pct):
+        """Run at duty_pct, an int in -100 .. 100, percent of full PWM; 0 brakes. Raises MotorFault."""
+        raise NotImplementedError
+
+    def stop(self):
+        """Stop and hold by the electrical brake. May be called at any time, any number of times; raises MotorFault if it failed."""
+        raise NotImplementedError
+
+
+class Battery:
+    """Where the motors' power comes from."""
+
+    def voltage_v(self):
+        """The battery's voltage in V at this moment."""
+        raise NotImplementedError
+
+
+class MonotonicClock:
+    """Real time. A virtual clock has the same two methods and advances when it is waited for."""
+
+    def now(self):
+        """Seconds on a clock that never jumps."""
+        return time.monotonic()
+
+    def wait(self, deadline, serve):
+        """Return at `deadline` (s, of this clock), having called serve(timeout_s) in the time that was left."""
+        while True:
+            left = deadline - self.now()
+            if left <= 0.0:
+                return
+            serve(left)
+
+
+def sleep(timeout_s):
+    """A `serve` for a robot without any link: sleeps, to the resolution of select."""
+    select.select((), (), (), timeout_s)
