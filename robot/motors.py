@@ -40,12 +40,12 @@ class MonotonicClock:
         return time.monotonic()
 
     def wait(self, deadline, serve):
-        """Return at `deadline` (s, of this clock), having called serve(timeout_s) in the time that was left."""
+        """Return at `deadline` (s, of this clock), having called serve(timeout_s) in the time that was left, and once if none was."""
         while True:
             left = deadline - self.now()
-            if left <= 0.0:
+            serve(max(0.0, left))
+            if self.now() >= deadline:
                 return
-            serve(left)
 
 
 def sleep(timeout_s):

@@ -1,0 +1,89 @@
+"""The bounded record of the last minutes: every tick's packed record, and the journal of what changed the robot's course.
+
+A client that lost its link catches up from here; one that was away for longer is told what is gone.
+"""
+
+from collections import deque
+
+from robot.record import STRUCT
+
+DEFAULT_CAPACITY = 20000  # ten minutes of 30 ms ticks in 2.2 MB
+JOURNAL_CAPACITY = 2000
+
+
+class Snapshot(object):
+    """What a tick's outcome depends on besides the wheels: the parameters in force and the kick that acts, as plain data."""
+
+    def __init__(self, params, kick=None):
+        self.params = dict(params)
+        self.kick = kick
+
+    def take(self, event):
+        """Bring the snapshot past an event of the journal."""
+        if event["event"] == "params":
+            self.params.update(event["set"])
+        elif event["event"] == "kick":
+            self.kick = event["kick"]
+        elif event["event"] in ("start", "stop", "hold", "fault"):
+            self.kick = None
+
+    def as_event(self, tick):
+        """The snapshot as an event that precedes the record of `tick`."""
+        kick = self.kick
+        if kick is not None and kick["begin"] + kick["ticks"] <= tick:
+            kick = None
+        return {"event": "snapshot", "tick": tick, "params": dict(self.params), "kick": kick}
+
+
+class BlackBox(object):
+    """Ring of the latest `capacity` records, found by tick number, and the journal of events that goes with it."""
+
+    def __init__(self, params, capacity=DEFAULT_CAPACITY):
+        self.next_tick = 0
+        self.next_event = 0
+        self._capacity = capacity
+        self._ring = bytearray(capacity * STRUCT.size)
+        self._base = Snapshot(params)
+        self._base_tick = 0
+        self._journal = deque()
+
+    @property
+    def oldest_tick(self):
+        """The first tick that can still be read, with all events since."""
+        return max(self.next_tick - self._capacity, self._base_tick, 0)
+
+    def append(self, fields):
+        """Keep a tick's record, given as the fields of `robot.record.CHANNELS` after the tick's number, and number it."""
+        STRUCT.pack_into(self._ring, self.next_tick % self._capacity * STRUCT.size, self.next_tick, *fields)
+        self.next_tick += 1
+
+    def note(self, event, **details):
+        """Put an event into the journal, stamped with the first tick that it concerns: the one about to run. Returns that tick."""
+        entry = dict(details, event=event, tick=self.next_tick)
+        self._journal.append((self.next_event, entry))
+        self.next_event += 1
+        while len(self._journal) > JOURNAL_CAPACITY or self._journal[0][1]["tick"] < self.next_tick - self._capacity:
+            dropped = self._journal.popleft()[1]
+            self._base.take(dropped)
+            self._base_tick = dropped["tick"] + 1
+        return self.next_tick
+
+    def read(self, tick, count):
+        """Packed records from `tick` on: up to `count`, fewer at the end of the ring or of the record."""
+        start = tick % self._capacity
+        count = min(count, self.next_tick - tick, self._capacity - start)
+        return bytes(self._ring[start * STRUCT.size : (start + count) * STRUCT.size])
+
+    def event(self, number):
+        """The journal's event `number`, or None if it has not happened or is no longer kept."""
+        index = number - (self.next_event - len(self._journal))
+        return self._journal[index][1] if 0 <= index < len(self._journal) else None
+
+    def snapshot(self, tick):
+        """(number, event): the snapshot as of `tick`, and the number of the first event that comes after it."""
+        state = Snapshot(self._base.params, self._base.kick)
+        for number, event in self._journal:
+            if event["tick"] >= tick:
+                return number, state.as_event(tick)
+            state.take(event)
+        return self.next_event, state.as_event(tick)

@@ -1,0 +1,132 @@
+"""The robot's tables of what it can be asked (by anyone) and told (by the host that holds the lease)."""
+
+from collections import OrderedDict, namedtuple
+
+from robot import params, record
+from robot.errors import Refused
+from robot.loop import LATENESS_EDGES_S
+
+Command = namedtuple("Command", "name sealed arguments doc run")
+
+
+def _status(loop, session, message):
+    safety = loop.safety
+    return {
+        "state": record.STATES[safety.state],
+        "reason": safety.reason,
+        "tick": loop.blackbox.next_tick,
+        "oldest_tick": loop.blackbox.oldest_tick,
+        "battery_v": loop.battery_v,
+        "controller": None if loop.lease.holder is None else loop.lease.name,
+        "params": loop.params.values(),
+        "missed": loop.missed,
+        "overruns": loop.overruns,
+        "clamped": loop.clamped,
+        "lateness": {"edges_s": LATENESS_EDGES_S, "counts": loop.lateness},
+    }
+
+
+def _describe(loop, session, message):
+    tables = {"params": params.describe, "channels": record.describe, "commands": describe}
+    table = message.get("table")
+    if table not in tables:
+        raise Refused("usage", "there is no table {!r}".format(table), "tables are: " + ", ".join(sorted(tables)))
+    return {"table": tables[table]()}
+
+
+def _subscribe(loop, session, message):
+    tick = message.get("from")
+    if tick is not None and (isinstance(tick, bool) or not isinstance(tick, int) or not 0 <= tick <= loop.blackbox.next_tick):
+        raise Refused(
+            "range", "cannot send records from tick {!r}".format(tick), "ticks 0 to {} have begun".format(loop.blackbox.next_tick)
+        )
+    return {"tick": session.subscribe(loop.blackbox.next_tick if tick is None else tick)}
+
+
+def _unsubscribe(loop, session, message):
+    session.unsubscribe()
+    return {}
+
+
+def _lease(loop, session, message):
+    loop.take_lease(session.client, session.name)
+    return {}
+
+
+def _release(loop, session, message):
+    loop.lease.release(session.client)
+    return {}
+
+
+def _heartbeat(loop, session, message):
+    return {"tick": loop.blackbox.next_tick}
+
+
+def _controlled(run):
+    """The command `run`, for the host that holds the lease only."""
+
+    def checked(loop, session, message):
+        loop.lease.require(session.client)
+        return run(loop, session, message)
+
+    return checked
+
+
+def _start(loop, session, message):
+    return {"tick": loop.start()}
+
+
+def _stop(loop, session, message):
+    return {"tick": loop.stop("stopped by '{}'".format(session.name))}
+
+
+def _clear(loop, session, message):
+    return {"tick": loop.clear()}
+
+
+def _kick(loop, session, message):
+    request = message.get("kick")
+    if not isinstance(request, dict):
+        raise Refused("usage", "the kick is missing", "send it as an object named kick")
+    tick = loop.kick(request)
+    return {"tick": tick}
+
+
+def _set(loop, session, message):
+    return {"tick": loop.set_params(message.get("set"))}
+
+
+_ROWS = (
+    Command("status", False, (), "state, parameters in force, battery, who controls, and how punctual the ticks are", _status),
+    Command("describe", False, ("table",), "one of the robot's tables: params, channels, commands", _describe),
+    Command("subscribe", False, ("from",), "send records and events from a tick on, by default from the next", _subscribe),
+    Command("unsubscribe", False, (), "send no more records", _unsubscribe),
+    Command("lease", True, (), "take control; refused while another host has it", _lease),
+    Command("release", True, (), "give control back; the robot goes on as it is", _release),
+    Command("heartbeat", True, (), "tell the robot that the host that controls it is alive", _heartbeat),
+    Command("start", True, (), "run, from random membrane potentials", _controlled(_start)),
+    Command("stop", True, (), "stop the motors; anyone may also send a stop frame", _controlled(_stop)),
+    Command("clear", True, (), "leave a fault once its cause is mended", _controlled(_clear)),
+    Command("kick", True, ("kick",), "begin a kick in the next tick; a repeated id is answered, not repeated", _controlled(_kick)),
+    Command("set", True, ("set",), "change parameters from the next tick on, all of them or none", _controlled(_set)),
+)
+TABLE = OrderedDict((row.name, row) for row in _ROWS)
+
+
+def describe():
+    """The commands as a list of plain dictionaries, as the robot serves them."""
+    return [OrderedDict(zip(Command._fields[:-1], row)) for row in _ROWS]
+
+
+def execute(loop, session, message, sealed):
+    """Carry out a message that names a command; `sealed` tells whether it came with a valid MAC. Returns the result, or raises Refused."""
+    name = message.get("do")
+    row = TABLE.get(name) if isinstance(name, str) else None
+    if row is None:
+        raise Refused("unknown", "there is no command {!r}".format(name), "commands are: " + ", ".join(TABLE))
+    if row.sealed and not sealed:
+        raise Refused("token", "'{}' moves the robot or changes it".format(name), "prove that you have the robot's token first")
+    for key in message:
+        if key not in ("id", "do") + row.arguments:
+            raise Refused("usage", "'{}' takes no '{}'".format(name, key), "it takes " + (", ".join(row.arguments) or "nothing"))
+    return row.run(loop, session, message)

@@ -1,0 +1,218 @@
+"""The fixed tick. What runs in it, in order: read the angles, step the neurons under a kick, limit, write the duties, record."""
+
+import random
+from collections import deque
+from math import cos, pi, sin
+
+from robot.blackbox import BlackBox
+from robot.errors import Refused
+from robot.kicks import DIRECTION_TICKS, MODES, WHEELS, direction, parse
+from robot.motors import MotorFault
+from robot.params import LONGEST_STEP_TICKS, Params
+from robot.safety import HELD, RUNNING, Lease, Safety, limit_duty
+from robot.wheel import Wheel
+
+SHORTEST_STEP_TICKS = 0.1
+# Upper edges of the histogram of how late ticks begin, in s; one more bin counts what is beyond.
+LATENESS_EDGES_S = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05)
+BATTERY_TICKS = 300
+KICKS_REMEMBERED = 256
+
+
+class Loop(object):
+    """A robot of two wheels: parts in, one tick at a time.
+
+    motors: the left and the right robot.motors.Motor; battery: a robot.motors.Battery or None; clock: see robot.motors;
+    seed: fixes the neurons' start values. Times are of the clock, record times since the loop was made.
+    """
+
+    def __init__(self, motors, battery, clock, seed):
+        self.params = Params()
+        self.safety = Safety()
+        self.lease = Lease()
+        self.blackbox = BlackBox(self.params.values())
+        self.clock = clock
+        self.seed = seed
+        self.battery_v = None if battery is None else battery.voltage_v()
+        self.lateness = [0] * (len(LATENESS_EDGES_S) + 1)
+        self.missed = self.overruns = self.clamped = 0
+        self.done = False
+        self._motors = motors
+        self._battery = battery
+        self._random = random.Random(seed)
+        self._wheels = [Wheel(side) for side in WHEELS]
+        self._travel = [deque((0.0,), DIRECTION_TICKS + 1) for _ in WHEELS]
+        self._kick = None
+        self._kick_begins = {}
+        self._kick_ids = deque()
+        self.epoch = self._before = self.deadline = clock.now()
+
+    def run(self, serve):
+        """Tick until `done`, serving links in between by serve(timeout_s). Motors are stopped however this ends."""
+        try:
+            while not self.done:
+                self.clock.wait(self.deadline, serve)
+                self.tick()
+        finally:
+            self._stop_motors()
+
+    def tick(self):
+        """One control period."""
+        now = self.clock.now()
+        late_s, missed = self._keep_schedule(now)
+        dt_s = self._measure(now)
+        if self.lease.expire(now, self.params.link_loss_s):
+            self._lose_link()
+        try:
+            duties = self._control(dt_s)
+        except MotorFault as fault:
+            self._fail(str(fault))
+            duties = (0, 0)
+        self._record(now, dt_s, late_s, missed, duties)
+        self.deadline += self.params.tick_s
+        if self.clock.now() > self.deadline:
+            self.overruns += 1
+
+    def _keep_schedule(self, now):
+        """(how late this tick is, how many deadlines passed without one); the grid of deadlines itself never moves."""
+        period = self.params.tick_s
+        late_s = now - self.deadline
+        missed = int(late_s // period) if late_s >= period else 0
+        if missed:
+            self.deadline += missed * period
+            self.missed += missed
+            late_s = now - self.deadline
+        index = 0
+        while index < len(LATENESS_EDGES_S) and late_s > LATENESS_EDGES_S[index]:
+            index += 1
+        self.lateness[index] += 1
+        return late_s, min(missed, 65535)
+
+    def _measure(self, now):
+        period = self.params.tick_s
+        dt_s = now - self._before if self.blackbox.next_tick else period
+        self._before = now
+        bounded = max(SHORTEST_STEP_TICKS * period, min(LONGEST_STEP_TICKS * period, dt_s))
+        if bounded != dt_s:
+            self.clamped += 1
+        return bounded
+
+    def _control(self, dt_s):
+        params = self.params
+        polarities = (params.polarity_left, params.polarity_right)
+        running = self.safety.state == RUNNING
+        tick = self.blackbox.next_tick
+        for wheel, motor, polarity, travel in zip(self._wheels, self._motors, polarities, self._travel):
+            phi = polarity * motor.angle_rad()
+            travel.append(phi)
+            if running:
+                wheel.step(tick, phi, dt_s, params, self._kick)
+            else:
+                wheel.rest()
+        if not running:
+            return (0, 0)
+        duties = [limit_duty(wheel.torque, params.max_duty_pct) for wheel in self._wheels]
+        for motor, polarity, duty in zip(self._motors, polarities, duties):
+            motor.write_duty(polarity * duty)
+        return duties
+
+    def _record(self, now, dt_s, late_s, missed, duties):
+        tick = self.blackbox.next_tick
+        kick = self._kick
+        mode = 0
+        if kick is not None:
+            mode = 1 + MODES.index(kick.mode)
+            if not kick.acts_at(tick + 1):
+                self._kick = None
+        left, right = self._wheels
+        self.blackbox.append(
+            (now - self.epoch, dt_s, late_s, missed, self.safety.state, mode)
+            + (self._travel[0][-1], left.x1, left.x2, left.force, left.torque, duties[0])
+            + (self._travel[1][-1], right.x1, right.x2, right.force, right.torque, duties[1])
+        )
+        if self._battery is not None and tick % BATTERY_TICKS == 0:
+            self.battery_v = self._battery.voltage_v()
+
+    def start(self):
+        """Set the neurons to random potentials and run from the next tick on. Returns that tick. Raises Refused."""
+        self.safety.start()
+        for wheel in self._wheels:
+            remembered = self._random.uniform(-pi, pi)
+            wheel.x1, wheel.x2 = cos(remembered), sin(remembered)
+        return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in self._wheels])
+
+    def stop(self, reason):
+        """Stop the motors at once. Returns the first tick of the stop."""
+        self.safety.stop(reason)
+        self._stop_motors()
+        return self.blackbox.note("stop", reason=reason)
+
+    def clear(self):
+        """Leave a fault for the stopped state. Returns the tick. Raises Refused."""
+        self.safety.clear()
+        return self.blackbox.note("clear")
+
+    def kick(self, request):
+        """Begin a kick in the next tick. Returns the tick in which it begins, or began if its id is known. Raises Refused."""
+        begun = self._kick_begins.get(request.get("id")) if isinstance(request.get("id"), str) else None
+        if begun is not None:
+            return begun
+        tick = self.blackbox.next_tick
+        directions = [direction(travel[-1] - travel[0]) for travel in self._travel]
+        kick = parse(request, directions, self.params, tick)
+        if self.safety.state != RUNNING:
+            raise Refused("state", "the robot does not run, so there is nothing to kick", "start it first")
+        if self._kick is not None:
+            raise Refused("busy", "a {} kick acts until tick {}".format(self._kick.mode, self._kick.begin + self._kick.ticks), "kick again then")
+        self._kick = kick
+        self._kick_begins[kick.id] = tick
+        self._kick_ids.append(kick.id)
+        if len(self._kick_ids) > KICKS_REMEMBERED:
+            del self._kick_begins[self._kick_ids.popleft()]
+        return self.blackbox.note("kick", kick=kick.as_dict())
+
+    def set_params(self, changes):
+        """Change parameters from the next tick on. Returns that tick. Raises Refused, and changes nothing then."""
+        checked = self.params.check(changes, at_rest=self.safety.state not in (RUNNING, HELD))
+        if "tick_s" in checked and self._kick is not None:
+            raise Refused("busy", "tick_s cannot change while a kick of so many ticks acts", "set it when the kick is over")
+        self.params.apply(checked)
+        return self.blackbox.note("params", set=dict(checked))
+
+    def take_lease(self, holder, name):
+        """Give `holder` the lease and resume a held run. Raises Refused."""
+        self.lease.take(holder, name, self.clock.now())
+        if self.safety.state == HELD:
+            self.safety.resume("'{}' took the lease".format(name))
+            self.blackbox.note("resume")
+
+    def _lose_link(self):
+        policy = self.params.link_loss
+        reason = "link to '{}' lost for {:g} s".format(self.lease.name, self.params.link_loss_s)
+        self.blackbox.note("link_loss", policy=policy, reason=reason)
+        if self.safety.state != RUNNING:
+            return
+        if policy == "stop":
+            self.stop(reason)
+        elif policy == "hold":
+            self.safety.hold(reason)
+            self._kick = None
+            self._stop_motors()
+            self.blackbox.note("hold", reason=reason)
+
+    def _fail(self, reason):
+        self.safety.fault(reason)
+        for wheel in self._wheels:
+            wheel.rest()
+        self._stop_motors()
+        self.blackbox.note("fault", reason=reason)
+
+    def _stop_motors(self):
+        """Every motor is told to stop, whatever the others do."""
+        self._kick = None
+        for motor in self._motors:
+            try:
+                motor.stop()
+            except MotorFault as fault:
+                self.safety.fault(str(fault))
+                self.blackbox.note("fault", reason=str(fault))

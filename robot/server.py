@@ -1,0 +1,172 @@
+"""Non-blocking links: TCP connections and serial lines, served in the time that a tick leaves, never longer."""
+
+import errno
+import os
+import select
+import socket
+
+from robot import wire
+from robot.session import Session, new_id
+
+MAX_PEERS = 8
+READ_BYTES = 2048
+# A peer that does not read is not read from either beyond this; its records wait in the black box.
+FULL_BYTES = 65536
+STREAM_BYTES = 16384
+GREETING_S = 5.0
+ACCEPTS_PER_CALL = 4
+_LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
+
+
+class Peer(object):
+    """One open link: its bytes in and out, and the conversation over it."""
+
+    def __init__(self, link, session, since, lasting):
+        self.link = link
+        self.fd = link.fileno()
+        self.session = session
+        self.since = since
+        self.lasting = lasting
+        self.decoder = wire.Decoder()
+        self.out = bytearray()
+
+    def read(self):
+        """Take in what has arrived. False if the link is at its end."""
+        try:
+            data = os.read(self.fd, READ_BYTES)
+        except OSError as error:
+            return error.errno in _LATER
+        if not self.session.closing:
+            self.decoder.feed(data)
+        return bool(data)
+
+    def answer(self):
+        """Answer one frame if one is whole. Returns whether there was one."""
+        if self.session.closing or len(self.out) >= FULL_BYTES:
+            return False
+        frame = self.decoder.next()
+        if self.decoder.discarded and not self.lasting:
+            # TCP delivers what was sent, so this peer sends something else than frames.
+            self.out += self.session.refuse("broken", "that was no frame", "see PROTOCOL.md for what the robot understands")
+        elif frame is not None:
+            self.out += self.session.receive(*frame)
+            return True
+        return False
+
+    def write(self):
+        """Send what the link takes now. False if it is at its end."""
+        while not self.session.closing and len(self.out) < STREAM_BYTES:
+            frame = self.session.stream()
+            if frame is None:
+                break
+            self.out += frame
+        if not self.out:
+            return not self.session.closing
+        try:
+            del self.out[: os.write(self.fd, self.out)]
+        except OSError as error:
+            return error.errno in _LATER
+        return not (self.session.closing and not self.out)
+
+
+class Server(object):
+    """All links of a robot. `serve` is what the loop's clock calls while it waits for the next tick."""
+
+    def __init__(self, loop, token):
+        self.boot = new_id()
+        self._loop = loop
+        self._token = token
+        self._listener = None
+        self._peers = []
+
+    def listen(self, host, port):
+        """Accept TCP connections. Returns the port, which the system chooses if `port` is 0. Raises OSError."""
+        self._listener = socket.socket()
+        self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._listener.bind((host, port))
+        self._listener.listen(16)
+        self._listener.setblocking(False)
+        return self._listener.getsockname()[1]
+
+    def adopt(self, link, lasting=False):
+        """Talk over an open, non-blocking link with fileno() and close(); a lasting one (a serial line) survives noise."""
+        session = Session(self._loop, self._token, self.boot)
+        self._peers.append(Peer(link, session, self._loop.clock.now(), lasting))
+
+    def close(self):
+        """Close every link."""
+        for peer in list(self._peers):
+            self._drop(peer)
+        if self._listener is not None:
+            self._listener.close()
+            self._listener = None
+
+    def serve(self, timeout_s):
+        """Answer and send what is due, for about timeout_s; at the least one frame of each peer, so that a stop is always heard."""
+        clock = self._loop.clock
+        until = clock.now() + timeout_s
+        more = self._talk()
+        while more and clock.now() <= until:
+            more = self._talk()
+        if not more and timeout_s > 0.0:
+            self._wait(max(0.0, until - clock.now()))
+
+    def _wait(self, timeout_s):
+        readers = [peer.fd for peer in self._peers if len(peer.out) < FULL_BYTES]
+        writers = [peer.fd for peer in self._peers if peer.out]
+        if self._listener is not None:
+            readers.append(self._listener.fileno())
+        select.select(readers, writers, (), timeout_s)
+
+    def _talk(self):
+        """One round over all links. Returns whether another round would find frames that have arrived already."""
+        if self._listener is not None:
+            self._accept()
+        more = False
+        for peer in list(self._peers):
+            answered = peer.answer()
+            alive = True
+            if not answered and len(peer.out) < FULL_BYTES:
+                alive = peer.read()
+                answered = peer.answer()
+            alive = peer.write() and alive
+            more = more or answered
+            late = not peer.session.greeted and not peer.lasting and self._loop.clock.now() - peer.since > GREETING_S
+            if not alive or late:
+                self._drop(peer)
+        return more
+
+    def _accept(self):
+        for _ in range(ACCEPTS_PER_CALL):
+            try:
+                link = self._listener.accept()[0]
+            except OSError:
+                return
+            link.setblocking(False)
+            link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            _detect_half_open(link)
+            if len(self._peers) >= MAX_PEERS:
+                self._make_room()
+            self.adopt(link)
+
+    def _make_room(self):
+        """The peer that has been here longest gives way, those without the token first, whoever holds the lease last."""
+        holder = self._loop.lease.holder
+        candidates = [peer for peer in self._peers if not peer.lasting]
+        candidates.sort(key=lambda peer: (peer.session.trusted, holder is not None and peer.session.client == holder, peer.since))
+        self._drop(candidates[0])
+
+    def _drop(self, peer):
+        self._peers.remove(peer)
+        try:
+            peer.link.close()
+        except OSError:
+            pass
+
+
+def _detect_half_open(link):
+    """Have the kernel notice within a minute that the other end has vanished without a word."""
+    link.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 20)
+    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 10)
+    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPCNT, 3)

@@ -1,0 +1,152 @@
+"""One peer's conversation with the robot, without any I/O: frames in, frames out. The order of it is in PROTOCOL.md."""
+
+import binascii
+import os
+import platform
+
+from robot import __version__, commands, wire
+from robot.errors import Refused
+from robot.record import STRUCT
+
+_BATCH = wire.MAX_PAYLOAD // STRUCT.size
+
+
+def new_id():
+    """Sixteen random bytes as text: a nonce, or the name of a boot."""
+    return binascii.hexlify(os.urandom(wire.NONCE_BYTES)).decode("ascii")
+
+
+class Session(object):
+    """What the robot knows of one peer. `closing` is set when the conversation is over and only the last frames are to be sent."""
+
+    def __init__(self, loop, token, boot):
+        self.client = None
+        self.name = ""
+        self.closing = False
+        self.trusted = False
+        self._loop = loop
+        self._token = token
+        self._boot = boot
+        self._handshake = None
+        self._counter = 0
+        self._cursor = None
+        self._event_cursor = 0
+        self._announcements = []
+
+    @property
+    def greeted(self):
+        """Whether the peer has said a valid hello."""
+        return self._handshake is not None
+
+    def receive(self, kind, payload):
+        """The frames (bytes, maybe none) that answer a frame."""
+        identity = None
+        try:
+            if kind == wire.HELLO:
+                return self._hello(wire.load(payload))
+            if kind == wire.STOP:
+                return wire.encode_json(wire.REPLY, {"id": None, "result": {"tick": self._loop.stop("stop frame from " + self._peer())}})
+            if not self.greeted:
+                raise wire.BadMessage("there was no hello before it")
+            if kind == wire.AUTH:
+                return self._authenticate(wire.load(payload))
+            if kind == wire.COMMAND:
+                payload = self._unseal(payload)
+            elif kind != wire.ASK:
+                raise wire.BadMessage("frames of type {} come from the robot only".format(kind))
+            message = wire.load(payload)
+            identity = message.get("id")
+            if isinstance(identity, bool) or not isinstance(identity, int):
+                identity = None
+            result = commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
+        except Refused as refusal:
+            return wire.encode_json(wire.REPLY, {"id": identity, "error": refusal.as_dict()})
+        except wire.BadMessage as error:
+            return self.refuse("broken", str(error), "see PROTOCOL.md for what the robot understands")
+        return wire.encode_json(wire.REPLY, {"id": identity, "result": result})
+
+    def refuse(self, code, message, hint):
+        """The last frame of a conversation that cannot go on."""
+        self.closing = True
+        return wire.encode_json(wire.REPLY, {"id": None, "error": {"code": code, "message": message[:200], "hint": hint}})
+
+    def _peer(self):
+        return "'{}'".format(self.name) if self.name else "a peer without a name"
+
+    def _hello(self, message):
+        protocol = message.get("protocol")
+        if not isinstance(protocol, list) or len(protocol) != 2 or protocol[0] != wire.PROTOCOL[0]:
+            ours = "{}.{}".format(*wire.PROTOCOL)
+            return self.refuse("version", "protocol {!r} is not {}".format(protocol, ours), "run the same release on host and robot")
+        name, client = message.get("name"), message.get("client")
+        try:
+            nonce = binascii.unhexlify(message.get("nonce"))
+        except (TypeError, ValueError):
+            nonce = b""
+        if len(nonce) != wire.NONCE_BYTES or not isinstance(client, str) or not 0 < len(client) <= 64 or not isinstance(name, str):
+            raise wire.BadMessage("a hello needs protocol, name, client and a nonce of {} bytes".format(wire.NONCE_BYTES))
+        self.name = "".join(letter for letter in name[:40] if letter.isprintable())
+        self.client = client
+        self.trusted = False
+        self._counter = 0
+        self._cursor = None
+        own_nonce = new_id()
+        self._handshake = wire.Handshake(self._token, nonce, binascii.unhexlify(own_nonce))
+        loop = self._loop
+        answer = {"protocol": wire.PROTOCOL, "software": __version__, "boot": self._boot, "nonce": own_nonce, "seed": loop.seed}
+        answer.update(tick=loop.blackbox.next_tick, oldest_tick=loop.blackbox.oldest_tick, clock_s=loop.clock.now() - loop.epoch)
+        answer.update(machine="{} {} {}".format(platform.machine(), platform.python_implementation(), platform.python_version()))
+        return wire.encode_json(wire.HELLO, answer)
+
+    def _authenticate(self, message):
+        try:
+            proof = binascii.unhexlify(message.get("proof"))
+        except (TypeError, ValueError):
+            proof = b""
+        if not wire.same(proof, self._handshake.host_proof):
+            return self.refuse("token", "the token is not this robot's", "copy the robot's token file to this machine, mode 600")
+        self.trusted = True
+        robot_proof = binascii.hexlify(self._handshake.robot_proof).decode("ascii")
+        return wire.encode_json(wire.AUTH, {"proof": robot_proof})
+
+    def _unseal(self, payload):
+        if not self.trusted:
+            raise Refused("token", "commands need the robot's token", "without it a peer may look, and stop the robot")
+        self._counter, payload = wire.unseal(self._handshake.key, self._counter, payload)
+        self._loop.lease.heard(self.client, self._loop.clock.now())
+        return payload
+
+    def subscribe(self, tick):
+        """Send records from `tick` on, or from the oldest that is left. Returns the first tick that will be sent."""
+        box = self._loop.blackbox
+        self._cursor = max(tick, box.oldest_tick)
+        self._announcements = []
+        if self._cursor > tick:
+            self._announcements.append({"event": "lost", "tick": self._cursor, "from": tick})
+        self._event_cursor, snapshot = box.snapshot(self._cursor)
+        self._announcements.append(snapshot)
+        return self._cursor
+
+    def unsubscribe(self):
+        """Send no more records."""
+        self._cursor = None
+
+    def stream(self):
+        """The next frame of the subscription, or None if the peer has everything: events stand before the record they concern."""
+        if self._cursor is None:
+            return None
+        box = self._loop.blackbox
+        if self._cursor < box.oldest_tick:
+            self.subscribe(self._cursor)
+        if self._announcements:
+            return wire.encode_json(wire.EVENT, self._announcements.pop(0))
+        event = box.event(self._event_cursor)
+        if event is not None and event["tick"] <= self._cursor:
+            self._event_cursor += 1
+            return wire.encode_json(wire.EVENT, event)
+        until = box.next_tick if event is None else event["tick"]
+        records = box.read(self._cursor, min(_BATCH, until - self._cursor))
+        if not records:
+            return None
+        self._cursor += len(records) // STRUCT.size
+        return wire.encode(wire.SAMPLES, records)
