@@ -15,6 +15,7 @@ FULL_BYTES = 65536
 STREAM_BYTES = 16384
 GREETING_S = 5.0
 ACCEPTS_PER_CALL = 4
+LINE_RETRY_S = 1.0
 _LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
 
 
@@ -61,12 +62,24 @@ class Peer(object):
                 break
             self.out += frame
         if not self.out:
-            return not self.session.closing
+            return True
         try:
             del self.out[: os.write(self.fd, self.out)]
         except OSError as error:
             return error.errno in _LATER
-        return not (self.session.closing and not self.out)
+        if self.session.closing and not self.out:
+            self.session.closing = not self.lasting
+            return self.lasting
+        return True
+
+
+class _Line(object):
+    """A serial line to be kept open."""
+
+    def __init__(self, open_line):
+        self.open = open_line
+        self.peer = None
+        self.next_try = 0.0
 
 
 class Server(object):
@@ -78,6 +91,7 @@ class Server(object):
         self._token = token
         self._listener = None
         self._peers = []
+        self._lines = []
 
     def listen(self, host, port):
         """Accept TCP connections. Returns the port, which the system chooses if `port` is 0. Raises OSError."""
@@ -89,9 +103,15 @@ class Server(object):
         return self._listener.getsockname()[1]
 
     def adopt(self, link, lasting=False):
-        """Talk over an open, non-blocking link with fileno() and close(); a lasting one (a serial line) survives noise."""
+        """Talk over an open, non-blocking link with fileno() and close(); a lasting one (a serial line) survives noise. Returns the Peer."""
         session = Session(self._loop, self._token, self.boot)
-        self._peers.append(Peer(link, session, self._loop.clock.now(), lasting))
+        peer = Peer(link, session, self._loop.clock.now(), lasting)
+        self._peers.append(peer)
+        return peer
+
+    def attach(self, open_line):
+        """Talk over the serial line that open_line() opens, and open it again whenever it breaks. open_line may raise OSError."""
+        self._lines.append(_Line(open_line))
 
     def close(self):
         """Close every link."""
@@ -122,6 +142,8 @@ class Server(object):
         """One round over all links. Returns whether another round would find frames that have arrived already."""
         if self._listener is not None:
             self._accept()
+        for line in self._lines:
+            self._mend(line)
         more = False
         for peer in list(self._peers):
             answered = peer.answer()
@@ -148,6 +170,16 @@ class Server(object):
             if len(self._peers) >= MAX_PEERS:
                 self._make_room()
             self.adopt(link)
+
+    def _mend(self, line):
+        now = self._loop.clock.now()
+        if line.peer in self._peers or now < line.next_try:
+            return
+        line.next_try = now + LINE_RETRY_S
+        try:
+            line.peer = self.adopt(line.open(), lasting=True)
+        except OSError:
+            line.peer = None
 
     def _make_room(self):
         """The peer that has been here longest gives way, those without the token first, whoever holds the lease last."""

@@ -1,0 +1,377 @@
+"""A robot as seen from the host, for programs and notebooks.
+
+    with connect("sim://") as robot:
+        robot.kick("phase", ticks=4)
+        log = robot.record(5)
+
+Calls block. Links to real robots are kept alive by a thread between calls; an embedded robot's time passes only within them.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+import threading
+import uuid
+from collections import deque
+from collections.abc import Callable
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from host.conversation import Conversation
+from host.errors import KickctlError, NoLink, RefusedByRobot
+from host.links import SIM, Link, LinkLost, make_link
+from robot import __version__
+from robot.blackbox import Snapshot
+from robot.record import Record
+from robot.token import TokenError, default_path, load
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from host.log import Log, Tap
+
+# The robot counts a silent host as lost after half a second by default.
+HEARTBEAT_S = 0.1
+ANSWER_S = 5.0
+RECONNECT_S = 10.0
+_RECENT_RECORDS = 400
+
+
+def connect(uri: str | None = None, seed: int | None = None, token: str | None = None, name: str = "kickctl") -> Robot:
+    """The robot at `uri`: by default $KICK_BRICK, or the embedded simulated robot.
+
+    seed fixes all chances of the simulated robot; token is the path of the token file. Raises KickctlError.
+    """
+    link = make_link(uri or os.environ.get("KICK_BRICK") or SIM, seed)
+    return Robot(link, find_token(link, token), name)
+
+
+def find_token(link: Link, path: str | None = None) -> bytes | None:
+    """The token for a link: its own if it has one, else the file's; None if there is no default file. Raises RefusedByRobot."""
+    own: bytes | None = getattr(link, "token", None)
+    if own is not None:
+        return own
+    chosen = path or default_path()
+    if path is None and not os.path.exists(chosen):
+        return None
+    try:
+        secret: bytes = load(chosen)
+    except TokenError as error:
+        raise RefusedByRobot(str(error), "name another token file by --token, or leave it to the default place") from error
+    return secret
+
+
+class Robot:
+    """A connected robot. Every method that talks to it raises KickctlError in words when that fails."""
+
+    def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
+        self.link = link
+        self.battery_v: float | None = None
+        self._talk = Conversation(token, name, client=uuid.uuid4().hex)
+        self._lock = threading.RLock()
+        self._taps: list[Tap] = []
+        self._state = Snapshot({})
+        self._next_tick: int | None = None
+        self._recent: deque[Record] = deque(maxlen=_RECENT_RECORDS)
+        self._leased = False
+        self._heartbeat_due = 0.0
+        self._closed = threading.Event()
+        self._broken: KickctlError | None = None
+        with self._lock:
+            self._open()
+            self.hello = self._talk.hello
+            self.started_utc = datetime.now(timezone.utc)
+            self.clock_zero_s = self.started_utc.timestamp() - float(self.hello["clock_s"])
+        if not link.virtual:
+            threading.Thread(target=self._keep_alive, name="kickctl link", daemon=True).start()
+
+    def __enter__(self) -> Robot:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give control back and hang up. The robot goes on as it is."""
+        with self._lock:
+            if self._closed.is_set():
+                return
+            try:
+                self.release()
+            except KickctlError:
+                pass
+            self._closed.set()
+            self.link.close()
+
+    # What the robot can be asked and told
+
+    def status(self) -> dict[str, Any]:
+        """State, parameters in force, battery, controller, and how punctual its ticks are."""
+        status = self._request("status")
+        self.battery_v = status["battery_v"]
+        return status
+
+    def describe(self, table: str) -> list[dict[str, Any]]:
+        """The robot's own table of 'params', 'channels' or 'commands'."""
+        rows: list[dict[str, Any]] = self._request("describe", table=table)["table"]
+        return rows
+
+    def lease(self) -> None:
+        """Take control. Others may look on and stop the robot."""
+        self._request("lease", sealed=True)
+        self._leased = True
+
+    def release(self) -> None:
+        """Give control back; the robot goes on as it is."""
+        if self._leased:
+            self._leased = False
+            self._request("release", sealed=True)
+
+    def start(self) -> int:
+        """Run from random membrane potentials. Returns the first tick."""
+        return self._control("start")
+
+    def stop(self) -> int:
+        """Stop the motors; needs neither token nor control. Returns the first tick of the stop."""
+        with self._lock:
+            return int(self._exchange(self._talk.stop_frame, None, ANSWER_S)["tick"])
+
+    def clear(self) -> int:
+        """Leave a fault. Returns the tick."""
+        return self._control("clear")
+
+    def set(self, **changes: float | str) -> int:
+        """Change parameters, all or none. Returns the first tick in which they hold."""
+        return self._control("set", set=changes)
+
+    def kick(self, mode: str, **details: Any) -> int:
+        """Kick: mode and the fields of robot.kicks.parse (ticks, wheel, shift, ...). Returns the tick in which it began."""
+        kick = {"id": uuid.uuid4().hex, "mode": mode}
+        kick.update((name, value) for name, value in details.items() if value is not None)
+        return self._control("kick", kick=kick)
+
+    # What it sends
+
+    def record(self, seconds: float) -> Log:
+        """The log of the next `seconds` of the robot's time."""
+        from host.log import Log
+
+        log = Log(self.info())
+        self.add_tap(log)
+        try:
+            self.wait(seconds)
+        finally:
+            self.remove_tap(log)
+        return log
+
+    def wait(self, seconds: float, until: Callable[[], bool] | None = None) -> bool:
+        """Let `seconds` of the robot's time pass, as counted by its records, or until `until()` is true. Returns whether it was."""
+        self._subscribe()
+        first: Record | None = self._recent[-1] if self._recent else None
+        silent_since = self.link.now()
+        while until is None or not until():
+            newest = self._recent[-1] if self._recent else None
+            if newest is not None:
+                if first is None or newest.tick < first.tick:
+                    first = newest
+                if newest.t_s - first.t_s >= seconds:
+                    return False
+            if self.pump(HEARTBEAT_S):
+                silent_since = self.link.now()
+            elif self.link.now() - silent_since > ANSWER_S + RECONNECT_S:
+                raise NoLink("the robot sends no more records", "look at its screen; `kickctl doctor` tells more")
+        return True
+
+    def recent(self) -> list[Record]:
+        """The latest records, oldest first."""
+        return list(self._recent)
+
+    def add_tap(self, tap: Tap) -> None:
+        """Feed a tap with everything that the robot sends from now on."""
+        with self._lock:
+            self._subscribe()
+            if self._next_tick is not None:
+                tap.take_event(self._state.as_event(self._next_tick))
+            self._taps.append(tap)
+
+    def remove_tap(self, tap: Tap) -> None:
+        """Feed it no more."""
+        with self._lock:
+            self._taps.remove(tap)
+
+    def pull(self, tap: Tap) -> None:
+        """Feed a tap with everything that the robot's black box holds, up to now."""
+        with self._lock:
+            self._taps.append(tap)
+            until = self._request("status")["tick"]
+            self._next_tick = None
+            self._request("subscribe", **{"from": 0})
+            while self._next_tick is None or self._next_tick < until:
+                self.pump(HEARTBEAT_S)
+            self.remove_tap(tap)
+
+    def info(self) -> dict[str, Any]:
+        """What a log must say of its origin."""
+        status = self.status()
+        return {
+            "brick": self.link.uri,
+            "seed": self.hello["seed"],
+            "boot": self.hello["boot"],
+            "robot_software": self.hello["software"],
+            "robot_machine": self.hello["machine"],
+            "host_software": __version__,
+            "host_machine": f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}",
+            "commit": _commit(),
+            "params": status["params"],
+            "motor_map": {side: status["params"]["polarity_" + side] for side in ("left", "right")},
+            "battery_v": status["battery_v"],
+            "clock_zero_s": self.clock_zero_s,
+            "started_utc": self.started_utc.isoformat(),
+        }
+
+    def pump(self, timeout_s: float) -> bool:
+        """Take in what the robot has sent, waiting up to timeout_s for it. Returns whether anything came."""
+        with self._lock:
+            if self._broken is not None:
+                raise self._broken
+            try:
+                if self._leased and self.link.now() >= self._heartbeat_due:
+                    self._heartbeat_due = self.link.now() + HEARTBEAT_S
+                    self.link.send(self._talk.request("heartbeat", {}, sealed=True)[1])
+                data = self.link.receive(timeout_s)
+            except LinkLost:
+                self._reopen()
+                return False
+            for event, records in self._talk.feed(data):
+                self._take(event, records)
+            return bool(data)
+
+    # Inner workings
+
+    def _control(self, command: str, **arguments: Any) -> int:
+        if not self._leased:
+            self.lease()
+        return int(self._request(command, sealed=True, **arguments)["tick"])
+
+    def _request(self, command: str, sealed: bool = False, **arguments: Any) -> dict[str, Any]:
+        """The robot's answer. A request that a broken link swallowed is sent again over the new one."""
+        with self._lock:
+            if sealed and not self._talk.trusted:
+                raise RefusedByRobot(
+                    "this machine does not have the robot's token, so it may only look, and stop the robot",
+                    f"copy the robot's token file to {default_path()}, mode 600",
+                )
+            return self._exchange(lambda: self._talk.request(command, arguments, sealed), command, ANSWER_S)
+
+    def _exchange(self, make: Callable[[], tuple[int | None, bytes]], what: str | None, patience_s: float) -> dict[str, Any]:
+        if self._broken is not None:
+            raise self._broken
+        while True:
+            session = self._talk.session
+            number, frame = make()
+            try:
+                self.link.send(frame)
+            except LinkLost:
+                self._reopen()
+                continue
+            until = self.link.now() + patience_s
+            while session == self._talk.session:
+                answer = self._talk.answer(number)
+                if answer is not None:
+                    return answer
+                if self.link.now() > until:
+                    raise NoLink(f"the robot does not answer to '{what or 'stop'}'", "is its program alive? look at its screen")
+                self.pump(min(HEARTBEAT_S, patience_s))
+
+    def _open(self) -> None:
+        self.link.open()
+        self._talk.begin()
+        try:
+            self.link.send(self._talk.hello_frame())
+            self._await(lambda: bool(self._talk.hello))
+            if self._talk.token is not None:
+                self.link.send(self._talk.auth_frame())
+                self._await(lambda: self._talk.trusted)
+        except LinkLost as error:
+            self._talk.raise_refusal()
+            raise NoLink(f"the robot at {self.link.uri} hung up: {error}", "is another program listening at that port?") from error
+
+    def _await(self, arrived: Callable[[], bool]) -> None:
+        until = self.link.now() + ANSWER_S
+        while not arrived():
+            if self.link.now() > until:
+                raise NoLink(f"nothing that speaks this protocol answers at {self.link.uri}", "is it the robot's port?")
+            self._talk.feed(self.link.receive(HEARTBEAT_S))
+            self._talk.raise_refusal()
+
+    def _reopen(self) -> None:
+        """Find the robot again, go on in its record where the link broke, and take the lease again if this host had it."""
+        until = self.link.now() + RECONNECT_S
+        pause = 0.05
+        while True:
+            try:
+                self._open()
+                break
+            except NoLink as error:
+                if self._closed.wait(0.0 if self.link.virtual else pause) or self.link.now() >= until:
+                    self._broken = NoLink(f"the link to {self.link.uri} broke and did not come back: {error.message}", error.hint)
+                    raise self._broken from error
+                pause = min(1.0, 2.0 * pause)
+        if self._talk.hello["boot"] != self.hello["boot"]:
+            self.hello = self._talk.hello
+            self._take({"event": "restart", "tick": 0, "boot": self.hello["boot"]}, [])
+            self._next_tick = None if self._next_tick is None else int(self.hello["oldest_tick"])
+        if self._next_tick is not None:
+            self._request("subscribe", **{"from": self._next_tick})
+        if self._leased:
+            try:
+                self._request("lease", sealed=True)
+            except KickctlError:
+                self._leased = False
+
+    def _subscribe(self) -> None:
+        with self._lock:
+            if self._next_tick is None:
+                self._request("subscribe")
+
+    def _take(self, event: dict[str, Any] | None, records: list[Record]) -> None:
+        if event is not None:
+            if event["event"] == "snapshot":
+                self._state = Snapshot(event["params"], event["kick"])
+                self._next_tick = event["tick"]
+            else:
+                self._state.take(event)
+            for tap in self._taps:
+                tap.take_event(event)
+        if records:
+            self._next_tick = records[-1].tick + 1
+            self._recent.extend(records)
+            for tap in self._taps:
+                tap.take_records(records)
+
+    def _keep_alive(self) -> None:
+        while not self._closed.wait(HEARTBEAT_S / 2):
+            if self._lock.acquire(blocking=False):
+                try:
+                    if not self._closed.is_set() and (self._leased or self._next_tick is not None):
+                        while self.pump(0.0):
+                            pass
+                except KickctlError:
+                    return
+                finally:
+                    self._lock.release()
+
+
+def _commit() -> str:
+    """The commit of the checkout that this runs from, with a '+' if it was changed; empty outside of one."""
+    root = Path(__file__).resolve().parent.parent
+    if not (root / ".git").exists():
+        return ""
+    try:
+        done = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True, timeout=5)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return done.stdout.strip()

@@ -1,0 +1,101 @@
+"""sim://: a robot embedded in this process. Its loop and its server are the real ones; time passes only while somebody waits."""
+
+from __future__ import annotations
+
+import os
+import socket
+
+from host.errors import WrongUse
+from host.links import LinkLost
+from robot.loop import Loop
+from robot.server import Server
+from robot.wire import TOKEN_BYTES
+from sim_motor.brick import SimBrick
+
+_READ_BYTES = 65536
+_OPTIONS = ("seed", "idle", "motor", "battery")
+
+
+class SimLink:
+    """A simulated brick in virtual time behind a pair of connected sockets. It makes its own token."""
+
+    virtual = True
+
+    def __init__(self, uri: str, brick: SimBrick, idle: bool = False) -> None:
+        self.uri = uri
+        self.brick = brick
+        self.token = os.urandom(TOKEN_BYTES)
+        self.loop = Loop(brick.motors, brick.battery, brick.clock, brick.seed)
+        self.server = Server(self.loop, self.token)
+        self._socket: socket.socket | None = None
+        if not idle:
+            self.loop.start()
+
+    @classmethod
+    def from_options(cls, uri: str, options: dict[str, str], seed: int | None) -> SimLink:
+        """The link for the options of a sim:// URI: seed, idle=1, motor=NAME, battery=V. Raises WrongUse."""
+        for name in options:
+            if name not in _OPTIONS:
+                raise WrongUse(f"sim:// has no option '{name}'", "its options are " + ", ".join(_OPTIONS))
+        try:
+            if seed is None:
+                seed = int(options["seed"]) if "seed" in options else int.from_bytes(os.urandom(4), "big")
+            battery_v = float(options["battery"]) if "battery" in options else None
+            brick = SimBrick(seed, motor=options.get("motor", "pybricks"), battery_v=battery_v)
+        except (ValueError, KeyError) as error:
+            raise WrongUse(f"'{uri}' cannot be simulated: {error}", "its options are " + ", ".join(_OPTIONS)) from error
+        return cls(uri, brick, idle=options.get("idle", "0") not in ("", "0"))
+
+    def open(self) -> None:
+        """Connect anew to the same robot."""
+        self.close()
+        self._socket, robot_end = socket.socketpair()
+        self._socket.setblocking(False)
+        robot_end.setblocking(False)
+        self.server.adopt(robot_end)
+
+    def send(self, data: bytes) -> None:
+        """Send all of it; the robot's end is served as often as it takes."""
+        if self._socket is None:
+            raise LinkLost("the connection is closed")
+        while data:
+            try:
+                data = data[self._socket.send(data) :]
+            except BlockingIOError:
+                self.server.serve(0.0)
+            except OSError as error:
+                raise LinkLost(str(error)) from error
+
+    def receive(self, timeout_s: float) -> bytes:
+        """What the robot has sent, letting its time pass tick by tick, up to timeout_s of it. Raises LinkLost."""
+        until = self.now() + timeout_s
+        while self._socket is not None:
+            try:
+                data = self._socket.recv(_READ_BYTES)
+            except BlockingIOError:
+                if self.now() >= until:
+                    return b""
+                self.run_tick()
+                continue
+            except OSError as error:
+                raise LinkLost(str(error)) from error
+            if data:
+                return data
+            break
+        raise LinkLost("the robot closed the connection")
+
+    def run_tick(self) -> None:
+        """Let the robot's time pass until its next tick is done, and what it has to say is sent."""
+        self.loop.clock.wait(self.loop.deadline, self.server.serve)
+        self.loop.tick()
+        self.server.serve(0.0)
+
+    def now(self) -> float:
+        """The robot's virtual time in s."""
+        return float(self.loop.clock.now())
+
+    def close(self) -> None:
+        """Close the connection; the robot stays as it is."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None

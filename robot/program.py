@@ -1,0 +1,79 @@
+"""The robot's program: from arguments to parts to the loop. The brick and the simulated brick differ only in the parts they hand in."""
+
+import argparse
+import os
+import signal
+import sys
+
+from robot import token
+from robot.loop import Loop
+from robot.params import check_value
+from robot.server import Server
+
+PORT = 5425  # KICK on a telephone's keys
+BAUD = 115200
+
+
+def parser(description, host):
+    """The arguments of every robot program; `host` is the address it listens on by default."""
+    made = argparse.ArgumentParser(description=description)
+    made.add_argument("--host", default=host, help="address to listen on (default %(default)s)")
+    made.add_argument("--port", type=int, default=PORT, help="TCP port to listen on, 0 for any that is free (default %(default)s)")
+    made.add_argument("--serial", metavar="DEVICE[@BAUD]", help="serve this serial line as well (default baud rate {})".format(BAUD))
+    made.add_argument("--token", default=token.default_path(), help="token file, made if there is none (default %(default)s)")
+    made.add_argument("--seed", type=int, help="fixes the neurons' start values; random by default")
+    made.add_argument("--idle", action="store_true", help="leave the motors off until told to start")
+    made.add_argument("--tick", type=float, metavar="S", help="control period in s")
+    return made
+
+
+def choose_seed(options):
+    """The seed asked for, or a random one."""
+    return int.from_bytes(os.urandom(4), "big") if options.seed is None else options.seed
+
+
+def run(options, motors, battery, clock, seed):
+    """Serve and tick until SIGINT or SIGTERM. Prints READY when it listens. Returns the exit status."""
+    try:
+        secret, new = token.load_or_make(options.token)
+    except token.TokenError as error:
+        return _give_up(str(error))
+    loop = Loop(motors, battery, clock, seed)
+    if options.tick is not None:
+        loop.set_params({"tick_s": check_value("tick_s", options.tick)})
+    server = Server(loop, secret)
+    try:
+        port = server.listen(options.host, options.port)
+    except (OSError, OverflowError) as error:
+        return _give_up("cannot listen on {}:{}: {}. Is another robot running there? Try --port 0".format(options.host, options.port, error))
+    if options.serial:
+        server.attach(_line_opener(options.serial))
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, frame: setattr(loop, "done", True))
+    if new:
+        print("made a new token: {}".format(options.token), file=sys.stderr)
+    if not options.idle:
+        loop.start()
+    print("READY tcp://{}:{}".format(options.host, port), flush=True)
+    try:
+        loop.run(server.serve)
+    finally:
+        server.close()
+    return 0
+
+
+def _give_up(message):
+    print(message, file=sys.stderr)
+    return 2
+
+
+def _line_opener(argument):
+    """A function that opens the serial line 'DEVICE' or 'DEVICE@BAUD' without blocking. It raises OSError."""
+    device, _, baud = argument.partition("@")
+
+    def open_line():
+        import serial
+
+        return serial.Serial(device, int(baud or BAUD), timeout=0, write_timeout=0)
+
+    return open_line

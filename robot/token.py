@@ -1,0 +1,53 @@
+"""The secret that robot and host share: 32 random bytes, as hexadecimal text in a file that only its owner can read."""
+
+import binascii
+import os
+import stat
+
+from robot.wire import TOKEN_BYTES
+
+
+class TokenError(Exception):
+    """The token file cannot be used; the message says why and what to do."""
+
+
+def default_path():
+    """Where the token is kept: $KICK_TOKEN, or a file under the user's configuration folder."""
+    named = os.environ.get("KICK_TOKEN")
+    if named:
+        return named
+    folder = os.environ.get("XDG_CONFIG_HOME") or os.path.join(os.path.expanduser("~"), ".config")
+    return os.path.join(folder, "kickctl", "token")
+
+
+def load(path):
+    """The token's bytes. Raises TokenError if the file is missing, open to others, or holds no token."""
+    try:
+        with open(path, "r") as file:
+            mode = os.fstat(file.fileno()).st_mode
+            text = file.read(4 * TOKEN_BYTES)
+    except (OSError, ValueError) as error:
+        raise TokenError("the token file {} cannot be read: {}".format(path, error))
+    if mode & (stat.S_IRWXG | stat.S_IRWXO):
+        raise TokenError("the token file {} is open to others; close it: chmod 600 {}".format(path, path))
+    try:
+        token = binascii.unhexlify(text.strip())
+    except ValueError:
+        token = b""
+    if len(token) != TOKEN_BYTES:
+        raise TokenError("{} holds no token of {} hexadecimal digits; delete it to have a new one made".format(path, 2 * TOKEN_BYTES))
+    return token
+
+
+def load_or_make(path):
+    """(token, whether it is new): the token in the file, made first if there is no such file. Raises TokenError."""
+    try:
+        os.makedirs(os.path.dirname(path) or ".", mode=0o700, exist_ok=True)
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        return load(path), False
+    except OSError as error:
+        raise TokenError("the token file {} cannot be made: {}".format(path, error))
+    with os.fdopen(handle, "w") as file:
+        file.write(binascii.hexlify(os.urandom(TOKEN_BYTES)).decode("ascii") + "\n")
+    return load(path), True
