@@ -16,9 +16,10 @@ import threading
 import uuid
 from collections import deque
 from collections.abc import Callable
-from datetime import datetime, timezone
+from contextlib import suppress
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from host.conversation import Conversation
 from host.errors import KickctlError, NoLink, RefusedByRobot
@@ -55,7 +56,7 @@ def find_token(link: Link, path: str | None = None) -> bytes | None:
     if own is not None:
         return own
     chosen = path or default_path()
-    if path is None and not os.path.exists(chosen):
+    if path is None and not Path(chosen).exists():
         return None
     try:
         secret: bytes = load(chosen)
@@ -83,12 +84,12 @@ class Robot:
         with self._lock:
             self._open()
             self.hello = self._talk.hello
-            self.started_utc = datetime.now(timezone.utc)
-            self.clock_zero_s = self.started_utc.timestamp() - float(self.hello["clock_s"])
+            self.started_utc = datetime.now(UTC)
+            self.clock_zero_s = self._clock_zero()
         if not link.virtual:
             threading.Thread(target=self._keep_alive, name="kickctl link", daemon=True).start()
 
-    def __enter__(self) -> Robot:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
@@ -99,10 +100,8 @@ class Robot:
         with self._lock:
             if self._closed.is_set():
                 return
-            try:
+            with suppress(KickctlError):
                 self.release()
-            except KickctlError:
-                pass
             self._closed.set()
             self.link.close()
 
@@ -116,7 +115,7 @@ class Robot:
 
     def describe(self, table: str) -> list[dict[str, Any]]:
         """The robot's own table of 'params', 'channels' or 'commands'."""
-        rows: list[dict[str, Any]] = self._request("describe", table=table)["table"]
+        rows: list[dict[str, Any]] = self._request("describe", {"table": table})["table"]
         return rows
 
     def lease(self) -> None:
@@ -170,10 +169,10 @@ class Robot:
     def wait(self, seconds: float, until: Callable[[], bool] | None = None) -> bool:
         """Let `seconds` of the robot's time pass, as counted by its records, or until `until()` is true. Returns whether it was."""
         self._subscribe()
-        first: Record | None = self._recent[-1] if self._recent else None
+        first = self.newest
         silent_since = self.link.now()
         while until is None or not until():
-            newest = self._recent[-1] if self._recent else None
+            newest = self.newest
             if newest is not None:
                 if first is None or newest.tick < first.tick:
                     first = newest
@@ -184,6 +183,11 @@ class Robot:
             elif self.link.now() - silent_since > ANSWER_S + RECONNECT_S:
                 raise NoLink("the robot sends no more records", "look at its screen; `kickctl doctor` tells more")
         return True
+
+    @property
+    def newest(self) -> Record | None:
+        """The latest record."""
+        return self._recent[-1] if self._recent else None
 
     def recent(self) -> list[Record]:
         """The latest records, oldest first."""
@@ -208,7 +212,7 @@ class Robot:
             self._taps.append(tap)
             until = self._request("status")["tick"]
             self._next_tick = None
-            self._request("subscribe", **{"from": 0})
+            self._request("subscribe", {"from": 0})
             while self._next_tick is None or self._next_tick < until:
                 self.pump(HEARTBEAT_S)
             self.remove_tap(tap)
@@ -226,7 +230,7 @@ class Robot:
             "host_machine": f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}",
             "commit": _commit(),
             "params": status["params"],
-            "motor_map": {side: status["params"]["polarity_" + side] for side in ("left", "right")},
+            "polarity": {side: status["params"]["polarity_" + side] for side in ("left", "right")},
             "battery_v": status["battery_v"],
             "clock_zero_s": self.clock_zero_s,
             "started_utc": self.started_utc.isoformat(),
@@ -254,9 +258,9 @@ class Robot:
     def _control(self, command: str, **arguments: Any) -> int:
         if not self._leased:
             self.lease()
-        return int(self._request(command, sealed=True, **arguments)["tick"])
+        return int(self._request(command, arguments, sealed=True)["tick"])
 
-    def _request(self, command: str, sealed: bool = False, **arguments: Any) -> dict[str, Any]:
+    def _request(self, command: str, arguments: dict[str, Any] | None = None, sealed: bool = False) -> dict[str, Any]:
         """The robot's answer. A request that a broken link swallowed is sent again over the new one."""
         with self._lock:
             if sealed and not self._talk.trusted:
@@ -264,7 +268,7 @@ class Robot:
                     "this machine does not have the robot's token, so it may only look, and stop the robot",
                     f"copy the robot's token file to {default_path()}, mode 600",
                 )
-            return self._exchange(lambda: self._talk.request(command, arguments, sealed), command, ANSWER_S)
+            return self._exchange(lambda: self._talk.request(command, arguments or {}, sealed), command, ANSWER_S)
 
     def _exchange(self, make: Callable[[], tuple[int | None, bytes]], what: str | None, patience_s: float) -> dict[str, Any]:
         if self._broken is not None:
@@ -322,15 +326,20 @@ class Robot:
                 pause = min(1.0, 2.0 * pause)
         if self._talk.hello["boot"] != self.hello["boot"]:
             self.hello = self._talk.hello
-            self._take({"event": "restart", "tick": 0, "boot": self.hello["boot"]}, [])
+            self.clock_zero_s = self._clock_zero()
+            self._take({"event": "restart", "tick": 0, "boot": self.hello["boot"], "clock_zero_s": self.clock_zero_s}, [])
             self._next_tick = None if self._next_tick is None else int(self.hello["oldest_tick"])
         if self._next_tick is not None:
-            self._request("subscribe", **{"from": self._next_tick})
+            self._request("subscribe", {"from": self._next_tick})
         if self._leased:
             try:
                 self._request("lease", sealed=True)
             except KickctlError:
                 self._leased = False
+
+    def _clock_zero(self) -> float:
+        """UTC, in Unix seconds, when the robot's clock was at zero."""
+        return datetime.now(UTC).timestamp() - float(self._talk.hello["clock_s"])
 
     def _subscribe(self) -> None:
         with self._lock:
@@ -371,7 +380,9 @@ def _commit() -> str:
     if not (root / ".git").exists():
         return ""
     try:
-        done = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True, timeout=5)
+        done = subprocess.run(
+            ["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True, timeout=5, check=False
+        )
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return done.stdout.strip()

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from typing import Any
 
-from host.errors import NoLink, RefusedByRobot, from_robot
+from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot
 from robot import wire
 from robot.record import Record, unpack
 
@@ -60,7 +60,10 @@ class Conversation:
     def request(self, command: str, arguments: dict[str, Any], sealed: bool) -> tuple[int, bytes]:
         """(number, frame) of a request; its answer will carry the number."""
         self._number += 1
-        body = wire.dump({"id": self._number, "do": command, **arguments})
+        try:
+            body = wire.dump({"id": self._number, "do": command, **arguments})
+        except ValueError as error:
+            raise WrongUse(f"'{command}' cannot be sent: {error}", "numbers must be finite") from error
         if not sealed:
             return self._number, _bytes(wire.encode(wire.ASK, body))
         self._counter += 1
@@ -108,7 +111,9 @@ class Conversation:
             self.hello = message
         elif kind == wire.AUTH:
             if not wire.same(bytes.fromhex(str(message.get("proof"))), self._handshake.robot_proof):
-                raise RefusedByRobot("this robot does not have the token either: it may be another one", "check its address and the token file")
+                raise RefusedByRobot(
+                    "this robot does not have the token either: it may be another one", "check its address and the token file"
+                )
             self.trusted = True
         elif kind == wire.REPLY:
             number = message.get("id")

@@ -117,7 +117,9 @@ class SerialLink:
         try:
             self._serial.open()
         except (OSError, ValueError) as error:
-            raise NoLink(f"the serial line {self.uri} cannot be opened: {error}", "is the cable in, and are you in group dialout?") from error
+            raise NoLink(
+                f"the serial line {self.uri} cannot be opened: {error}", "is the cable in, and are you in group dialout?"
+            ) from error
 
     def send(self, data: bytes) -> None:
         """Send all of it. Raises LinkLost."""

@@ -163,7 +163,9 @@ class Loop(object):
         if self.safety.state != RUNNING:
             raise Refused("state", "the robot does not run, so there is nothing to kick", "start it first")
         if self._kick is not None:
-            raise Refused("busy", "a {} kick acts until tick {}".format(self._kick.mode, self._kick.begin + self._kick.ticks), "kick again then")
+            raise Refused(
+                "busy", "a {} kick acts until tick {}".format(self._kick.mode, self._kick.begin + self._kick.ticks), "kick again then"
+            )
         self._kick = kick
         self._kick_begins[kick.id] = tick
         self._kick_ids.append(kick.id)

@@ -51,7 +51,9 @@ def check_value(name, value):
                 return choice
         raise Refused("range", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(str(choice) for choice in row.choices))
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not row.minimum <= value <= row.maximum or not isfinite(value):
-        raise Refused("range", "{} cannot be {!r}".format(name, value), "it is a number from {} to {} {}".format(row.minimum, row.maximum, row.unit))
+        raise Refused(
+            "range", "{} cannot be {!r}".format(name, value), "it is a number from {} to {} {}".format(row.minimum, row.maximum, row.unit)
+        )
     return float(value)
 
 

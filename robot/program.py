@@ -45,7 +45,9 @@ def run(options, motors, battery, clock, seed):
     try:
         port = server.listen(options.host, options.port)
     except (OSError, OverflowError) as error:
-        return _give_up("cannot listen on {}:{}: {}. Is another robot running there? Try --port 0".format(options.host, options.port, error))
+        return _give_up(
+            "cannot listen on {}:{}: {}. Is another robot running there? Try --port 0".format(options.host, options.port, error)
+        )
     if options.serial:
         server.attach(_line_opener(options.serial))
     for number in (signal.SIGINT, signal.SIGTERM):

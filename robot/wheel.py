@@ -26,9 +26,7 @@ class Wheel(object):
             else:
                 setattr(self, kick.variable, jump(getattr(self, kick.variable), kick.delta))
         seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
-        self.x1, self.x2, self.force, self.torque = step_wheel(
-            self.x1, self.x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, params.rods
-        )
+        self.x1, self.x2, self.force, self.torque = step_wheel(self.x1, self.x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, params.rods)
         return self.torque
 
     def rest(self):

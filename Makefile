@@ -1,0 +1,57 @@
+# GNU make. `make` alone lists the targets; each sets up what it needs, in .venv.
+
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/.complete
+# The locker itself is no dependency of the project: it lives in a venv of its own.
+LOCKER := uv==0.13.9
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help setup demo test lint bench lock clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
+	@echo 'PYTHON=... chooses the interpreter that .venv is made with (now: $(PYTHON); 3.11 or newer).'
+
+setup: $(STAMP) ## make .venv with the locked dependencies and kickctl in it
+
+demo: $(STAMP) ## watch the simulated robot being kicked
+	$(BIN)/kickctl demo
+
+test: $(STAMP) ## run the tests
+	$(BIN)/python -m pytest tests --ignore=tests/lint
+
+lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the house
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest tests/lint
+
+bench: $(STAMP) ## measure the speed of what has to be fast
+	$(BIN)/python -m tests.bench
+
+lock: .venv-lock/.complete ## renew requirements.lock with the newest versions that fit together
+	.venv-lock/bin/uv pip compile pyproject.toml --group dev --output-file requirements.lock --upgrade --quiet --universal \
+		--python-version 3.11 --generate-hashes --no-emit-index-url --custom-compile-command 'make lock'
+
+clean: ## remove everything that can be made again
+	rm -rf .venv .venv-lock build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .coverage htmlcov
+	find robot host sim_motor tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The stamp comes last and goes first, so an interrupted setup is never taken for a finished one: the next begins anew.
+$(STAMP): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo "make setup: needs Python 3.11 or newer, and\
+	 '$(PYTHON)' is not ($$($(PYTHON) --version 2>&1)). Install one and name it: make setup PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "make setup: '$(PYTHON)' has no venv module. Install it\
+	 (Debian, Ubuntu: apt-get install python3-venv) and try again." >&2; exit 1; }
+	@test -f $@ && $(BIN)/python -m pip --version >/dev/null || $(PYTHON) -m venv --clear .venv
+	@rm -f $@
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@
+
+.venv-lock/.complete: Makefile
+	$(PYTHON) -m venv --clear .venv-lock
+	.venv-lock/bin/python -m pip install --quiet --disable-pip-version-check $(LOCKER)
+	@touch $@

@@ -1,0 +1,8 @@
+"""`python -m host` is `kickctl`."""
+
+import sys
+
+from host.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

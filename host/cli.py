@@ -1,0 +1,86 @@
+"""kickctl: one verb a module in host.commands. Nothing heavy is imported before a verb runs."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import os
+import sys
+from collections.abc import Sequence
+
+from host.errors import KickctlError
+from robot import __version__
+
+VERBS = ("kick", "drive", "start", "stop", "clear", "status", "params", "record", "watch", "log")
+
+_EPILOG = """\
+Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
+Exit status: 0 it worked; 1 tried, and the robot did not do it; 2 wrong use; 3 no link to the robot;
+4 refused (version, token, lease); 5 fault on the robot."""
+
+
+def _common(defaults: bool) -> argparse.ArgumentParser:
+    """Options that may stand before or after the verb; only one of the two places may set defaults."""
+    parser = argparse.ArgumentParser(add_help=False, argument_default=None if defaults else argparse.SUPPRESS)
+    group = parser.add_argument_group("which robot, and how to answer")
+    group.add_argument("--brick", metavar="URI", help="sim://, tcp://HOST[:PORT] or serial:///dev/DEVICE?baud=RATE")
+    group.add_argument("--seed", type=int, metavar="N", help="fixes all chances of the simulated robot")
+    group.add_argument("--token", metavar="FILE", help="the robot's token file")
+    off = False if defaults else argparse.SUPPRESS
+    group.add_argument("--json", action="store_true", default=off, help="answer in JSON on standard output")
+    return parser
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line."""
+    parser = argparse.ArgumentParser(
+        prog="kickctl",
+        description="Kick a robot from one of its attractors into another.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        parents=[_common(defaults=True)],
+    )
+    parser.add_argument("--version", action="version", version=f"kickctl {__version__}")
+    verbs = parser.add_subparsers(metavar="VERB", required=True)
+    for name in VERBS:
+        module = importlib.import_module("host.commands." + name)
+        verb = verbs.add_parser(name, help=module.HELP, description=module.HELP, parents=[_common(defaults=False)])
+        module.add_arguments(verb)
+        verb.set_defaults(run=module.run)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one verb. Returns the exit status."""
+    parser = make_parser()
+    if "_ARGCOMPLETE" in os.environ:
+        import argcomplete
+
+        argcomplete.autocomplete(parser)
+    options = parser.parse_args(_join_negative(sys.argv[1:] if arguments is None else list(arguments)))
+    try:
+        return int(options.run(options))
+    except KickctlError as error:
+        if options.json:
+            print(json.dumps({"error": {"message": error.message, "hint": error.hint, "status": error.status}}))
+        print(f"kickctl: {error.message}" + (f"\n  {error.hint}" if error.hint else ""), file=sys.stderr)
+        return error.status
+    except BrokenPipeError:
+        # Whoever read the output has gone; let the interpreter's last flush go nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except KeyboardInterrupt:
+        print("kickctl: interrupted", file=sys.stderr)
+        return 130
+
+
+def _join_negative(arguments: list[str]) -> list[str]:
+    """'--shift -3pi/4' as '--shift=-3pi/4': argparse takes a negative angle for an option."""
+    joined: list[str] = []
+    for argument in arguments:
+        if joined and joined[-1] in ("--shift", "--value", "--delta") and argument[:1] == "-" and argument[1:2] not in ("-", ""):
+            joined[-1] += "=" + argument
+        else:
+            joined.append(argument)
+    return joined

@@ -1,0 +1,38 @@
+"""kickctl drive."""
+
+import argparse
+
+from host.terminal import recorded, robot_of, show
+
+HELP = "bring the robot into a motion primitive by kicks, or to rest by k"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The primitive."""
+    parser.add_argument("primitive", choices=("forward", "backward", "spin-left", "spin-right", "stopped"))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Drive there, starting the robot if it does not run; 1 if it did not get there."""
+    from host.figures.kick import draw
+    from host.kicking import require_running
+    from host.primitives import drive
+
+    with robot_of(options, moves=True) as robot:
+        if robot.status()["state"] in ("idle", "stopped"):
+            robot.start()
+        require_running(robot)
+        with recorded(robot, "drive") as (log, path):
+            result = drive(robot, log, options.primitive)
+        result.update(brick=robot.link.uri, seed=robot.hello["seed"], log=str(path))
+    how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
+    if result["k"] != result["k_before"]:
+        how += f", and k from {result['k_before']:g} to {result['k']:g}"
+    verdict = f"The robot is in {options.primitive}" if result["reached"] else f"The robot did NOT reach {options.primitive}"
+    sentence = f"{verdict}: left {result['after']['left']}, right {result['after']['right']}, by {how}."
+    result["figure"] = str(draw(log, path.with_suffix(".png"), sentence))
+    if options.json:
+        show(result)
+    else:
+        print(f"{sentence}\nlog {path}\nfigure {result['figure']}")
+    return 0 if result["reached"] else 1

@@ -1,0 +1,108 @@
+"""kickctl log list|pull|export|replay."""
+
+import argparse
+from pathlib import Path
+
+from host.errors import WrongUse
+from host.terminal import answer, robot_of, say, show
+
+HELP = "logs: list them, pull the robot's black box, export, replay"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """One action, and what it needs."""
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    listing = actions.add_parser("list", help="the logs in a folder")
+    listing.add_argument("folder", nargs="?", type=Path, help="default: logs/ here")
+    pull = actions.add_parser("pull", help="fetch the last minutes from the robot's black box")
+    pull.add_argument("--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)")
+    export = actions.add_parser("export", help="a log as a table")
+    export.add_argument("log", type=Path)
+    export.add_argument("--format", choices=("csv", "npz"), default="csv")
+    export.add_argument("--out", type=Path, metavar="FILE", help="where to (default: csv to standard output, npz beside the log)")
+    replay = actions.add_parser("replay", help="feed a log's angles and delta t to the controller again and compare every bit")
+    replay.add_argument("log", type=Path)
+    for action in (listing, pull, export, replay):
+        action.add_argument("--json", action="store_true", default=argparse.SUPPRESS, help="answer in JSON on standard output")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the action."""
+    return {"list": _list, "pull": _pull, "export": _export, "replay": _replay}[options.action](options)
+
+
+def _list(options: argparse.Namespace) -> int:
+    from host.recording import LOG_FOLDER, list_logs
+
+    folder = options.folder or LOG_FOLDER
+    if not folder.is_dir():
+        if options.folder is not None:
+            raise WrongUse(f"there is no folder {folder}", "name the folder that the logs are in")
+        rows = []
+    else:
+        rows = list_logs(folder)
+    if options.json:
+        show([{**row._asdict(), "path": str(row.path)} for row in rows])
+        return 0
+    for row in rows:
+        print(f"{row.path}  {row.ticks} ticks  {row.seconds:.1f} s  {row.brick}  {row.started_utc[:19]}  {row.note}".rstrip())
+    if not rows:
+        say(f"no logs in {folder}; `kickctl record 10` makes one")
+    return 0
+
+
+def _pull(options: argparse.Namespace) -> int:
+    from host.log import Log
+    from host.recording import new_path
+
+    with robot_of(options) as robot:
+        log = Log(robot.info())
+        robot.pull(log)
+    path = log.save(options.out or new_path("pull"))
+    answer(options, {"log": str(path), "ticks": len(log)}, f"{len(log)} ticks, {log.seconds:.1f} s, in {path}")
+    return 0
+
+
+def _export(options: argparse.Namespace) -> int:
+    import sys
+
+    from host.export import write_csv
+    from host.log import Log
+
+    log = Log.load(options.log)
+    if log.info.get("truncated"):
+        say(f"{options.log} breaks off; the table has what is there")
+    if options.format == "csv" and options.out is None and not options.json:
+        write_csv(log, sys.stdout)
+        return 0
+    out = options.out or options.log.with_suffix("." + options.format)
+    try:
+        path = log.to_csv(out) if options.format == "csv" else log.to_npz(out)
+    except OSError as error:
+        raise WrongUse(f"{out} cannot be written: {error.strerror}", "choose another place with --out") from error
+    answer(options, {"table": str(path), "ticks": len(log)}, f"{len(log)} ticks in {path}")
+    return 0
+
+
+def _replay(options: argparse.Namespace) -> int:
+    from host.log import Log
+    from host.replay import replay
+
+    result = replay(Log.load(options.log))
+    facts = {
+        "reproduced": result.reproduced,
+        "exact": result.exact,
+        "compared": result.compared,
+        "not_comparable": result.not_comparable,
+        "worst": result.worst,
+        "first_mismatch": None if result.first is None else str(result.first),
+    }
+    verdict = (
+        "bit for bit the same"
+        if result.exact
+        else f"within {result.tolerance:g}"
+        if result.reproduced
+        else f"NOT the same: {result.beyond}"
+    )
+    answer(options, facts, f"{result.compared} ticks replayed: {verdict} ({result.not_comparable} not comparable)")
+    return 0 if result.reproduced else 1

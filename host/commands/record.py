@@ -1,0 +1,66 @@
+"""kickctl record."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from host.errors import WrongUse
+from host.terminal import answer, robot_of, say
+from robot.record import Record
+
+HELP = "record every tick of the robot into a log"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """How long, and where to."""
+    parser.add_argument("seconds", type=float, help="how long, in the robot's time")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)")
+
+
+class Tally:
+    """A tap that counts."""
+
+    def __init__(self) -> None:
+        self.ticks = 0
+        self.missing = 0
+
+    def take_records(self, records: list[Record]) -> None:
+        """Count records."""
+        self.ticks += len(records)
+
+    def take_event(self, event: dict[str, Any]) -> None:
+        """Count what the robot says is lost."""
+        if event["event"] == "lost":
+            self.missing += event["tick"] - event["from"]
+
+
+def run(options: argparse.Namespace) -> int:
+    """Record; ^C ends it early, and what was recorded is kept."""
+    from host.progress import progress
+    from host.recording import McapTap, new_path
+
+    if not 0.0 < options.seconds < 1e6:
+        raise WrongUse(f"cannot record {options.seconds:g} s", "give a number of seconds above 0")
+    path = options.out or new_path("record")
+    tally = Tally()
+    with robot_of(options) as robot, McapTap(path, robot.info()) as tap:
+        robot.add_tap(tap)
+        robot.add_tap(tally)
+        try:
+            with progress("recording", options.seconds) as advance:
+                began = robot.newest
+
+                def report() -> bool:
+                    if began is not None and robot.newest is not None:
+                        advance(robot.newest.t_s - began.t_s)
+                    return False
+
+                robot.wait(options.seconds, until=report)
+        except KeyboardInterrupt:
+            say("interrupted: the log holds what was recorded until now")
+    answer(
+        options,
+        {"log": str(path), "ticks": tally.ticks, "missing": tally.missing},
+        f"{tally.ticks} ticks in {path}, {tally.missing} missing",
+    )
+    return 0

@@ -1,0 +1,20 @@
+"""kickctl stop."""
+
+import argparse
+
+from host.terminal import answer, robot_of
+
+HELP = "stop the motors; needs no token"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """No arguments of its own."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Stop, whoever controls the robot."""
+    with robot_of(options) as robot:
+        tick = robot.stop()
+        state = robot.status()["state"]
+        answer(options, {"state": state, "tick": tick}, f"motors stopped before tick {tick}; the robot is {state}")
+    return 0

@@ -1,0 +1,1 @@
+"""Figures, one file each; matplotlib is loaded when one is drawn, and needs no display."""

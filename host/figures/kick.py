@@ -1,0 +1,131 @@
+"""The paper's timeline of a kick (fig. kick_control_timeline): potentials and torque of both wheels, and below how fast they turn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from host.log import Event, Log
+from robot.kicks import WHEELS
+
+STALL_TORQUE = 0.1  # friction holds a wheel at torques below this one (paper, section 'Robot')
+
+# The colours of the paper's figure.
+_POTENTIALS = {"left": ("saddlebrown", "darkorange"), "right": ("mediumblue", "deepskyblue")}
+_WHEEL = {"left": "black", "right": "grey"}
+_WIDTH = {"left": 3.6, "right": 1.6}  # so that both show where they agree
+_KICK = "crimson"
+_PLATE: Any = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
+_STYLE: Any = {"font.size": 13, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.8, "legend.frameon": False}
+
+
+class Span(NamedTuple):
+    """A kick as it acted: from when to when (s of the robot's clock), and its name."""
+
+    begin_s: float
+    end_s: float
+    label: str
+
+
+def spans(log: Log, begin: int = 0) -> list[Span]:
+    """The kicks that acted from record number `begin` on, each to its end or to where a stop cut it short."""
+    found = []
+    for row, kick in log.kicks():
+        after = row
+        while after < len(log) and log.records[after].kick and log.records[after].tick < kick["begin"] + kick["ticks"]:
+            after += 1
+        if begin <= row < after:
+            last = log.records[after - 1]
+            end_s = log.records[after].t_s if after < len(log) else last.t_s + last.dt_s
+            found.append(Span(log.records[row].t_s, end_s, _label(kick)))
+    return found
+
+
+def _label(kick: Event) -> str:
+    ticks = f"{kick['ticks']} tick{'s' if kick['ticks'] > 1 else ''}"
+    wheel = "" if len(kick["wheels"]) > 1 else f", {kick['wheels'][0]} wheel"
+    return f"{kick['mode']} kick, {ticks}{wheel}"
+
+
+def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | None = None) -> Path:
+    """Draw a PNG, 1600 pixels wide, at `path`, over whatever the file held.
+
+    window: the stretch (s) to show, in the figure's own time, which is 0 at the begin of the log's first kick, or of the log if it
+    has none; all of the log by default. Of a robot that began anew only what came after is shown. ValueError if there are no ticks.
+    """
+    begin = max([0, *log.restarts()])
+    if begin >= len(log):
+        raise ValueError("there are no ticks in the log to draw")
+    kicks = spans(log, begin)
+    zero_s = kicks[0].begin_s if kicks else log.records[begin].t_s
+    first_s, last_s = window or (log.records[begin].t_s - zero_s, log.records[-1].t_s - zero_s)
+    inside = [Span(span.begin_s - zero_s, span.end_s - zero_s, span.label) for span in kicks]
+    inside = [span for span in inside if span.begin_s <= last_s and span.end_s >= first_s]
+    with rc_context(_STYLE):
+        figure = Figure(figsize=(10.0, 6.4), dpi=160, layout="constrained")
+        neurons, speeds = figure.subplots(2, 1, sharex=True, height_ratios=(5, 2))
+        figure.suptitle(title, fontsize=16)
+        _draw_neurons(neurons, log, begin, zero_s)
+        _draw_speeds(speeds, log, begin, zero_s)
+        for axes in (neurons, speeds):
+            for span in inside:
+                axes.axvspan(span.begin_s, span.end_s, color=_KICK, alpha=0.3, linewidth=0)
+                axes.axvline(span.begin_s, color=_KICK, linewidth=1.2)
+        _name(neurons, inside, first_s, last_s)
+        speeds.set_xlim(first_s, last_s)
+        speeds.set_xlabel("time since the first kick (s)" if kicks else "time (s)")
+        figure.align_ylabels()
+        figure.savefig(path, format="png")
+    return Path(path)
+
+
+def _line(axes: Axes, log: Log, begin: int, zero_s: float, values: NDArray[Any], **style: Any) -> None:
+    """A curve over time, broken where ticks are missing."""
+    breaks = np.flatnonzero(np.diff(log.column("tick")[begin:]) != 1) + 1
+    t = log.column("t_s")[begin:] - zero_s
+    axes.plot(np.insert(t, breaks, np.nan), np.insert(values[begin:], breaks, np.nan), **style)
+
+
+def _draw_neurons(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
+    axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", alpha=0.6, linewidth=0, label=f"$|M| < {STALL_TORQUE:g}$: stall")
+    for side in WHEELS:
+        for number, color in enumerate(_POTENTIALS[side], 1):
+            _line(
+                axes, log, begin, zero_s, log.column(f"{side}_x{number}"), color=color, drawstyle="steps-post", label=f"$x_{number}$ {side}"
+            )
+    for side in WHEELS:
+        style: Any = {"color": _WHEEL[side], "linewidth": _WIDTH[side], "drawstyle": "steps-post", "label": f"$M$ {side}"}
+        _line(axes, log, begin, zero_s, log.column(side + "_torque"), **style)
+    axes.set_ylabel("potentials $x$, torque $M$")
+    axes.set_yticks((-1, -0.5, 0, 0.5, 1))
+
+
+def _draw_speeds(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
+    axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
+    for side in WHEELS:
+        _line(axes, log, begin, zero_s, log.omega(side) / (2 * np.pi), color=_WHEEL[side], linewidth=_WIDTH[side], label=side)
+    axes.legend(ncols=2)
+    axes.set_ylabel(r"$\omega/2\pi$ (Hz)")
+
+
+def _name(axes: Axes, kicks: list[Span], first_s: float, last_s: float) -> None:
+    """Name the kicks above the curves, each as low as the names before it leave room, and put the legend above all."""
+    character_s = (last_s - first_s) / 105
+    line_ends: list[float] = []
+    for span in kicks:
+        width_s = character_s * len(span.label)
+        fits = span.begin_s + width_s <= last_s
+        left_s = span.begin_s if fits else span.begin_s - width_s
+        level = next((level for level, end_s in enumerate(line_ends) if end_s <= left_s), len(line_ends))
+        line_ends[level : level + 1] = [left_s + width_s]
+        place: Any = {"ha": "left", "xytext": (5, 0)} if fits else {"ha": "right", "xytext": (-5, 0)}
+        spot = (span.end_s if fits else span.begin_s, 1.22 + 0.2 * level)
+        axes.annotate(span.label, spot, textcoords="offset points", va="center", color=_KICK, bbox=_PLATE, **place)
+    axes.set_ylim(-1.15, 1.15 + 0.2 * len(line_ends))
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=7, columnspacing=1.2, handlelength=1.4, handletextpad=0.5)

@@ -1,0 +1,123 @@
+"""Kick a robot and watch what comes of it: wait until the wheels have settled, kick, wait until they have settled again."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from host.client import Robot
+from host.errors import NotDone, RobotFault
+from host.log import Log
+from host.motion import WINDOW_S, heading, settled, settling_s
+from robot.kicks import DIRECTION_TICKS, PHASE, PULSED, WHEELS
+from robot.record import Record
+
+SETTLE_PATIENCE_S = 15.0
+WATCH_S = 6.0
+# What `motion.settled` looks back on, and a tick or two; after a kick all of it must lie behind the kick.
+JUDGED_S = 2 * WINDOW_S + 0.1
+
+FORWARD, BACKWARD, STOPPED = "forward", "backward", "stopped"
+OPPOSITE = {FORWARD: BACKWARD, BACKWARD: FORWARD}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a kick did. `before` and `after` give each wheel's heading; settling_s is None if a kicked wheel never settled.
+
+    shift_rad is the phase shift of a phase kick: a number, or one for each wheel if their signs differ; None for other modes.
+    """
+
+    mode: str
+    ticks: int
+    shift_rad: float | dict[str, float] | None
+    wheel: str
+    applied_tick: int
+    before: dict[str, str]
+    after: dict[str, str]
+    reversed: bool
+    settling_s: float | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, as the command line answers it."""
+        return asdict(self)
+
+
+def is_settled(records: list[Record], side: str) -> bool:
+    """Whether a wheel turns evenly, or rests, at the end of these records."""
+    return settled([getattr(record, side + "_phi_rad") for record in records], [record.t_s for record in records])
+
+
+def all_settled(robot: Robot) -> bool:
+    """Whether both wheels have settled."""
+    records = robot.recent()
+    begin = records[-1].t_s - JUDGED_S if records else 0.0
+    recent = [record for record in records if record.t_s >= begin]
+    return all(is_settled(recent, side) for side in WHEELS)
+
+
+def wait_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> bool:
+    """Wait until both wheels have settled, up to patience_s of the robot's time. Returns whether they have."""
+    return robot.wait(patience_s, until=lambda: all_settled(robot))
+
+
+def require_running(robot: Robot) -> None:
+    """Raises NotDone if the robot does not run, with how to start it; RobotFault if it is in fault."""
+    status = robot.status()
+    if status["state"] == "fault":
+        raise RobotFault(f"the robot is in fault: {status['reason']}", "mend the cause, then: kickctl clear, kickctl start")
+    if status["state"] != "running":
+        raise NotDone(f"the robot does not run: it is {status['state']} ({status['reason']})", "start it first: kickctl start")
+
+
+def kick_and_watch(robot: Robot, log: Log, mode: str, *, wheel: str = "both", **details: Any) -> Outcome:
+    """Kick now and watch the wheels until they have settled. `log` must be tapping the robot since before; it then holds it all.
+
+    details: as robot.kicks.parse takes them. Raises KickctlError.
+    """
+    robot.wait(WATCH_S, until=lambda: len(log) > DIRECTION_TICKS)
+    tick = robot.kick(mode, wheel=wheel, **details)
+    robot.wait(WATCH_S, until=lambda: bool(log.kicks()) and log.kicks()[-1][1]["begin"] == tick)
+    kick = log.kicks()[-1][1]
+    tick_s = float(log.info["params"]["tick_s"])
+    robot.wait(kick["ticks"] * tick_s + JUDGED_S)
+    robot.wait(WATCH_S, until=lambda: all_settled(robot))
+    if robot.newest is not None and robot.newest.state != 1:
+        require_running(robot)
+    last = log.records[-1].tick
+    before = {side: heading(log, side, tick - 1) for side in WHEELS}
+    after = {side: heading(log, side, last) for side in WHEELS}
+    times = [settling_s(log, side, tick) for side in kick["wheels"]]
+    return Outcome(
+        mode=mode,
+        ticks=kick["ticks"],
+        shift_rad=_shift(kick),
+        wheel=wheel,
+        applied_tick=tick,
+        before=before,
+        after=after,
+        reversed=all(after[side] == OPPOSITE.get(before[side]) for side in kick["wheels"]),
+        settling_s=None if None in times else max(time for time in times if time is not None),
+    )
+
+
+def _shift(kick: dict[str, Any]) -> float | dict[str, float] | None:
+    if kick["mode"] != PHASE and kick["pulse"] != PULSED["shift_rad"]:
+        return None
+    shifts = {side: float(kick["values"][WHEELS.index(side)]) for side in kick["wheels"]}
+    values = set(shifts.values())
+    return values.pop() if len(values) == 1 else shifts
+
+
+def describe(outcome: Outcome) -> str:
+    """The outcome as a sentence."""
+    kicked = WHEELS if outcome.wheel == "both" else (outcome.wheel,)
+    turns = {side: (outcome.before[side], outcome.after[side]) for side in kicked}
+    if len(set(turns.values())) == 1:
+        motion = "{} went from {} to {}".format("both wheels" if len(kicked) > 1 else f"the {kicked[0]} wheel", *turns[kicked[0]])
+    else:
+        motion = " and ".join(f"the {side} wheel went from {old} to {new}" for side, (old, new) in turns.items())
+    verdict = "The kick reversed the robot" if outcome.reversed else "The kick did NOT reverse the robot"
+    length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
+    settling = "" if outcome.settling_s is None else f", settled after {outcome.settling_s:.2f} s"
+    return f"{verdict}: a {outcome.mode} kick of {length} at tick {outcome.applied_tick}; {motion}{settling}."

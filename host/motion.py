@@ -1,0 +1,106 @@
+"""What a wheel does, from its angles: which way it turns, whether it has settled, and how long that took."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host.log import Log
+from robot.kicks import DIRECTION_TICKS, direction
+
+HEADINGS = {1: "forward", -1: "backward", 0: "stopped"}
+
+WINDOW_S = 0.5
+BAND = 0.1
+COUNT_RAD = pi / 180  # one step of the encoder
+_HALF_SPAN = 2  # a speed is measured over the two ticks before and the two after
+_ROUNDING = 1e-9
+
+
+def heading_of(phi: Sequence[float]) -> str:
+    """'forward', 'backward' or 'stopped' after the last of some angles (rad) of successive ticks, by the robot's own rule.
+
+    The travel over DIRECTION_TICKS ticks decides, or over those that there are.
+    """
+    if not len(phi):
+        raise ValueError("a wheel's heading needs at least one angle")
+    return HEADINGS[direction(phi[-1] - phi[max(0, len(phi) - 1 - DIRECTION_TICKS)])]
+
+
+def heading(log: Log, side: str, tick: int) -> str:
+    """The heading of the 'left' or 'right' wheel after `tick`: what the robot finds for a kick that begins in the tick after.
+
+    If the number stands in the log twice, as the robot began anew, the later one is meant. ValueError if it does not stand there.
+    """
+    ticks, _, phi, row = _around(log, side, tick)
+    return heading_of(phi[: row + 1][ticks[: row + 1] >= tick - DIRECTION_TICKS].tolist())
+
+
+def _around(log: Log, side: str, tick: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], int]:
+    """Ticks, times and angles between the restarts around `tick`, and its row in them."""
+    ticks = log.column("tick")
+    rows = np.flatnonzero(ticks == tick)
+    if not len(rows):
+        raise ValueError(f"tick {tick} is not in the log")
+    row = int(rows[-1])
+    edges = [0, *log.restarts(), len(log)]
+    run = slice(max(edge for edge in edges if edge <= row), min(edge for edge in edges if edge > row))
+    return ticks[run], log.column("t_s")[run], log.column(side + "_phi_rad")[run], row - run.start
+
+
+def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
+    """Whether a wheel moves steadily, or rests, at the end of its angles phi (rad) at the times t (s).
+
+    The last two windows of WINDOW_S are compared; less than two windows of data are never settled, so that after a kick, given the
+    angles since, the answer is about these alone. Rest: no travel of more than one count of the encoder in either. Steady motion:
+    both windows' travels agree in sign and to BAND of the greater, or to two counts, which the encoder's steps may make of equal
+    travels; and nowhere did the wheel turn back by more than a count, however well irregular motion may agree by chance.
+    """
+    times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
+    if len(times) < 2 or times[-1] - times[0] < 2 * WINDOW_S - _ROUNDING:
+        return False
+    begin = times[-1] - 2 * WINDOW_S
+    start, middle, end = np.interp([begin, begin + WINDOW_S, times[-1]], times, angles)
+    inner = np.concatenate([[start], angles[times > begin]])
+    if np.ptp(inner) <= COUNT_RAD + _ROUNDING:
+        return True
+    before, last = middle - start, end - middle
+    turned_back = (np.abs(np.diff(inner)).sum() - abs(end - start)) / 2
+    if before * last <= 0 or turned_back > COUNT_RAD + _ROUNDING:
+        return False
+    allowed = max(BAND * max(abs(before), abs(last)), 2 * COUNT_RAD)
+    return bool(abs(last - before) <= allowed + _ROUNDING)
+
+
+def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
+    """How long (s) after the begin of a kick the 'left' or 'right' wheel had settled, as settling_of has it. ValueError as heading."""
+    _, times, angles, row = _around(log, side, begin_tick)
+    return settling_of(angles, times, float(times[row]))
+
+
+def settling_of(phi: Sequence[float] | NDArray[Any], t: Sequence[float] | NDArray[Any], begin_s: float) -> float | None:
+    """How long after begin_s, when a kick began, a wheel had settled: a time in s, or None if it has not by the end of the data.
+
+    phi (rad), t (s): one value a tick, some of them from before the kick. The final speed is the mean over the last WINDOW_S. The
+    wheel has settled at the first tick from which on its speed, measured over five ticks around each, stays within BAND of the
+    final speed (or within what one count of the encoder makes over five ticks) until the end, which must be WINDOW_S away.
+    """
+    times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
+    if len(times) <= 2 * _HALF_SPAN or times[-1] - begin_s < WINDOW_S:
+        return None
+    final = (angles[-1] - np.interp(times[-1] - WINDOW_S, times, angles)) / WINDOW_S
+    span = times[2 * _HALF_SPAN :] - times[: -2 * _HALF_SPAN]
+    speed = (angles[2 * _HALF_SPAN :] - angles[: -2 * _HALF_SPAN]) / span
+    when = times[_HALF_SPAN:-_HALF_SPAN]
+    outside = np.abs(speed - final) > np.maximum(BAND * abs(final), COUNT_RAD / span) + _ROUNDING
+    late = np.flatnonzero(outside & (when >= begin_s))
+    if not len(late):
+        return 0.0
+    settled_at = int(late[-1]) + 1
+    if settled_at >= len(when) or times[-1] - when[settled_at] < WINDOW_S:
+        return None
+    return float(when[settled_at] - begin_s)

@@ -1,0 +1,102 @@
+"""Motion primitives and how to reach them from each other: by kicks alone, and standing still by the spring constant k.
+
+A wheel that turns the wrong way gets a membrane inversion, which always reverses it; one that rests gets a phase kick of the sign
+that sets it going the right way. A pulse of k to zero lets the robot come to rest, and it stays there where rest coexists with
+locomotion; where it does not, k is halved and the pulse repeated until it stays, and k stays lowered.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from host.client import Robot
+from host.errors import NotDone
+from host.kicking import BACKWARD, FORWARD, OPPOSITE, STOPPED, Outcome, kick_and_watch, wait_settled
+from host.log import Log
+from host.motion import heading
+from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, PULSE, WHEELS
+
+PRIMITIVES = {
+    "forward": (FORWARD, FORWARD),
+    "backward": (BACKWARD, BACKWARD),
+    "spin-left": (BACKWARD, FORWARD),
+    "spin-right": (FORWARD, BACKWARD),
+    "stopped": (STOPPED, STOPPED),
+}
+MAX_KICKS = 6
+# Long enough for the wheels to brake (0.3 s) and for the membrane potentials to forget the motion (four tau).
+STOP_PULSE_S = 1.5
+LEAST_K = 0.01
+SHIFT_TOWARD = {FORWARD: -DEFAULT_SHIFT_RAD, BACKWARD: DEFAULT_SHIFT_RAD}
+
+
+def headings(robot: Robot, log: Log) -> dict[str, str]:
+    """Each wheel's present heading, once the wheels have settled or patience is at its end."""
+    wait_settled(robot)
+    return {side: heading(log, side, log.records[-1].tick) for side in WHEELS}
+
+
+def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
+    """Bring a running robot into a primitive. `log` must be tapping it.
+
+    Returns {primitive, reached, before, after, kicks: [Outcome as plain data], k, k_before}. Raises KickctlError.
+    """
+    wanted = dict(zip(WHEELS, PRIMITIVES[primitive], strict=True))
+    before = headings(robot, log)
+    k_before = float(robot.status()["params"]["k"])
+    kicks = _stop(robot, log) if primitive == "stopped" else _head(robot, log, wanted)
+    after = headings(robot, log)
+    return {
+        "primitive": primitive,
+        "reached": after == wanted,
+        "before": before,
+        "after": after,
+        "kicks": [outcome.as_dict() for outcome in kicks],
+        "k": float(robot.status()["params"]["k"]),
+        "k_before": k_before,
+    }
+
+
+def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
+    """Kick whichever wheels do not head as wanted until they do."""
+    _restore_k(robot)
+    kicks: list[Outcome] = []
+    while len(kicks) < MAX_KICKS:
+        present = headings(robot, log)
+        wrong = [side for side in WHEELS if present[side] != wanted[side]]
+        if not wrong:
+            break
+        turning = [side for side in wrong if present[side] == OPPOSITE[wanted[side]]]
+        if turning:
+            kicks.append(kick_and_watch(robot, log, MEMBRANE, wheel="both" if len(turning) == 2 else turning[0]))
+        else:
+            kicks.append(kick_and_watch(robot, log, PHASE, wheel=wrong[0], shift=SHIFT_TOWARD[wanted[wrong[0]]]))
+    return kicks
+
+
+def _restore_k(robot: Robot) -> None:
+    """Below k_c nothing moves, whatever the kick: undo what an earlier stop has lowered."""
+    k = robot.status()["params"]["k"]
+    default = {row["name"]: row["default"] for row in robot.describe("params")}["k"]
+    if k < default and wait_settled(robot) and _all_rest(robot):
+        robot.set(k=default)
+
+
+def _all_rest(robot: Robot) -> bool:
+    records = robot.recent()[-20:]
+    return bool(records) and all(getattr(records[0], side + "_phi_rad") == getattr(records[-1], side + "_phi_rad") for side in WHEELS)
+
+
+def _stop(robot: Robot, log: Log) -> list[Outcome]:
+    """A quenched pulse of k brings the robot to rest; while it starts again by itself, halve k and repeat the pulse."""
+    status = robot.status()["params"]
+    k, ticks = float(status["k"]), max(1, round(STOP_PULSE_S / status["tick_s"]))
+    kicks: list[Outcome] = []
+    while set(headings(robot, log).values()) != {STOPPED}:
+        if k < LEAST_K:
+            raise NotDone("the wheels turn without any drive", "is something else moving the robot?")
+        if kicks:
+            k /= 2.0
+            robot.set(k=k)
+        kicks.append(kick_and_watch(robot, log, PULSE, param="k", value=0.0, ticks=ticks))
+    return kicks

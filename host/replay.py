@@ -1,0 +1,149 @@
+"""Feed a log's angles and delta t to the controller again: what it then computes must be what the robot recorded, bit for bit.
+
+Nothing is computed here: the wheels are robot.wheel.Wheel, the limiter is robot.safety.limit_duty, and parameters and kicks are
+followed through the log's events as the robot's own black box follows them.
+"""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterator
+from dataclasses import dataclass
+from struct import pack
+from typing import Any
+
+from host.log import Event, Log, Record
+from robot.blackbox import Snapshot
+from robot.kicks import WHEELS, Kick
+from robot.params import Params
+from robot.safety import FAULT, RUNNING, limit_duty
+from robot.wheel import Wheel
+
+# Another machine's libm may round sin, cos, exp and tanh differently in the last bit.
+OTHER_MACHINE_TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """A channel of a tick that came out differently."""
+
+    tick: int
+    channel: str
+    recorded: float
+    replayed: float
+
+    def __str__(self) -> str:
+        return f"{self.channel} of tick {self.tick} is {self.recorded!r} in the log and {self.replayed!r} in the replay"
+
+
+@dataclass
+class ReplayResult:
+    """What came of a replay.
+
+    compared: ticks whose every channel was compared; not_comparable: ticks from whose record the potentials had to be taken, as
+    nothing says what they were before: the first of the log, the first after a gap or a restart, and those in the middle of which a
+    motor failed. first: the first channel that differs in any bit; beyond: the first that differs by more than `tolerance`; worst:
+    the greatest difference.
+    """
+
+    tolerance: float
+    compared: int = 0
+    not_comparable: int = 0
+    first: Mismatch | None = None
+    beyond: Mismatch | None = None
+    worst: float = 0.0
+
+    @property
+    def exact(self) -> bool:
+        """Whether every compared bit is the same."""
+        return self.first is None
+
+    @property
+    def reproduced(self) -> bool:
+        """Whether something was compared and nothing differs by more than the tolerance, which is 0 for logs of this kind of machine."""
+        return self.compared > 0 and self.beyond is None
+
+    def note(self, mismatch: Mismatch) -> None:
+        """Take a difference into account."""
+        difference = abs(mismatch.recorded - mismatch.replayed)
+        self.first = self.first or mismatch
+        self.worst = max(self.worst, difference)
+        if self.tolerance == 0.0 or not difference <= self.tolerance:
+            self.beyond = self.beyond or mismatch
+
+
+class _Controller:
+    """The robot's controller as the log tells of it: the wheels, and the parameters and the kick in force."""
+
+    def __init__(self) -> None:
+        self.wheels = [Wheel(side) for side in WHEELS]
+        self.params: Any = Params()
+        self._snapshot = Snapshot(self.params.values())
+        self._kick: Kick | None = None
+
+    def take(self, event: Event) -> None:
+        """Bring parameters, kick and potentials past an event."""
+        if event["event"] == "snapshot":
+            self._snapshot = Snapshot(event["params"], event["kick"])
+        else:
+            self._snapshot.take(event)
+        self.params.apply(self._snapshot.params)
+        self._kick = Kick(**self._snapshot.kick) if self._snapshot.kick else None
+        if event["event"] == "start":
+            for wheel, potentials in zip(self.wheels, event["x"], strict=True):
+                wheel.x1, wheel.x2 = potentials
+
+    def step(self, record: Record) -> None:
+        """The tick that a record tells of."""
+        for wheel in self.wheels:
+            if record.state == RUNNING:
+                wheel.step(record.tick, getattr(record, wheel.side + "_phi_rad"), record.dt_s, self.params, self._kick)
+            else:
+                wheel.rest()
+
+    def adopt(self, record: Record) -> None:
+        """Take the potentials that a record tells of."""
+        for wheel in self.wheels:
+            wheel.x1, wheel.x2 = getattr(record, wheel.side + "_x1"), getattr(record, wheel.side + "_x2")
+
+    def differences(self, record: Record) -> Iterator[Mismatch]:
+        """Every channel of a record that is not, in every bit, what `step` came to."""
+        for wheel in self.wheels:
+            # From the recorded torque: rounding to whole percents may turn a difference in the last bit into one of 1.
+            torque = getattr(record, wheel.side + "_torque")
+            duty = limit_duty(torque, self.params.max_duty_pct) if record.state == RUNNING else 0
+            replayed = (("x1", wheel.x1), ("x2", wheel.x2), ("force", wheel.force), ("torque", wheel.torque), ("duty_pct", duty))
+            for name, value in replayed:
+                recorded = getattr(record, f"{wheel.side}_{name}")
+                if pack("d", recorded) != pack("d", value):
+                    yield Mismatch(record.tick, f"{wheel.side}_{name}", recorded, value)
+
+
+def replay(log: Log) -> ReplayResult:
+    """Replay a log; see ReplayResult for what is found. Nothing differs in the replay of a log that was neither changed nor damaged."""
+    here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
+    result = ReplayResult(0.0 if log.info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE)
+    controller = _Controller()
+    known_before: int | None = None  # the tick before which the potentials are known
+    failed = False
+    for item in log.stream():
+        if isinstance(item, dict):
+            controller.take(item)
+            if item["event"] == "start":
+                known_before = item["tick"]
+            elif item["event"] == "restart":
+                known_before = None
+            failed = failed or item["event"] == "fault"
+            continue
+        known = item.tick == known_before and not (failed and item.state == FAULT)
+        controller.step(item)
+        if not known:
+            controller.adopt(item)
+        if known or item.state != RUNNING:
+            for mismatch in controller.differences(item):
+                result.note(mismatch)
+        result.compared += known
+        result.not_comparable += not known
+        known_before = item.tick + 1
+        failed = False
+    return result

@@ -1,0 +1,67 @@
+"""How verbs reach a robot and speak to people: words on standard error, results on standard output."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from host.client import Robot, connect
+
+if TYPE_CHECKING:
+    from host.log import Log
+
+
+def say(text: str) -> None:
+    """Words for people."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def show(result: object) -> None:
+    """A result for machines: one JSON object, on a line of its own."""
+    print(json.dumps(result, allow_nan=False), flush=True)
+
+
+@contextmanager
+def robot_of(options: argparse.Namespace, *, moves: bool = False) -> Iterator[Robot]:
+    """The robot that the options name; says so if it is the simulated one. If the verb `moves` it, ^C stops its motors."""
+    with connect(options.brick, options.seed, options.token) as robot:
+        if robot.link.virtual:
+            say(f"simulated robot, embedded ({robot.link.uri}, seed {robot.hello['seed']})")
+        try:
+            yield robot
+        except KeyboardInterrupt:
+            if moves:
+                robot.stop()
+                say("interrupted: motors stopped")
+            raise
+
+
+def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -> None:
+    """The result as JSON if asked for, else as a sentence."""
+    if options.json:
+        show(result)
+    else:
+        print(sentence)
+
+
+@contextmanager
+def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
+    """A log of all that the robot does meanwhile, in memory and, as it grows, in a new file of this path."""
+    from host.log import Log
+    from host.recording import McapTap, new_path
+
+    path = new_path(kind)
+    log = Log(robot.info())
+    with McapTap(path, log.info) as file:
+        robot.add_tap(file)
+        robot.add_tap(log)
+        try:
+            yield log, path
+        finally:
+            robot.remove_tap(log)
+            robot.remove_tap(file)
