@@ -10,26 +10,15 @@ import sys
 from collections.abc import Sequence
 
 from host.errors import KickctlError
+from host.options import common
 from robot import __version__
 
-VERBS = ("kick", "drive", "start", "stop", "clear", "status", "params", "record", "watch", "log")
+VERBS = ("demo", "kick", "drive", "start", "stop", "clear", "status", "params", "record", "watch", "log", "doctor")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
 Exit status: 0 it worked; 1 tried, and the robot did not do it; 2 wrong use; 3 no link to the robot;
 4 refused (version, token, lease); 5 fault on the robot."""
-
-
-def _common(defaults: bool) -> argparse.ArgumentParser:
-    """Options that may stand before or after the verb; only one of the two places may set defaults."""
-    parser = argparse.ArgumentParser(add_help=False, argument_default=None if defaults else argparse.SUPPRESS)
-    group = parser.add_argument_group("which robot, and how to answer")
-    group.add_argument("--brick", metavar="URI", help="sim://, tcp://HOST[:PORT] or serial:///dev/DEVICE?baud=RATE")
-    group.add_argument("--seed", type=int, metavar="N", help="fixes all chances of the simulated robot")
-    group.add_argument("--token", metavar="FILE", help="the robot's token file")
-    off = False if defaults else argparse.SUPPRESS
-    group.add_argument("--json", action="store_true", default=off, help="answer in JSON on standard output")
-    return parser
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -39,13 +28,13 @@ def make_parser() -> argparse.ArgumentParser:
         description="Kick a robot from one of its attractors into another.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        parents=[_common(defaults=True)],
+        parents=[common(defaults=True)],
     )
     parser.add_argument("--version", action="version", version=f"kickctl {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name in VERBS:
         module = importlib.import_module("host.commands." + name)
-        verb = verbs.add_parser(name, help=module.HELP, description=module.HELP, parents=[_common(defaults=False)])
+        verb = verbs.add_parser(name, help=module.HELP, description=module.HELP, parents=[common(defaults=False)])
         module.add_arguments(verb)
         verb.set_defaults(run=module.run)
     return parser

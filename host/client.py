@@ -105,6 +105,11 @@ class Robot:
             self._closed.set()
             self.link.close()
 
+    @property
+    def trusted(self) -> bool:
+        """Whether robot and host have shown each other the token."""
+        return self._talk.trusted
+
     # What the robot can be asked and told
 
     def status(self) -> dict[str, Any]:
@@ -209,9 +214,10 @@ class Robot:
     def pull(self, tap: Tap) -> None:
         """Feed a tap with everything that the robot's black box holds, up to now."""
         with self._lock:
-            self._taps.append(tap)
+            self._request("unsubscribe")  # its answer comes behind the last record of the subscription that there was
             until = self._request("status")["tick"]
             self._next_tick = None
+            self._taps.append(tap)
             self._request("subscribe", {"from": 0})
             while self._next_tick is None or self._next_tick < until:
                 self.pump(HEARTBEAT_S)

@@ -109,6 +109,13 @@ def _shift(kick: dict[str, Any]) -> float | dict[str, float] | None:
     return values.pop() if len(values) == 1 else shifts
 
 
+def title(outcome: Outcome) -> str:
+    """The outcome as a figure's title."""
+    length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
+    settling = "" if outcome.settling_s is None or not outcome.reversed else f", settled after {outcome.settling_s:.2f} s"
+    return f"{outcome.mode.capitalize()} kick of {length}: {'reversed' if outcome.reversed else 'not reversed'}{settling}"
+
+
 def describe(outcome: Outcome) -> str:
     """The outcome as a sentence."""
     kicked = WHEELS if outcome.wheel == "both" else (outcome.wheel,)

@@ -35,8 +35,8 @@ class Log:
 
     `info` says what was run, in plain JSON data; what is unknown is left out:
     host_software, robot_software, commit, brick (URI), host_machine, robot_machine (as the robot's hello names it), seed, boot,
-    params, motor_map, battery_v, clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601); and
-    truncated (True) if the log was read from a file that breaks off.
+    params, polarity, battery_v, clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601); and
+    truncated (True) if the log was read from a file that breaks off or is damaged.
 
     `places[i]` is the number of records that came before `events[i]`, so `records[places[i]]` is the first one it concerns.
     """

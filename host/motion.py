@@ -16,6 +16,7 @@ HEADINGS = {1: "forward", -1: "backward", 0: "stopped"}
 
 WINDOW_S = 0.5
 BAND = 0.1
+PAUSE = 0.5
 COUNT_RAD = pi / 180  # one step of the encoder
 _HALF_SPAN = 2  # a speed is measured over the two ticks before and the two after
 _ROUNDING = 1e-9
@@ -58,7 +59,8 @@ def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
     The last two windows of WINDOW_S are compared; less than two windows of data are never settled, so that after a kick, given the
     angles since, the answer is about these alone. Rest: no travel of more than one count of the encoder in either. Steady motion:
     both windows' travels agree in sign and to BAND of the greater, or to two counts, which the encoder's steps may make of equal
-    travels; and nowhere did the wheel turn back by more than a count, however well irregular motion may agree by chance.
+    travels; and, however well irregular motion may agree by chance, nowhere did the wheel turn back by more than a count, nor pause
+    or hurry for a quarter of the time, so that its travel there differs from the mean by more than PAUSE of it.
     """
     times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
     if len(times) < 2 or times[-1] - times[0] < 2 * WINDOW_S - _ROUNDING:
@@ -71,6 +73,9 @@ def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
     before, last = middle - start, end - middle
     turned_back = (np.abs(np.diff(inner)).sum() - abs(end - start)) / 2
     if before * last <= 0 or turned_back > COUNT_RAD + _ROUNDING:
+        return False
+    quarters = np.diff(np.interp(np.linspace(begin, times[-1], 5), times, angles))
+    if np.abs(quarters - quarters.mean()).max() > PAUSE * abs(quarters.mean()) + COUNT_RAD:
         return False
     allowed = max(BAND * max(abs(before), abs(last)), 2 * COUNT_RAD)
     return bool(abs(last - before) <= allowed + _ROUNDING)

@@ -11,7 +11,7 @@ from typing import Any
 
 from host.client import Robot
 from host.errors import NotDone
-from host.kicking import BACKWARD, FORWARD, OPPOSITE, STOPPED, Outcome, kick_and_watch, wait_settled
+from host.kicking import BACKWARD, FORWARD, STOPPED, Outcome, kick_and_watch, wait_settled
 from host.log import Log
 from host.motion import heading
 from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, PULSE, WHEELS
@@ -23,6 +23,7 @@ PRIMITIVES = {
     "spin-right": (FORWARD, BACKWARD),
     "stopped": (STOPPED, STOPPED),
 }
+UNSETTLED = "unsettled"
 MAX_KICKS = 6
 # Long enough for the wheels to brake (0.3 s) and for the membrane potentials to forget the motion (four tau).
 STOP_PULSE_S = 1.5
@@ -31,8 +32,9 @@ SHIFT_TOWARD = {FORWARD: -DEFAULT_SHIFT_RAD, BACKWARD: DEFAULT_SHIFT_RAD}
 
 
 def headings(robot: Robot, log: Log) -> dict[str, str]:
-    """Each wheel's present heading, once the wheels have settled or patience is at its end."""
-    wait_settled(robot)
+    """Each wheel's heading once both have settled; UNSETTLED for both if they do not, as when they roll forth and back."""
+    if not wait_settled(robot):
+        return dict.fromkeys(WHEELS, UNSETTLED)
     return {side: heading(log, side, log.records[-1].tick) for side in WHEELS}
 
 
@@ -59,14 +61,14 @@ def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
 
 def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
     """Kick whichever wheels do not head as wanted until they do."""
-    _restore_k(robot)
+    _restore_k(robot, log)
     kicks: list[Outcome] = []
     while len(kicks) < MAX_KICKS:
         present = headings(robot, log)
         wrong = [side for side in WHEELS if present[side] != wanted[side]]
         if not wrong:
             break
-        turning = [side for side in wrong if present[side] == OPPOSITE[wanted[side]]]
+        turning = [side for side in wrong if present[side] != STOPPED]
         if turning:
             kicks.append(kick_and_watch(robot, log, MEMBRANE, wheel="both" if len(turning) == 2 else turning[0]))
         else:
@@ -74,17 +76,12 @@ def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
     return kicks
 
 
-def _restore_k(robot: Robot) -> None:
-    """Below k_c nothing moves, whatever the kick: undo what an earlier stop has lowered."""
+def _restore_k(robot: Robot, log: Log) -> None:
+    """Near k_c and below it nothing rolls for long, whatever the kick: undo what an earlier stop has lowered."""
     k = robot.status()["params"]["k"]
     default = {row["name"]: row["default"] for row in robot.describe("params")}["k"]
-    if k < default and wait_settled(robot) and _all_rest(robot):
+    if k < default and not set(headings(robot, log).values()) <= {FORWARD, BACKWARD}:
         robot.set(k=default)
-
-
-def _all_rest(robot: Robot) -> bool:
-    records = robot.recent()[-20:]
-    return bool(records) and all(getattr(records[0], side + "_phi_rad") == getattr(records[-1], side + "_phi_rad") for side in WHEELS)
 
 
 def _stop(robot: Robot, log: Log) -> list[Outcome]:

@@ -92,14 +92,14 @@ class McapTap:
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("xb")
-        except FileExistsError:
-            raise LogError(f"{self.path} exists already, and logs are never overwritten", "choose another name") from None
         except OSError as error:
+            if self.path.exists():
+                raise LogError(f"{self.path} exists already, and logs are never overwritten", "choose another name") from None
             raise LogError(f"{self.path} cannot be made: {error.strerror}", "choose a folder that you may write to") from None
         self._zero_ns = _nanoseconds(info.get("clock_zero_s", 0.0))
         self._now_ns = self._chunk_ns = self._zero_ns
         self._waiting: list[Event] = []
-        self._writer: Any = Writer(self._file, compression=CompressionType.LZ4)
+        self._writer: Any = Writer(self._file, compression=CompressionType.LZ4, enable_data_crcs=True)
         self._writer.start(library=f"kickctl {__version__}")
         self._writer.add_metadata(METADATA, {"format": FORMAT, **{name: _to_text(value) for name, value in info.items()}})
         self._ticks = self._register(TICKS, "kickctl.Tick", _ticks_schema())
@@ -160,7 +160,7 @@ def _nanoseconds(seconds: float) -> int:
 
 
 def read(path: str | Path) -> Log:
-    """The log in a file. One that breaks off gives what it holds, with info["truncated"] = True.
+    """The log in a file. One that breaks off or is damaged gives what can be read up to there, with info["truncated"] = True.
 
     Raises LogError if the file cannot be opened, is no MCAP file, or is none of ours.
     """
@@ -173,7 +173,7 @@ def read(path: str | Path) -> Log:
                 raise LogError(f"{path} is not an MCAP file", _GIVE_OURS)
             file.seek(0)
             try:
-                for item in StreamReader(file, validate_crcs=True).records:
+                for item in StreamReader(file, validate_crcs=True, record_size_limit=path.stat().st_size).records:
                     if isinstance(item, Metadata) and item.name == METADATA:
                         log = Log(_info(path, item.metadata))
                     elif isinstance(item, Channel):

@@ -99,3 +99,4 @@ class SimLink:
         if self._socket is not None:
             self._socket.close()
             self._socket = None
+            self.server.serve(0.0)  # lets the robot notice

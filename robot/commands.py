@@ -15,6 +15,7 @@ def _status(loop, session, message):
         "state": record.STATES[safety.state],
         "reason": safety.reason,
         "tick": loop.blackbox.next_tick,
+        "clock_s": loop.clock.now() - loop.epoch,
         "oldest_tick": loop.blackbox.oldest_tick,
         "battery_v": loop.battery_v,
         "controller": None if loop.lease.holder is None else loop.lease.name,

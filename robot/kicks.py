@@ -26,9 +26,9 @@ MAX_TICKS = 10000
 MAX_JUMP = 2.0
 X_LIMIT = 10.0
 
-# A wheel's direction is the sign of its travel over this many ticks; less than three counts of the 1 degree encoder is rest.
+# A wheel's direction is the sign of its travel over this many ticks; up to two counts of the 1 degree encoder are rest.
 DIRECTION_TICKS = 8
-REST_TRAVEL_RAD = 3 * pi / 180
+REST_TRAVEL_RAD = 2.5 * pi / 180
 
 
 def direction(travel_rad):

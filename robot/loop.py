@@ -9,7 +9,7 @@ from robot.errors import Refused
 from robot.kicks import DIRECTION_TICKS, MODES, WHEELS, direction, parse
 from robot.motors import MotorFault
 from robot.params import LONGEST_STEP_TICKS, Params
-from robot.safety import HELD, RUNNING, Lease, Safety, limit_duty
+from robot.safety import FAULT, HELD, RUNNING, STOPPED, Lease, Safety, limit_duty
 from robot.wheel import Wheel
 
 SHORTEST_STEP_TICKS = 0.1
@@ -41,7 +41,7 @@ class Loop(object):
         self._battery = battery
         self._random = random.Random(seed)
         self._wheels = [Wheel(side) for side in WHEELS]
-        self._travel = [deque((0.0,), DIRECTION_TICKS + 1) for _ in WHEELS]
+        self._travel = [deque(maxlen=DIRECTION_TICKS + 1) for _ in WHEELS]
         self._kick = None
         self._kick_begins = {}
         self._kick_ids = deque()
@@ -67,6 +67,7 @@ class Loop(object):
             duties = self._control(dt_s)
         except MotorFault as fault:
             self._fail(str(fault))
+            self._stop_motors()
             duties = (0, 0)
         self._record(now, dt_s, late_s, missed, duties)
         self.deadline += self.params.tick_s
@@ -110,6 +111,8 @@ class Loop(object):
             else:
                 wheel.rest()
         if not running:
+            if self.safety.state == FAULT:
+                self._stop_motors()  # again, for one that did not obey
             return (0, 0)
         duties = [limit_duty(wheel.torque, params.max_duty_pct) for wheel in self._wheels]
         for motor, polarity, duty in zip(self._motors, polarities, duties):
@@ -125,10 +128,11 @@ class Loop(object):
             if not kick.acts_at(tick + 1):
                 self._kick = None
         left, right = self._wheels
+        left_phi, right_phi = (travel[-1] if travel else 0.0 for travel in self._travel)
         self.blackbox.append(
             (now - self.epoch, dt_s, late_s, missed, self.safety.state, mode)
-            + (self._travel[0][-1], left.x1, left.x2, left.force, left.torque, duties[0])
-            + (self._travel[1][-1], right.x1, right.x2, right.force, right.torque, duties[1])
+            + (left_phi, left.x1, left.x2, left.force, left.torque, duties[0])
+            + (right_phi, right.x1, right.x2, right.force, right.torque, duties[1])
         )
         if self._battery is not None and tick % BATTERY_TICKS == 0:
             self.battery_v = self._battery.voltage_v()
@@ -142,10 +146,12 @@ class Loop(object):
         return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in self._wheels])
 
     def stop(self, reason):
-        """Stop the motors at once. Returns the first tick of the stop."""
-        self.safety.stop(reason)
+        """Stop the motors at once. Returns the next tick. A robot that is stopped already, or in fault, keeps its reason."""
         self._stop_motors()
-        return self.blackbox.note("stop", reason=reason)
+        if self.safety.state not in (STOPPED, FAULT):
+            self.safety.stop(reason)
+            self.blackbox.note("stop", reason=reason)
+        return self.blackbox.next_tick
 
     def clear(self):
         """Leave a fault for the stopped state. Returns the tick. Raises Refused."""
@@ -158,7 +164,7 @@ class Loop(object):
         if begun is not None:
             return begun
         tick = self.blackbox.next_tick
-        directions = [direction(travel[-1] - travel[0]) for travel in self._travel]
+        directions = [direction(travel[-1] - travel[0]) if travel else 0 for travel in self._travel]
         kick = parse(request, directions, self.params, tick)
         if self.safety.state != RUNNING:
             raise Refused("state", "the robot does not run, so there is nothing to kick", "start it first")
@@ -198,23 +204,21 @@ class Loop(object):
             self.stop(reason)
         elif policy == "hold":
             self.safety.hold(reason)
-            self._kick = None
             self._stop_motors()
             self.blackbox.note("hold", reason=reason)
 
     def _fail(self, reason):
-        self.safety.fault(reason)
-        for wheel in self._wheels:
-            wheel.rest()
-        self._stop_motors()
-        self.blackbox.note("fault", reason=reason)
+        """Latch a fault; one that lasts, or follows from the first, is not told again."""
+        if self.safety.state != FAULT:
+            self.safety.fault(reason)
+            self.blackbox.note("fault", reason=reason)
 
     def _stop_motors(self):
         """Every motor is told to stop, whatever the others do."""
         self._kick = None
-        for motor in self._motors:
+        for wheel, motor in zip(self._wheels, self._motors):
+            wheel.rest()
             try:
                 motor.stop()
             except MotorFault as fault:
-                self.safety.fault(str(fault))
-                self.blackbox.note("fault", reason=str(fault))
+                self._fail(str(fault))

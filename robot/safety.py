@@ -1,6 +1,6 @@
 """What stands between the controller and the motors: the limiter, the robot's states, and the dead-man of the lease."""
 
-from math import isnan
+from math import floor, isnan
 
 from robot.errors import Refused
 from robot.record import STATES
@@ -12,7 +12,7 @@ def limit_duty(torque, max_duty_pct):
     """The duty cycle for a relative torque: a whole number of percent, never beyond +-max_duty_pct nor +-100; 0 for NaN."""
     if isnan(torque):
         return 0
-    bound = min(max_duty_pct, 100.0)
+    bound = floor(min(max_duty_pct, 100.0))
     return int(round(max(-bound, min(bound, max_duty_pct * torque))))
 
 

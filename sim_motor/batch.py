@@ -5,7 +5,7 @@ alone, which the motor's model allows (see sim_motor.motor). Only a link, a leas
 """
 
 from dataclasses import dataclass
-from math import nan, pi
+from math import isnan, nan, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,8 @@ from robot.loop import SHORTEST_STEP_TICKS
 from robot.params import LONGEST_STEP_TICKS, Params
 from robot.safety import limit_duty
 from sim_motor.brick import lateness_s
-from sim_motor.compiled import compiled, parallel_jit, prange
-from sim_motor.motor import Array, Constants, advance, encoder, load, substep_at, substep_from
+from sim_motor.compiled import assembled, assembled_parallel, compiled, prange
+from sim_motor.motor import ANGLE, LAST_ANGLE, SUBSTEP_S, Array, Constants, advance, encoder, load, substep_at, substep_from
 
 _step_wheel, _limit_duty = compiled(step_wheel), compiled(limit_duty)
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
@@ -29,6 +29,8 @@ CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
 NO_KICK, FROZEN_MEMBRANE, FROZEN_JUMP_1, FROZEN_JUMP_2, QUENCHED = range(5)
 # A wheel has settled when its speed, over DIRECTION_TICKS ticks, stays within this part of what it is in the end.
 SETTLED_WITHIN = 0.1
+ParamNumbers = tuple[float, float, float, int, float, float]
+KickNumbers = tuple[int, int, int, int, bool, float]
 PHASE_SHIFT = nan  # a kick's value that stands for: the shift that turns this wheel around
 
 
@@ -42,21 +44,23 @@ class Start:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of each wheel. `before`, `after`: its direction when the kick began and in the end; `settled_s`: time from the
-    kick's first tick until it has settled; `records`: CHANNELS of each tick of the first wheels, (recorded wheels, ticks, channel).
+    """What became of the wheels.
+
+    before, after: each wheel's direction when the kick began, and in the end. settled_s: from the kick's first tick until the
+    wheel's speed has settled, NaN if it has not. times: when ticks began, (1 or wheels, ticks). records: CHANNELS of each tick of
+    the wheels that were recorded, (wheels, ticks, channels).
     """
 
     before: NDArray[np.int64]
     after: NDArray[np.int64]
     settled_s: Array
-    records: Array
     times: Array
-    end: Start
+    records: Array
 
     @property
     def reversed(self) -> NDArray[np.bool_]:
         """Which wheels ran before the kick and run the other way now."""
-        return (self.before != 0) & (self.after == -self.before)
+        return np.asarray((self.before != 0) & (self.after == -self.before))
 
 
 def random_start(wheels: int, rng: np.random.Generator, constants: Constants) -> Start:
@@ -69,8 +73,8 @@ def random_start(wheels: int, rng: np.random.Generator, constants: Constants) ->
 
 
 def random_times(rows: int, ticks: int, tick_s: float, rng: np.random.Generator) -> Array:
-    """When each tick begins (s): on the grid of deadlines, late as on the brick; (rows, ticks)."""
-    return np.arange(ticks) * tick_s + np.vectorize(lateness_s)(rng.standard_normal((rows, ticks)))
+    """When each tick begins (s), (rows, ticks): late as on the brick. For ticks of 20 ms or more; shorter ones would be missed."""
+    return np.arange(ticks) * tick_s + lateness_s(rng.standard_normal((rows, ticks)))
 
 
 def run(
@@ -89,41 +93,49 @@ def run(
     """Run wheels for some ticks, each by itself; `kick` acts on all of them with its value for the left wheel.
 
     A pulse of the shift with the value PHASE_SHIFT takes for each wheel the sign that turns it around. motors: wheel number i is
-    motors[i % len(motors)]; the default motor if None. start, times (1 or `wheels`, ticks): random from `seed` if None. record:
-    how many wheels to record. Raises ValueError if a kick's tick is out of range or a duty would act after the next tick.
+    motors[i % len(motors)], the default motor if None; battery and latency are the first one's. start, times (1 or `wheels`,
+    ticks): random from `seed` if None. record: how many wheels to record, from the first. Raises ValueError if the arguments do
+    not fit each other.
     """
     params = params or Params()
     motors = motors or (load(),)
+    latency_s = motors[0].latency_s
     rng = np.random.default_rng(seed)
     start = start or random_start(wheels, rng, motors[0])
     times = random_times(wheels, ticks, params.tick_s, rng) if times is None else np.ascontiguousarray(np.atleast_2d(times))
     if start.states.shape != (wheels, 6) or start.potentials.shape != (wheels, 2) or times.shape not in {(1, ticks), (wheels, ticks)}:
         raise ValueError(f"start and times do not fit {wheels} wheels and {ticks} ticks")
-    if ticks > 1 and np.diff(times).min() <= motors[0].latency_s:
-        raise ValueError(f"a duty acts {motors[0].latency_s} s after it is written, later than the next tick: use longer ticks")
+    if ticks <= DIRECTION_TICKS:
+        raise ValueError(f"{ticks} ticks are too few to tell a direction: run more than {DIRECTION_TICKS}")
+    if np.diff(times).min() < latency_s + 2 * SUBSTEP_S:
+        raise ValueError(f"a duty acts {latency_s} s after it is written, which is past the next tick: use longer ticks")
     if kick is not None and not DIRECTION_TICKS < kick.begin < ticks - DIRECTION_TICKS:
         raise ValueError(f"a kick in tick {kick.begin} of {ticks} leaves no {DIRECTION_TICKS} ticks before or after it to tell directions")
-    states, potentials = start.states.copy(), start.potentials.copy()
-    directions = np.zeros((wheels, 2), dtype=np.int64)
-    settled_s = np.zeros(wheels)
-    records = np.empty((record, ticks, len(CHANNELS)))
-    _run(
-        states,
-        potentials,
+    result = Result(
+        before=np.zeros(wheels, dtype=np.int64),
+        after=np.zeros(wheels, dtype=np.int64),
+        settled_s=np.full(wheels, np.nan),
+        times=times,
+        records=np.empty((min(record, wheels), ticks, len(CHANNELS))),
+    )
+    _run_all(
+        start.states,
+        start.potentials,
         times,
         (params.a, params.tau_s, params.k, params.rods, params.max_duty_pct, params.tick_s),
         _kick_numbers(kick),
         np.stack([motor.tables() for motor in motors]),
         np.stack([motor.scalars() for motor in motors]),
-        (motors[0].battery_v if battery_v is None else battery_v, motors[0].latency_s, motors[0].encoder_counts),
-        directions,
-        settled_s,
-        records,
+        (motors[0].battery_v if battery_v is None else battery_v, latency_s, motors[0].encoder_counts),
+        result.before,
+        result.after,
+        result.settled_s,
+        result.records,
     )
-    return Result(directions[:, 0], directions[:, 1], settled_s, records, times, Start(states, potentials))
+    return result
 
 
-def _kick_numbers(kick: Kick | None) -> tuple[int, int, int, int, bool, float]:
+def _kick_numbers(kick: Kick | None) -> KickNumbers:
     """(action, begin, ticks, pulse, smooth, value) of a kick, as compiled code wants it."""
     if kick is None:
         return NO_KICK, 0, 0, NO_PULSE, False, 0.0
@@ -134,65 +146,115 @@ def _kick_numbers(kick: Kick | None) -> tuple[int, int, int, int, bool, float]:
     return QUENCHED, kick.begin, kick.ticks, kick.pulse, kick.smooth, kick.values[0]
 
 
-@parallel_jit
-def _run(
+@assembled
+def _under_kick(
+    tick: int, x1: float, x2: float, a: float, tau_s: float, k: float, kick: KickNumbers, value: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """(x1, x2, a, tau_s, k, beta, shift_rad) of a tick, as robot.wheel has them. value: the kick's value or jump for this wheel."""
+    action, begin, ticks, pulse, smooth, _ = kick
+    beta, shift_rad = 0.0, 0.0
+    if action != NO_KICK and begin <= tick < begin + ticks:
+        if action == QUENCHED:
+            a, tau_s, k, beta, shift_rad = _pulsed(pulse, value, _pulse_weight(tick - begin, ticks, smooth), a, tau_s, k)
+        elif action == FROZEN_MEMBRANE:
+            x1, x2 = _invert_membrane(x1, x2)
+        elif action == FROZEN_JUMP_1:
+            x1 = _jump(x1, value)
+        else:
+            x2 = _jump(x2, value)
+    return x1, x2, a, tau_s, k, beta, shift_rad
+
+
+@assembled
+def _run_wheel(
+    phis: Array,
+    start: Array,
+    x1: float,
+    x2: float,
+    times: Array,
+    params: ParamNumbers,
+    kick: KickNumbers,
+    table: Array,
+    scalars: Array,
+    hardware: tuple[float, float, float],
+    record: Array,
+) -> None:
+    """Run one wheel, note its angle (rad) in each tick in `phis`, and its CHANNELS in `record` unless that is empty."""
+    a_set, tau_set, k_set, rods, max_duty_pct, tick_s = params
+    value = kick[5]
+    battery_v, latency_s, counts = hardware
+    state = (start[0], start[1], start[2], start[3], start[4], start[5])
+    substep, duty = 0, 0
+    turn, next_duty = 0, 0  # the duty that was written last, and the substep from which it acts
+    for tick in range(len(times)):
+        now = times[tick]
+        present = substep_at(now)
+        state = advance(turn - substep, duty, battery_v, 0.0, *state, table, scalars)
+        state = advance(present - turn, next_duty, battery_v, 0.0, *state, table, scalars)
+        substep, duty = present, next_duty
+        phi = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts) * pi / 180
+        phis[tick] = phi
+        dt_s = max(SHORTEST_STEP_TICKS * tick_s, min(LONGEST_STEP_TICKS * tick_s, now - times[tick - 1])) if tick else tick_s
+        if tick == kick[1] and isnan(value):
+            value = _reversing_shift(_direction(_travel(phis, tick - 1)))
+        x1, x2, a, tau_s, k, beta, shift_rad = _under_kick(tick, x1, x2, a_set, tau_set, k_set, kick, value)
+        seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
+        x1, x2, force, torque = _step_wheel(x1, x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, rods)
+        next_duty = _limit_duty(torque, max_duty_pct)
+        turn = substep_from(now + latency_s)
+        if len(record):
+            record[tick, 0], record[tick, 1], record[tick, 2] = phi, x1, x2
+            record[tick, 3], record[tick, 4], record[tick, 5] = force, torque, next_duty
+
+
+@assembled
+def _travel(phis: Array, tick: int) -> float:
+    """How far (rad) a wheel came in the DIRECTION_TICKS ticks up to this one."""
+    travel: float = phis[tick] - phis[tick - DIRECTION_TICKS]
+    return travel
+
+
+@assembled
+def _settling_s(phis: Array, times: Array, begin: int) -> float:
+    """Time (s) from tick `begin` on after which the speed over any DIRECTION_TICKS ticks is within SETTLED_WITHIN of the last."""
+    last = len(times) - 1
+    final = _travel(phis, last) / (times[last] - times[last - DIRECTION_TICKS])
+    tick = last
+    while tick - DIRECTION_TICKS >= begin:
+        speed = _travel(phis, tick) / (times[tick] - times[tick - DIRECTION_TICKS])
+        if abs(speed - final) > SETTLED_WITHIN * abs(final):
+            break
+        tick -= 1
+    first = tick + 1 - DIRECTION_TICKS
+    settling_s: float = times[first] - times[begin] if last - first >= 2 * DIRECTION_TICKS else nan
+    return settling_s
+
+
+@assembled_parallel
+def _run_all(
     states: Array,
     potentials: Array,
     times: Array,
-    params: tuple[float, float, float, int, float, float],
-    kick: tuple[int, int, int, int, bool, float],
+    params: ParamNumbers,
+    kick: KickNumbers,
     tables: Array,
     scalars: Array,
     hardware: tuple[float, float, float],
-    directions: NDArray[np.int64],
+    before: NDArray[np.int64],
+    after: NDArray[np.int64],
     settled_s: Array,
     records: Array,
 ) -> None:
-    a_set, tau_set, k_set, rods, max_duty_pct, tick_s = params
-    action, begin, kick_ticks, pulse, smooth, kick_value = kick
-    battery_v, latency_s, counts = hardware
     ticks = times.shape[1]
-    for wheel in prange(states.shape[0]):
-        when = times[wheel % times.shape[0]]
-        table, c = tables[wheel % tables.shape[0]], scalars[wheel % scalars.shape[0]]
+    begin = kick[1]
+    for wheel in prange(len(states)):
         phis = np.empty(ticks)
-        angle, last, speed, current, gap, wheel_speed = states[wheel]
-        x1, x2 = potentials[wheel]
-        value = kick_value
-        substep, turn, duty, next_duty = 0, 0, 0, 0
-        for tick in range(ticks):
-            present = substep_at(when[tick])
-            angle, last, speed, current, gap, wheel_speed = advance(
-                turn - substep, duty, battery_v, 0.0, angle, last, speed, current, gap, wheel_speed, table, c
-            )
-            angle, last, speed, current, gap, wheel_speed = advance(
-                present - turn, next_duty, battery_v, 0.0, angle, last, speed, current, gap, wheel_speed, table, c
-            )
-            substep, duty = present, next_duty
-            phi = encoder(substep, angle, last, counts) * pi / 180
-            phis[tick] = phi
-            dt_s = tick_s
-            if tick > 0:
-                dt_s = max(SHORTEST_STEP_TICKS * tick_s, min(LONGEST_STEP_TICKS * tick_s, when[tick] - when[tick - 1]))
-
-            a, tau_s, k, beta, shift_rad = a_set, tau_set, k_set, 0.0, 0.0
-            if begin <= tick < begin + kick_ticks:
-                if action == QUENCHED:
-                    if tick == begin and np.isnan(value):
-                        value = _reversing_shift(_direction(phis[begin - 1] - phis[begin - 1 - DIRECTION_TICKS]))
-                    weight = _pulse_weight(tick - begin, kick_ticks, smooth)
-                    a, tau_s, k, beta, shift_rad = _pulsed(pulse, value, weight, a, tau_s, k)
-                elif action == FROZEN_MEMBRANE:
-                    x1, x2 = _invert_membrane(x1, x2)
-                elif action == FROZEN_JUMP_1:
-                    x1 = _jump(x1, value)
-                elif action == FROZEN_JUMP_2:
-                    x2 = _jump(x2, value)
-            seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
-            x1, x2, force, torque = _step_wheel(x1, x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, rods)
-            next_duty = _limit_duty(torque, max_duty_pct)
-            turn = max(substep_from(when[tick] + latency_s), substep)
-            if wheel < records.shape[0]:
-                row = records[wheel, tick]
-                row[0], row[1], row[2], row[3], row[4], row[5] = phi, x1, x2, force, torque, next_duty
-    ...
+        when = times[wheel % len(times)]
+        variant = wheel % len(tables)
+        record = records[wheel] if wheel < len(records) else np.empty((0, len(CHANNELS)))
+        x1, x2 = potentials[wheel, 0], potentials[wheel, 1]
+        _run_wheel(phis, states[wheel], x1, x2, when, params, kick, tables[variant], scalars[variant], hardware, record)
+        after[wheel] = _direction(_travel(phis, ticks - 1))
+        if begin:
+            before[wheel] = _direction(_travel(phis, begin - 1))
+            settled_s[wheel] = _settling_s(phis, when, begin)

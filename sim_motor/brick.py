@@ -5,8 +5,9 @@ out does not depend on how often anybody looks, and runs the same in virtual and
 """
 
 from collections import deque
-from collections.abc import Callable
-from math import exp, pi
+from collections.abc import Callable, Iterator
+from itertools import repeat
+from math import pi
 from random import Random
 from typing import NamedTuple, Protocol
 
@@ -19,6 +20,7 @@ from sim_motor.motor import (
     CURRENT,
     GAP,
     LAST_ANGLE,
+    Array,
     Constants,
     advance_in_place,
     encoder,
@@ -34,9 +36,9 @@ LATE_LEAST_S, LATE_MEDIAN_S, LATE_SPREAD, LATE_MOST_S = 0.00017, 0.00049, 1.06, 
 HIGHEST_BATTERY_V = 10.0  # six fresh AA cells
 
 
-def lateness_s(normal: float) -> float:
-    """How late a tick begins, from a standard normal number."""
-    return min(LATE_LEAST_S + LATE_MEDIAN_S * exp(LATE_SPREAD * normal), LATE_MOST_S)
+def lateness_s(normal: Array) -> Array:
+    """How late ticks begin, from standard normal numbers."""
+    return np.minimum(LATE_LEAST_S + LATE_MEDIAN_S * np.exp(LATE_SPREAD * normal), LATE_MOST_S)
 
 
 class Clock(Protocol):
@@ -51,7 +53,7 @@ class VirtualClock:
 
     def __init__(self, seed: int, *, jitter: bool = True) -> None:
         self._now = 0.0
-        self._random = Random(f"clock {seed}") if jitter else None
+        self._late = self._lateness(np.random.default_rng(seed)) if jitter else repeat(0.0)
 
     def now(self) -> float:
         """Seconds since the clock was made."""
@@ -60,8 +62,12 @@ class VirtualClock:
     def wait(self, deadline: float, serve: Callable[[float], object]) -> None:
         """Let links be served once, then be at `deadline` (s), or as late as the brick would be."""
         serve(0.0)
-        late = lateness_s(self._random.gauss(0.0, 1.0)) if self._random else 0.0
-        self._now = max(self._now, deadline) + late
+        self._now = max(self._now, deadline) + next(self._late)
+
+    @staticmethod
+    def _lateness(rng: np.random.Generator) -> Iterator[float]:
+        while True:
+            yield from lateness_s(rng.standard_normal(1000)).tolist()
 
 
 class Truth(NamedTuple):

@@ -19,12 +19,17 @@ def jit(function: F) -> F:
     return cast(F, numba.njit(cache=True, forceinline=True, error_model="numpy")(function))
 
 
-def parallel_jit(function: F) -> F:
-    """Compile a function whose `prange` loops run on all cores.
+def assembled(function: F) -> F:
+    """Compile a function that calls compiled functions of other modules.
 
     Not kept on disk: numba would not notice that a function of another module that went into it has changed since.
     """
-    return cast(F, numba.njit(parallel=True)(function))
+    return cast(F, numba.njit(error_model="numpy")(function))
+
+
+def assembled_parallel(function: F) -> F:
+    """As `assembled`, with its `prange` loops spread over all cores."""
+    return cast(F, numba.njit(error_model="numpy", parallel=True)(function))
 
 
 @cache

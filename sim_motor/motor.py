@@ -100,7 +100,6 @@ class Constants:
             system[:COAST, 1, 1] = -ohms / self.inductance
             system[:COAST, 1, 3] = 1 / self.inductance
             solution = _exponential(system * SUBSTEP_S)
-            solution[COAST, 1, 1] = 0.0  # an open circuit carries no current
             out[side, :, :12] = solution[:, :3][:, :, (0, 1, 3, 4)].reshape(-1, 12)
             out[side, :COAST, 12] = np.exp(-ohms / self.inductance * SUBSTEP_S)
             out[side, :COAST, 13] = (1 - out[side, :COAST, 12]) / ohms
@@ -240,7 +239,7 @@ def advance(
     """
     volts = battery_v * duty / 100
     if duty == COAST:
-        current = 0.0
+        current = 0.0  # and the tables leave it there
     half = c[HALF_PLAY]
     while substeps > 0:
         drive = c[TORQUE_CONSTANT] * current

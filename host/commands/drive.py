@@ -30,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
         how += f", and k from {result['k_before']:g} to {result['k']:g}"
     verdict = f"The robot is in {options.primitive}" if result["reached"] else f"The robot did NOT reach {options.primitive}"
     sentence = f"{verdict}: left {result['after']['left']}, right {result['after']['right']}, by {how}."
-    result["figure"] = str(draw(log, path.with_suffix(".png"), sentence))
+    result["figure"] = str(draw(log, path.with_suffix(".png"), f"Driven to {options.primitive}: {how}"))
     if options.json:
         show(result)
     else:

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Kick, write log and figure, and answer; 1 if a kicked wheel did not reverse."""
     from host.figures.kick import draw
-    from host.kicking import describe, kick_and_watch, require_running, wait_settled
+    from host.kicking import describe, kick_and_watch, require_running, title, wait_settled
 
     details = {name: getattr(options, name) for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")}
     _check(options.mode, options.wheel, details)
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
             outcome = kick_and_watch(robot, log, options.mode, wheel=options.wheel, **details)
         brick, seed = robot.link.uri, robot.hello["seed"]
     sentence = describe(outcome)
-    figure = draw(log, path.with_suffix(".png"), sentence)
+    figure = draw(log, path.with_suffix(".png"), title(outcome))
     if options.json:
         show({**outcome.as_dict(), "brick": brick, "seed": seed, "log": str(path), "figure": str(figure)})
     else:

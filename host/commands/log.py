@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from host.errors import WrongUse
+from host.options import common
 from host.terminal import answer, robot_of, say, show
 
 HELP = "logs: list them, pull the robot's black box, export, replay"
@@ -11,19 +12,20 @@ HELP = "logs: list them, pull the robot's black box, export, replay"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """One action, and what it needs."""
+    parents = [common(defaults=False)]
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    listing = actions.add_parser("list", help="the logs in a folder")
+    listing = actions.add_parser("list", parents=parents, help="the logs in a folder")
     listing.add_argument("folder", nargs="?", type=Path, help="default: logs/ here")
-    pull = actions.add_parser("pull", help="fetch the last minutes from the robot's black box")
+    pull = actions.add_parser("pull", parents=parents, help="fetch the last minutes from the robot's black box")
     pull.add_argument("--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)")
-    export = actions.add_parser("export", help="a log as a table")
+    export = actions.add_parser("export", parents=parents, help="a log as a table")
     export.add_argument("log", type=Path)
     export.add_argument("--format", choices=("csv", "npz"), default="csv")
     export.add_argument("--out", type=Path, metavar="FILE", help="where to (default: csv to standard output, npz beside the log)")
-    replay = actions.add_parser("replay", help="feed a log's angles and delta t to the controller again and compare every bit")
+    replay = actions.add_parser(
+        "replay", parents=parents, help="feed a log's angles and delta t to the controller again and compare every bit"
+    )
     replay.add_argument("log", type=Path)
-    for action in (listing, pull, export, replay):
-        action.add_argument("--json", action="store_true", default=argparse.SUPPRESS, help="answer in JSON on standard output")
 
 
 def run(options: argparse.Namespace) -> int:

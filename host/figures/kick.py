@@ -19,7 +19,7 @@ STALL_TORQUE = 0.1  # friction holds a wheel at torques below this one (paper, s
 # The colours of the paper's figure.
 _POTENTIALS = {"left": ("saddlebrown", "darkorange"), "right": ("mediumblue", "deepskyblue")}
 _WHEEL = {"left": "black", "right": "grey"}
-_WIDTH = {"left": 3.6, "right": 1.6}  # so that both show where they agree
+_WIDTH = {"left": 4.2, "right": 2.0}  # so that both show where they agree
 _KICK = "crimson"
 _PLATE: Any = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
 _STYLE: Any = {"font.size": 13, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.8, "legend.frameon": False}
@@ -96,9 +96,7 @@ def _draw_neurons(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
     axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", alpha=0.6, linewidth=0, label=f"$|M| < {STALL_TORQUE:g}$: stall")
     for side in WHEELS:
         for number, color in enumerate(_POTENTIALS[side], 1):
-            _line(
-                axes, log, begin, zero_s, log.column(f"{side}_x{number}"), color=color, drawstyle="steps-post", label=f"$x_{number}$ {side}"
-            )
+            _line(axes, log, begin, zero_s, log.column(f"{side}_x{number}"), color=color, label=f"$x_{number}$ {side}")
     for side in WHEELS:
         style: Any = {"color": _WHEEL[side], "linewidth": _WIDTH[side], "drawstyle": "steps-post", "label": f"$M$ {side}"}
         _line(axes, log, begin, zero_s, log.column(side + "_torque"), **style)
@@ -110,7 +108,7 @@ def _draw_speeds(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
     axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
     for side in WHEELS:
         _line(axes, log, begin, zero_s, log.omega(side) / (2 * np.pi), color=_WHEEL[side], linewidth=_WIDTH[side], label=side)
-    axes.legend(ncols=2)
+    axes.legend(ncols=2, handlelength=1.4)
     axes.set_ylabel(r"$\omega/2\pi$ (Hz)")
 
 

@@ -1,0 +1,107 @@
+"""Claims of the paper about the robot, measured in a log: what was claimed, what was found, and whether it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from host.log import Log
+from robot.kicks import WHEELS
+
+# The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
+WHEEL_RADIUS_M = 0.028
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One row of a report. `measured` and `target` are words with units; `holds` is the verdict."""
+
+    id: str
+    claim: str
+    target: str
+    measured: str
+    holds: bool
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Span:
+    """The rows of a log from `first` to before `end`: a stretch of steady motion, or one attempt at something."""
+
+    first: int
+    end: int
+
+
+def starts(log: Log, spans: Sequence[Span]) -> Claim:
+    """R1: from random starts both directions are reached, equally fast. Each span is steady motion after a start of its own."""
+    speeds = np.array([log.omega(side)[span.first : span.end].mean() for span in spans for side in WHEELS])
+    forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
+    both = len(forward) > 0 and len(backward) > 0
+    asymmetry = abs(forward.mean() / backward.mean() - 1.0) if both else float("nan")
+    return Claim(
+        "R1",
+        "forward and backward locomotion coexist",
+        "both from random starts, speeds equal within 3 %",
+        f"{len(spans)} starts of two wheels: {len(forward)} forward, {len(backward)} backward, speeds differ by {100 * asymmetry:.1f} %",
+        both and bool(asymmetry <= 0.03),
+    )
+
+
+def locomotion(log: Log, span: Span) -> list[Claim]:
+    """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque in steady motion."""
+    rows = slice(span.first, span.end)
+    hertz = float(np.mean([abs(log.omega(side)[rows].mean()) for side in WHEELS])) / (2 * pi)
+    speed = 2 * pi * hertz * WHEEL_RADIUS_M
+    duty = float(np.mean([np.abs(log.column(side + "_duty_pct")[rows]).mean() for side in WHEELS]))
+    torques = [log.column(side + "_torque")[rows] for side in WHEELS]
+    ripple = max(float(torque.std() / np.abs(torque).mean()) for torque in torques)
+    return [
+        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", f"{hertz:.2f} Hz", 1.8 <= hertz <= 2.3),
+        Claim(
+            "R3",
+            "speed, and share of the motor's power, at k = 8",
+            "0.32 to 0.39 m/s, 80 to 90 %",
+            f"{speed:.3f} m/s, {duty:.0f} %",
+            0.32 <= speed <= 0.39 and 80.0 <= duty <= 90.0,
+        ),
+        Claim("R4", "the torque M is quasi-stationary", "std(M) / mean(|M|) < 0.1", f"{ripple:.4f}", ripple < 0.1),
+    ]
+
+
+def break_away(log: Log, span: Span) -> Claim:
+    """R5: at rest, the torque is raised slowly until each wheel moves. The span begins at rest and holds the whole ramp."""
+    rows = slice(span.first, span.end)
+    stalls, moves = [], []
+    for side in WHEELS:
+        phi, torque = log.column(side + "_phi_rad")[rows], np.abs(log.column(side + "_torque")[rows])
+        moved = np.flatnonzero(phi != phi[0])
+        first = int(moved[0]) if len(moved) else len(phi)
+        steps = np.flatnonzero(np.diff(torque[:first]) > _LEAST_STEP) + 1
+        last_step = int(steps[-1]) if len(steps) else first
+        stalls.append(float(torque[:last_step].max(initial=0.0)))
+        moves.append(float(torque[:first].max(initial=0.0)) if len(moved) else float("inf"))
+    return Claim(
+        "R5",
+        "the motor stalls for |M| <= 0.1",
+        "no motion from rest below, motion above",
+        "; ".join(f"{side}: rests at M = {low:.3f}, moves at {high:.3f}" for side, low, high in zip(WHEELS, stalls, moves, strict=True)),
+        all(0.09 <= low <= 0.102 and 0.1 <= high <= 0.11 for low, high in zip(stalls, moves, strict=True)),
+    )
+
+
+# A ramp's steps stand out from the last bits of a torque that is settling.
+_LEAST_STEP = 1e-3
+
+
+def inversions(reversals: Sequence[bool]) -> Claim:
+    """R8: inverting the membrane potentials always reverses the robot."""
+    done = sum(reversals)
+    target = f"{len(reversals)} of {len(reversals)}"
+    return Claim("R8", "membrane inversion is 100 % reliable", target, f"{done} of {len(reversals)}", 0 < len(reversals) == done)

@@ -1,0 +1,61 @@
+"""kickctl demo."""
+
+import argparse
+
+from host.terminal import recorded, robot_of, say, show
+
+HELP = "the main job, from a random start to a kick that reverses the robot, with the paper's claims measured on the way"
+
+STARTS = 10
+INVERSIONS = 50
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """No arguments of its own."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run all of it into one log; 1 if the kick did not reverse the robot or a claim did not hold."""
+    from host import claims, showing
+    from host.figures.kick import draw
+    from host.kicking import describe, kick_and_watch, title
+    from host.primitives import drive
+    from host.progress import progress
+
+    with robot_of(options, moves=True) as robot, recorded(robot, "demo") as (log, path), progress("demo", 4) as advance:
+        say("driving forward ...")
+        if robot.status()["state"] != "running":
+            robot.start()
+        drive(robot, log, "forward")
+        steady = showing.steady(robot, log)
+        outcome = kick_and_watch(robot, log, "phase", ticks=4)
+        figure = draw(log, path.with_suffix(".png"), title(outcome))
+        advance(1)
+        say(f"starting {STARTS} times from random potentials ...")
+        starts = showing.starts(robot, log, STARTS)
+        advance(2)
+        say(f"inverting the membrane potentials {INVERSIONS} times ...")
+        inversions = [kick_and_watch(robot, log, "membrane").reversed for _ in range(INVERSIONS)]
+        advance(3)
+        say("raising the torque slowly on a robot at rest ...")
+        ramp = showing.ramp(robot, log)
+        advance(4)
+        brick, seed = robot.link.uri, robot.hello["seed"]
+    report = [claims.starts(log, starts), *claims.locomotion(log, steady), claims.break_away(log, ramp), claims.inversions(inversions)]
+    holds = outcome.reversed and all(claim.holds for claim in report)
+    if options.json:
+        show(
+            {
+                **outcome.as_dict(),
+                "brick": brick,
+                "seed": seed,
+                "log": str(path),
+                "figure": str(figure),
+                "claims": [claim.as_dict() for claim in report],
+            }
+        )
+    else:
+        for claim in report:
+            print(f"{claim.id} {'holds' if claim.holds else 'DOES NOT HOLD'}: {claim.claim}: {claim.measured} (paper: {claim.target})")
+        print(f"{describe(outcome)}\nlog {path}\nfigure {figure}")
+    return 0 if holds else 1

@@ -1,0 +1,131 @@
+"""kickctl doctor."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import platform
+import shutil
+import statistics
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from host.client import Robot, connect
+from host.errors import KickctlError
+from host.terminal import show
+from robot import __version__
+from robot.token import TokenError, default_path, load
+
+HELP = "examine this machine, the link and the robot, and say what to mend"
+
+NEEDED = ("argcomplete", "matplotlib", "mcap", "numba", "numpy", "rich", "serial")
+LEAST_DISK_BYTES = 100_000_000
+PINGS = 20
+LOW_BATTERY_V = 6.5
+# A robot that misses more of its ticks than this does not see its own wheels turn evenly.
+MANY_MISSED = 0.01
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at. `remedy` is empty if it is well."""
+
+    what: str
+    found: str
+    remedy: str = ""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """No arguments of its own."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Examine without moving anything; 1 if something needs mending, or the status of the error that hides the robot."""
+    findings = [*_machine(), *_token(options.token)]
+    status = 0
+    try:
+        with connect(options.brick, options.seed, options.token) as robot:
+            findings += _robot(robot)
+    except KickctlError as error:
+        findings.append(Finding("robot", error.message, error.hint or "see above"))
+        status = error.status
+    if options.json:
+        show({"findings": [asdict(finding) for finding in findings], "well": not any(finding.remedy for finding in findings)})
+    else:
+        for finding in findings:
+            print(
+                f"{'!!' if finding.remedy else 'ok'}  {finding.what}: {finding.found}"
+                + (f"\n      {finding.remedy}" * bool(finding.remedy))
+            )
+    return status or int(any(finding.remedy for finding in findings))
+
+
+def _machine() -> Iterator[Finding]:
+    yield Finding("Python", platform.python_version(), "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer")
+    absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    yield Finding("libraries", f"missing: {', '.join(absent)}" if absent else "all there", "run: make setup" if absent else "")
+    free = shutil.disk_usage(Path.cwd()).free
+    yield Finding("disk", f"{free / 1e9:.1f} GB free here", "" if free > LEAST_DISK_BYTES else "logs need room: delete what is old")
+
+
+def _token(path: str | None) -> Iterator[Finding]:
+    chosen = path or default_path()
+    if not Path(chosen).exists():
+        yield Finding("token", f"none at {chosen}; needed only to command a robot elsewhere")
+        return
+    try:
+        load(chosen)
+    except TokenError as error:
+        yield Finding("token", str(error), "mend the file, or delete it and copy the robot's anew")
+    else:
+        yield Finding("token", chosen)
+
+
+def _robot(robot: Robot) -> Iterator[Finding]:
+    hello = robot.hello
+    same = hello["software"] == __version__
+    yield Finding("robot", f"{robot.link.uri}, {hello['machine']}")
+    yield Finding("software", f"host {__version__}, robot {hello['software']}", "" if same else "run the same release on both")
+    yield Finding(
+        "access",
+        "token accepted" if robot.trusted else "no token: may look, and stop the robot",
+        "" if robot.trusted else "copy the robot's token file to this machine, mode 600",
+    )
+    delays = []
+    for _ in range(PINGS):
+        begun = time.perf_counter()
+        status = robot.status()
+        delays.append(1000 * (time.perf_counter() - begun))
+    slow = statistics.median(delays) > 100.0
+    yield Finding(
+        "link",
+        f"an answer takes {statistics.median(delays):.1f} ms (median of {PINGS}), {max(delays):.1f} ms at most",
+        "use a cable, or come nearer" if slow else "",
+    )
+    fault = status["state"] == "fault"
+    yield Finding("state", f"{status['state']} ({status['reason']})", "mend the cause, then: kickctl clear" if fault else "")
+    yield _battery(status["battery_v"])
+    yield _punctuality(status)
+
+
+def _battery(volts: float | None) -> Finding:
+    if volts is None:
+        return Finding("battery", "the robot does not measure it")
+    return Finding("battery", f"{volts:.2f} V", "charge it" if volts < LOW_BATTERY_V else "")
+
+
+def _punctuality(status: dict[str, Any]) -> Finding:
+    counts, edges = status["lateness"]["counts"], [*status["lateness"]["edges_s"], float("inf")]
+    total, seen, bound = sum(counts), 0, 0.0
+    for count, edge in zip(counts, edges, strict=True):
+        seen += count
+        bound = edge
+        if seen >= 0.99 * total:
+            break
+    missed = status["missed"] / max(1, total)
+    text = f"99 % of {total} ticks began within {1000 * bound:g} ms; {status['missed']} missed, {status['overruns']} overrun"
+    return Finding("ticks", text, "something else keeps the robot busy; or choose a longer tick_s" if missed > MANY_MISSED else "")

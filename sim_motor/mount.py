@@ -1,0 +1,97 @@
+"""The tree of sim_motor.sysfs as a file system (FUSE) in real time: `python -m sim_motor --sysfs MOUNTPOINT`.
+
+Whoever uses the mount must be another process: one that waits for itself hangs for ever.
+"""
+
+import errno
+import os
+import sys
+import time
+from typing import Any
+
+from sim_motor.brick import SimBrick
+from sim_motor.sysfs import Tree
+from sim_motor.tacho import failure
+
+_WANTED = {os.O_RDONLY: os.R_OK, os.O_WRONLY: os.W_OK, os.O_RDWR: os.R_OK | os.W_OK}
+
+
+class _Calls:
+    """The calls that libfuse makes, one at a time; each first brings the tree up to the present."""
+
+    use_ns = True
+
+    def __init__(self, tree: Tree, mountpoint: str) -> None:
+        self._tree = tree
+        self._mountpoint = mountpoint
+        self._epoch = time.monotonic()
+
+    def _present(self) -> Tree:
+        self._tree.run_to(time.monotonic() - self._epoch)
+        return self._tree
+
+    def init(self, path: str) -> None:
+        print("READY", self._mountpoint, flush=True)
+
+    def getattr(self, path: str, handle: int | None = None) -> dict[str, Any]:
+        mode = self._present().mode(path)
+        return {"st_mode": mode, "st_nlink": 1, "st_size": 4096, "st_uid": os.getuid(), "st_gid": os.getgid()}
+
+    def readdir(self, path: str, handle: int) -> list[str]:
+        return [".", "..", *self._present().names(path)]
+
+    def access(self, path: str, wanted: int) -> int:
+        self._present().allow(path, wanted)
+        return 0
+
+    def open(self, path: str, flags: int) -> int:
+        return self._present().open(path, _WANTED[flags & os.O_ACCMODE])
+
+    def create(self, path: str, mode: int, flags: int) -> int:
+        raise failure(errno.EACCES)
+
+    def truncate(self, path: str, length: int, handle: int | None = None) -> int:
+        return 0
+
+    def read(self, path: str, size: int, offset: int, handle: int) -> bytes:
+        return self._present().read(handle, size, offset)
+
+    def write(self, path: str, data: bytes, offset: int, handle: int) -> int:
+        self._present().write(handle, data)
+        return len(data)
+
+    def release(self, path: str, handle: int) -> int:
+        self._tree.close(handle)
+        return 0
+
+
+def serve(mountpoint: str, brick: SimBrick) -> int:
+    """Mount the brick's files and serve them until they are unmounted or the process is told to end. Returns the exit status."""
+    try:
+        import mfusepy
+    except (ImportError, OSError) as error:
+        return _give_up(f"the file tree needs mfusepy and libfuse3 ({error}): run `make setup`, and apt-get install fuse3")
+    if not os.path.isdir(mountpoint) or os.path.ismount(mountpoint) or os.listdir(mountpoint):
+        return _give_up(f"{mountpoint} is no empty folder to mount on: make one, or unmount what is there: fusermount3 -u {mountpoint}")
+    tree = Tree(brick)
+    tree.run_to(brick.clock.now())
+    # The kernel must ask anew each time: values, permissions and the files themselves change without its doing.
+    fresh = {"direct_io": True, "entry_timeout": 0, "attr_timeout": 0, "negative_timeout": 0}
+    try:
+        mfusepy.FUSE(
+            _Calls(tree, mountpoint),
+            mountpoint,
+            foreground=True,
+            nothreads=True,
+            fsname="ev3",
+            allow_other=os.getuid() == 0,
+            **fresh,
+        )
+    except RuntimeError as error:
+        return _give_up(f"cannot mount on {mountpoint} (FUSE error {error}): it needs /dev/fuse and the package fuse3, and the right to mount")
+    return 0
+
+
+def _give_up(message: str) -> int:
+    print(message, file=sys.stderr)
+    return 2

@@ -1,0 +1,173 @@
+"""`make bench`: how fast the things are that have to be fast, as ratios and rates measured in one run on this machine."""
+
+import multiprocessing
+import os
+import re
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from math import cos, exp, sin, tanh
+from pathlib import Path
+
+REAL_TIME_S = 30.0
+KICKS = 40
+
+
+def main() -> None:
+    """Print everything."""
+    print(f"Python {sys.version.split()[0]}, {os.cpu_count()} cores", flush=True)
+    for measure in (controller_tick, virtual_time, batch, real_time):
+        measure()
+
+
+def best_of(repeats, function):
+    """The shortest time (s) that `function` took; whatever else the machine did only ever adds to it."""
+    times = []
+    for _ in range(repeats):
+        begun = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - begun)
+    return min(times)
+
+
+def controller_tick() -> None:
+    """Two wheels through robot.wheel.Wheel against the same arithmetic written inline."""
+    from robot.params import Params
+    from robot.wheel import Wheel
+
+    count = 20000
+    params, wheels = Params(), (Wheel("left"), Wheel("right"))
+
+    def through_robot():
+        for tick in range(count):
+            for wheel in wheels:
+                wheel.step(tick, 0.1 * tick, 0.03, params, None)
+
+    def inline():
+        a, tau, k, dt = 4.0, 0.25, 8.0, 0.03
+        l1 = l2 = r1 = r2 = 0.0
+        for tick in range(count):
+            phi = 0.1 * tick
+            c, s = cos(phi), sin(phi)
+            l1 += dt * (c - l1) / tau
+            l2 += dt * (s - l2) / tau
+            tanh(k * (2 / (1 + exp(-a * l1)) - 1 - c) * s - k * (2 / (1 + exp(-a * l2)) - 1 - s) * c)
+            phi = 0.1 * tick
+            c, s = cos(phi), sin(phi)
+            r1 += dt * (c - r1) / tau
+            r2 += dt * (s - r2) / tau
+            tanh(k * (2 / (1 + exp(-a * r1)) - 1 - c) * s - k * (2 / (1 + exp(-a * r2)) - 1 - s) * c)
+
+    ours, bare = best_of(5, through_robot), best_of(5, inline)
+    print(f"controller tick, two wheels: {1e6 * ours / count:.2f} us, {ours / bare:.2f} times the bare arithmetic inline", flush=True)
+
+
+def virtual_time() -> None:
+    """Robot seconds per wall second on one core: the loop alone, and with a host that takes in every record."""
+    from host.client import connect
+    from robot.loop import Loop
+    from robot.server import Server
+    from sim_motor.brick import SimBrick
+
+    seconds = 300.0
+    brick = SimBrick(1)
+    loop = Loop(brick.motors, brick.battery, brick.clock, brick.seed)
+    server = Server(loop, b"\0" * 32)
+    loop.start()
+
+    def alone():
+        until = loop.clock.now() + seconds
+        while loop.clock.now() < until:
+            loop.clock.wait(loop.deadline, server.serve)
+            loop.tick()
+
+    alone()
+    rate = seconds / best_of(3, alone)
+    with connect("sim://", seed=1) as robot:
+        robot.wait(5)
+        watched = seconds / best_of(3, lambda: robot.wait(seconds))
+    print(f"virtual time, full loop: {rate:.0f} robot seconds a second; with a host that takes in every record: {watched:.0f}", flush=True)
+
+
+def batch() -> None:
+    """Wheel-seconds per wall second, compiled, on all cores."""
+    from sim_motor.batch import run
+
+    wheels, ticks = 4000, 1000
+    run(8, 100, seed=1)
+    elapsed = best_of(3, lambda: run(wheels, ticks, seed=1))
+    print(f"compiled batch, {os.cpu_count()} cores: {wheels * ticks * 0.03 / elapsed:,.0f} wheel-seconds a second", flush=True)
+
+
+def real_time() -> None:
+    """How late ticks begin on the desk robot, idle and with all cores loaded, and how long a kick takes to its tick."""
+    for title, busy in (("idle", 0), ("all cores loaded", os.cpu_count() or 1)):
+        burners = [multiprocessing.Process(target=_burn, daemon=True) for _ in range(busy)]
+        for burner in burners:
+            burner.start()
+        try:
+            late, kicks, periods = _desk_robot()
+        finally:
+            for burner in burners:
+                burner.terminate()
+        late.sort()
+        shown = ", ".join(f"{name} {1000 * late[min(len(late) - 1, int(part * len(late)))]:.2f}" for name, part in _PARTS)
+        print(f"real time, {title}: ticks begin late by {shown} ms ({len(late)} ticks, {periods} deadlines missed)", flush=True)
+        print(
+            f"  kick, from command to the begin of its tick: median {1000 * statistics.median(kicks):.1f} ms, "
+            f"at most {1000 * max(kicks):.1f} ms ({len(kicks)} kicks; the tick is 30 ms)",
+            flush=True,
+        )
+
+
+_PARTS = (("median", 0.5), ("p99", 0.99), ("p99.9", 0.999))
+
+
+def _burn() -> None:
+    while True:
+        pass
+
+
+def _desk_robot():
+    """(how late each tick began, command-to-tick times of kicks, missed deadlines), all times in s."""
+    from host.client import connect
+    from host.log import Log
+
+    with tempfile.TemporaryDirectory() as folder:
+        token = str(Path(folder) / "token")
+        command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "1", "--token", token]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as brick:
+            try:
+                uri = re.search(r"tcp://\S+", brick.stdout.readline())[0]
+                with connect(uri, token=token) as robot:
+                    log = Log(robot.info())
+                    robot.add_tap(log)
+                    robot.wait(1.0)
+                    kicks = [_kick_latency(robot, log) for _ in range(KICKS)]
+                    first = len(log)
+                    robot.wait(REAL_TIME_S)
+            finally:
+                brick.terminate()
+    records = log.records[first:]
+    return [record.late_s for record in records], kicks, sum(record.missed for record in records)
+
+
+def _kick_latency(robot, log) -> float:
+    """From sending a kick to the begin of its tick, by the robot's clock, which is this machine's."""
+    asked = time.monotonic()
+    clock_s = robot.status()["clock_s"]
+    sent = time.monotonic()
+    offset = (asked + sent) / 2 - clock_s
+    tick = robot.kick("membrane")
+    robot.wait(5.0, until=lambda: log.records[-1].tick >= tick)
+    begun = next(record.t_s for record in reversed(log.records) if record.tick == tick)
+    robot.wait(0.2 + 0.013 * (tick % 7))
+    return begun + offset - sent
+
+
+if __name__ == "__main__":
+    socket.setdefaulttimeout(30.0)
+    main()

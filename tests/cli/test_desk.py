@@ -1,0 +1,122 @@
+"""The brick on the desk: the robot's program as a process of its own, in real time, driven by kickctl from outside."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from host.client import connect
+from host.errors import RefusedByRobot
+
+
+@contextmanager
+def desk_robot(folder, *arguments):
+    """A running `python -m sim_motor`: (its URI, the process)."""
+    environment = dict(os.environ, KICK_TOKEN=str(folder / "token"))
+    command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "3", *arguments]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            line = process.stdout.readline()
+            assert re.fullmatch(r"READY tcp://127\.0\.0\.1:\d+\n", line), line + process.stderr.read()
+            yield line.split()[1], process
+        finally:
+            process.terminate()
+            process.wait(10)
+
+
+@pytest.fixture
+def outside(tmp_path):
+    """kickctl as a process of its own: (exit status, standard output, standard error)."""
+
+    def run(*arguments, **environment):
+        environment = {**os.environ, "KICK_TOKEN": str(tmp_path / "token"), "PYTHONPATH": str(Path.cwd()), **environment}
+        command = [sys.executable, "-m", "host", *arguments]
+        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+        return done.returncode, done.stdout, done.stderr
+
+    return run
+
+
+def test_a_kick_from_another_process_reverses_the_desk_robot_and_leaves_it_running(tmp_path, outside):
+    with desk_robot(tmp_path) as (uri, process):
+        status, out, err = outside("--brick", uri, "kick", "--mode", "phase", "--ticks", "4", "--json")
+        result = json.loads(out)
+        assert status == 0, err
+        assert (result["reversed"], result["brick"]) == (True, uri)
+        assert json.loads(outside("--brick", uri, "status", "--json")[1])["state"] == "running"
+        replay = outside("log", "replay", result["log"], "--json")
+        assert json.loads(replay[1])["exact"] is True
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10) == 0
+        assert outside("--brick", uri, "status")[0] == 3
+
+
+def test_an_idle_robot_waits_for_start(tmp_path, outside):
+    with desk_robot(tmp_path, "--idle") as (uri, _):
+        status, _, err = outside("kick", "--mode", "phase", KICK_BRICK=uri)
+        assert status == 1
+        assert "kickctl start" in err
+        assert outside("start", KICK_BRICK=uri)[0] == 0
+        assert outside("kick", "--mode", "membrane", KICK_BRICK=uri)[0] == 0
+        assert outside("stop", KICK_BRICK=uri)[0] == 0
+        assert json.loads(outside("status", "--json", KICK_BRICK=uri)[1])["state"] == "stopped"
+
+
+def test_without_the_token_one_may_look_and_stop_but_not_move(tmp_path, outside):
+    with desk_robot(tmp_path) as (uri, _):
+        status, _, err = outside("--brick", uri, "kick", "--mode", "membrane", KICK_TOKEN=str(tmp_path / "none"))
+        assert status == 4
+        assert "token" in err
+        assert outside("--brick", uri, "status", KICK_TOKEN=str(tmp_path / "none"))[0] == 0
+        assert outside("--brick", uri, "start", "--token", str(tmp_path / "none"))[0] == 4
+        assert outside("--brick", uri, "stop", KICK_TOKEN=str(tmp_path / "none"))[0] == 0
+        assert json.loads(outside("--brick", uri, "status", "--json")[1])["state"] == "stopped"
+
+
+def test_a_wrong_token_is_refused(tmp_path, outside):
+    with desk_robot(tmp_path) as (uri, _):
+        wrong = tmp_path / "wrong"
+        wrong.write_text("11" * 32)
+        wrong.chmod(0o600)
+        status, _, err = outside("--brick", uri, "status", "--token", str(wrong))
+        assert status == 4
+        assert "token" in err
+
+
+def test_one_controller_at_a_time(tmp_path, outside):
+    with desk_robot(tmp_path) as (uri, _), connect(uri, token=str(tmp_path / "token"), name="first") as first:
+        first.lease()
+        status, _, err = outside("--brick", uri, "kick", "--mode", "membrane", "--now")
+        assert status == 4
+        assert "'first' controls the robot" in err
+        first.release()
+        assert outside("--brick", uri, "kick", "--mode", "membrane", "--now")[0] == 0
+
+
+def test_the_api_of_the_readme(tmp_path):
+    with desk_robot(tmp_path) as (uri, _):
+        with connect(uri, token=str(tmp_path / "token")) as robot:
+            robot.kick("phase", ticks=4)
+            log = robot.record(0.5)
+        assert 15 <= len(log) <= 19
+        assert log.missing() == []
+        token = tmp_path / "token"
+        token.chmod(0o640)
+        with pytest.raises(RefusedByRobot, match="chmod 600"):
+            connect(uri, token=str(token))
+
+
+def test_a_port_in_use_is_told_in_words(tmp_path):
+    with desk_robot(tmp_path) as (uri, _):
+        port = uri.rsplit(":", 1)[1]
+        command = [sys.executable, "-m", "sim_motor", "--port", port, "--token", str(tmp_path / "token")]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+        assert done.returncode == 2
+        assert "cannot listen" in done.stderr
+        assert "Traceback" not in done.stderr

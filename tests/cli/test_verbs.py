@@ -1,0 +1,163 @@
+"""The other verbs on the embedded simulated robot."""
+
+import json
+
+import numpy as np
+import pytest
+
+from host.log import Log
+
+LOG_VERBS = ("export", "replay")
+
+
+def test_the_demo_kicks_the_robot_and_the_claims_hold_in_its_log(kickctl):
+    status, out, _ = kickctl("demo", "--seed", "4", "--json")
+    result = json.loads(out)
+    assert status == 0
+    assert result["before"] == {"left": "forward", "right": "forward"}
+    assert result["after"] == {"left": "backward", "right": "backward"}
+    assert [claim["id"] for claim in result["claims"]] == ["R1", "R2", "R3", "R4", "R5", "R8"]
+    assert all(claim["holds"] for claim in result["claims"])
+    assert Log.load(result["log"]).missing() == []
+    assert json.loads(kickctl("log", "replay", result["log"], "--json")[1])["exact"] is True
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("primitive", ["forward", "backward", "spin-left", "spin-right"])
+def test_drive_reaches_every_primitive(kickctl, primitive, seed):
+    status, out, _ = kickctl("drive", primitive, "--seed", str(seed), "--json")
+    result = json.loads(out)
+    assert status == 0
+    wanted = {"forward": "++", "backward": "--", "spin-left": "-+", "spin-right": "+-"}[primitive]
+    log = Log.load(result["log"])
+    for side, sign in zip(("left", "right"), wanted, strict=True):
+        assert result["after"][side] == {"+": "forward", "-": "backward"}[sign]
+        assert log.omega(side)[-10:].mean() * {"+": 1, "-": -1}[sign] > 10
+
+
+def test_drive_stopped_rests_by_a_pulse_of_k_and_stays_at_rest(kickctl):
+    status, out, _ = kickctl("drive", "stopped", "--seed", "1", "--json")
+    result = json.loads(out)
+    assert status == 0
+    assert result["after"] == {"left": "stopped", "right": "stopped"}
+    assert {kick["mode"] for kick in result["kicks"]} == {"pulse"}
+    log = Log.load(result["log"])
+    assert log.records[-1].state == 1
+    for side in ("left", "right"):
+        assert np.ptp(log.column(side + "_phi_rad")[-30:]) <= np.pi / 180 + 1e-9
+
+
+def test_record_then_list_export_replay(kickctl):
+    status, out, _ = kickctl("record", "3", "--seed", "1", "--json")
+    result = json.loads(out)
+    assert (status, result["missing"]) == (0, 0)
+    assert 100 <= result["ticks"] <= 103
+    listed = json.loads(kickctl("log", "list", "--json")[1])
+    assert [(row["path"], row["ticks"]) for row in listed] == [(result["log"], result["ticks"])]
+    assert kickctl("log", "export", result["log"], "--format", "npz")[0] == 0
+    table = np.load(result["log"].replace(".mcap", ".npz"))
+    assert len(table["tick"]) == result["ticks"]
+    assert kickctl("log", "replay", result["log"])[0] == 0
+
+
+def test_pull_fetches_the_black_box(kickctl):
+    result = json.loads(kickctl("log", "pull", "--brick", "sim://?seed=2", "--json")[1])
+    log = Log.load(result["log"])
+    assert log.records[0].tick == 0
+    assert len(log) == result["ticks"] > 0
+
+
+def test_replay_finds_a_changed_bit(kickctl):
+    path = json.loads(kickctl("record", "2", "--seed", "1", "--json")[1])["log"]
+    log = Log.load(path)
+    changed = log.records[40]
+    log.records[40] = changed._replace(left_x1=np.nextafter(changed.left_x1, 2.0))
+    log.save("changed.mcap")
+    status, out, _ = kickctl("log", "replay", "changed.mcap", "--json")
+    assert status == 1
+    assert str(changed.tick) in json.loads(out)["first_mismatch"]
+    assert "left_x1" in json.loads(out)["first_mismatch"]
+
+
+def test_params_list_has_what_scripts_rely_on(kickctl):
+    rows = {row["name"]: row for row in json.loads(kickctl("params", "list", "--json")[1])}
+    assert set(rows) >= {"a", "tau_s", "k", "tick_s", "max_duty_pct", "rods", "polarity_left", "polarity_right", "link_loss"}
+    for row in rows.values():
+        assert set(row) >= {"name", "value", "unit", "minimum", "maximum", "default", "doc"}
+    assert (rows["k"]["value"], rows["tau_s"]["value"], rows["tick_s"]["value"], rows["max_duty_pct"]["value"]) == (8.0, 0.25, 0.03, 85.0)
+
+
+def test_params_set_and_get(kickctl):
+    assert json.loads(kickctl("params", "set", "k=2.5", "link_loss=hold", "--json")[1]) == {"k": 2.5, "link_loss": "hold"}
+    assert json.loads(kickctl("params", "get", "k", "--json")[1]) == {"k": 8.0}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("params", "set", "k=nan"),
+        ("params", "set", "k=1e9"),
+        ("params", "set", "k=2", "tau_s=0.05"),
+        ("params", "set", "mass=1"),
+        ("params", "set", "k"),
+        ("params", "get"),
+        ("params", "list", "k"),
+        ("drive", "sideways"),
+        ("record", "-1"),
+        ("record", "nan"),
+        ("log", "export", "nowhere.mcap"),
+        ("log", "replay", "nowhere.mcap"),
+        ("log", "list", "nowhere"),
+        ("fly",),
+        (),
+    ],
+)
+def test_wrong_use_exits_2_in_words(kickctl, arguments):
+    status, out, err = kickctl(*arguments)
+    assert (status, out) == (2, "")
+    assert "Traceback" not in err
+    assert len(err) > 20
+
+
+def test_an_error_is_an_object_too_when_json_is_asked_for(kickctl):
+    status, out, err = kickctl("status", "--brick", "tcp://127.0.0.1:1", "--json")
+    error = json.loads(out)["error"]
+    assert status == error["status"] == 3
+    assert error["message"] in err
+
+
+def test_options_may_stand_before_the_verb_or_after_it(kickctl):
+    before = json.loads(kickctl("--json", "--seed", "7", "status")[1])
+    after = json.loads(kickctl("status", "--seed", "7", "--json")[1])
+    assert before["seed"] == after["seed"] == 7
+
+
+def test_status_start_stop_clear(kickctl):
+    assert json.loads(kickctl("status", "--json")[1])["state"] == "running"
+    assert json.loads(kickctl("start", "--brick", "sim://?idle=1", "--json")[1])["state"] == "running"
+    assert json.loads(kickctl("stop", "--json")[1])["state"] == "stopped"
+    assert kickctl("clear")[0] == 1
+
+
+def test_doctor_finds_the_simulated_robot_well(kickctl):
+    status, out, _ = kickctl("doctor", "--json")
+    assert (status, json.loads(out)["well"]) == (0, True)
+
+
+def test_doctor_points_at_an_open_token_file(kickctl):
+    token = kickctl.folder / "token"
+    token.write_text("00" * 32)
+    token.chmod(0o644)
+    status, out, _ = kickctl("doctor", "--brick", "tcp://127.0.0.1:1", "--json")
+    remedies = {finding["what"]: finding["remedy"] for finding in json.loads(out)["findings"]}
+    assert status != 0
+    assert remedies["token"]
+
+
+def test_watch_shows_both_wheels(kickctl):
+    status, out, _ = kickctl("watch", "--seconds", "0.5", "--json", "--seed", "1")
+    lines = [json.loads(line) for line in out.splitlines()]
+    assert status == 0
+    assert len(lines) >= 3
+    assert lines[0]["tick"] < lines[-1]["tick"]
+    assert {"left", "right", "state"} <= set(lines[0])

@@ -1,0 +1,196 @@
+"""A robot on a rig: motors that do what the test says, time that passes when the test says, a link without a network."""
+
+from collections import deque
+
+from host.conversation import Conversation
+from robot import motors, wire
+from robot.blackbox import BlackBox
+from robot.loop import Loop
+from robot.motors import MotorFault
+from robot.record import STRUCT, unpack
+from robot.session import Session
+
+TOKEN = bytes(range(wire.TOKEN_BYTES))
+
+
+class Clock:
+    """Virtual time. Each wait ends at its deadline, or as much later as `lates` says next."""
+
+    def __init__(self, lates=()):
+        self.time = 0.0
+        self.lates = deque(lates)
+
+    def now(self):
+        return self.time
+
+    def wait(self, deadline, serve):
+        serve(0.0)
+        self.time = max(self.time, deadline) + (self.lates.popleft() if self.lates else 0.0)
+
+
+class Motor(motors.Motor):
+    """Turns by `turn` rad with every reading, whatever its duty; fails at whatever `fails` names: read, write, stop."""
+
+    def __init__(self, angle=0.0, turn=0.0):
+        self.angle = angle - turn
+        self.turn = turn
+        self.duty = 0
+        self.done = []
+        self.fails = set()
+
+    def _do(self, what):
+        self.done.append(what)
+        if what in self.fails:
+            raise MotorFault(f"cannot {what}")
+
+    def angle_rad(self):
+        self._do("read")
+        self.angle += self.turn
+        return self.angle
+
+    def write_duty(self, duty_pct):
+        assert type(duty_pct) is int
+        assert -100 <= duty_pct <= 100
+        self._do("write")
+        self.duty = duty_pct
+
+    def stop(self):
+        self._do("stop")
+        self.duty = 0
+
+
+class Rig:
+    """The loop and its parts."""
+
+    def __init__(self, left=None, right=None, lates=(), seed=1, capacity=None, battery=None):
+        self.motors = (left or Motor(), right or Motor())
+        self.clock = Clock(lates)
+        self.loop = Loop(self.motors, battery, self.clock, seed)
+        if capacity is not None:
+            self.loop.blackbox = BlackBox(self.loop.params.values(), capacity)
+        self.served = []
+
+    def run(self, ticks=1):
+        """Let the loop's own `run` do so many ticks, without stopping the motors at its end as it would."""
+        for _ in range(ticks):
+            self.clock.wait(self.loop.deadline, self.served.append)
+            self.loop.tick()
+
+    @property
+    def duties(self):
+        return tuple(motor.duty for motor in self.motors)
+
+    @property
+    def records(self):
+        """Everything that the black box still has."""
+        box = self.loop.blackbox
+        return [unpack(box.read(tick, 1))[0] for tick in range(max(0, box.oldest_tick), box.next_tick)]
+
+    @property
+    def last(self):
+        return self.records_from(self.loop.blackbox.next_tick - 1)[0]
+
+    def records_from(self, tick):
+        box = self.loop.blackbox
+        return [unpack(box.read(number, 1))[0] for number in range(tick, box.next_tick)]
+
+    @property
+    def events(self):
+        """What the journal still has."""
+        return [event for _, event in self.loop.blackbox._journal]
+
+    def fingerprint(self):
+        """Everything about the robot that a request could change: two are equal if nothing was."""
+        loop = self.loop
+        box = loop.blackbox
+        return {
+            "params": dict(loop.params.values()),
+            "safety": (loop.safety.state, loop.safety.reason),
+            "lease": (loop.lease.holder, loop.lease.name, loop.lease._heard),
+            "wheels": [(wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel in loop._wheels],
+            "kick": loop._kick and loop._kick.as_dict(),
+            "kicks": (dict(loop._kick_begins), list(loop._kick_ids)),
+            "motors": [(motor.duty, len(motor.done)) for motor in self.motors],
+            "box": (box.next_tick, box.next_event, box.oldest_tick, len(box._journal), bytes(box._ring)),
+            "counts": (loop.missed, loop.overruns, loop.clamped, list(loop.lateness)),
+            "random": loop._random.getstate(),
+            "time": (loop.deadline, loop._before, loop.done),
+        }
+
+
+class Client:
+    """A host's conversation with one session of the robot, both without any I/O. `stream` collects what a subscription brought."""
+
+    def __init__(self, loop, token=TOKEN, name="tester", client=None):
+        self.session = Session(loop, TOKEN, "boot")
+        self.talk = Conversation(token, name, client or name)
+        self.stream = []
+        self.talk.begin()
+
+    def greet(self):
+        """Say hello, and prove the token if there is one. Returns self."""
+        self.give(self.talk.hello_frame())
+        if self.talk.token is not None:
+            self.give(self.talk.auth_frame())
+        return self
+
+    def give(self, data):
+        """Hand bytes to the robot, and its answers back."""
+        decoder = wire.Decoder()
+        decoder.feed(data)
+        while (frame := decoder.next()) is not None:
+            self._take(self.session.receive(*frame))
+
+    def ask(self, do, **arguments):
+        """The result of a request; raises what the robot refuses as KickctlError."""
+        return self._exchange(*self.talk.request(do, arguments, sealed=False))
+
+    def tell(self, do, **arguments):
+        """The result of a sealed command."""
+        return self._exchange(*self.talk.request(do, arguments, sealed=True))
+
+    def stop(self):
+        """The result of a stop frame."""
+        return self._exchange(*self.talk.stop_frame())
+
+    def flow(self, frames=1000000):
+        """Take so many frames of the subscription."""
+        for _ in range(frames):
+            frame = self.session.stream()
+            if frame is None:
+                break
+            self._take(frame)
+
+    @property
+    def records(self):
+        return [item for item in self.stream if not isinstance(item, dict)]
+
+    @property
+    def events(self):
+        return [item for item in self.stream if isinstance(item, dict)]
+
+    def _exchange(self, number, frame):
+        self.give(frame)
+        result = self.talk.answer(number)
+        assert result is not None, "no answer"
+        return result
+
+    def _take(self, data):
+        for event, records in self.talk.feed(data):
+            self.stream += records if event is None else [event]
+
+
+def whole(data):
+    """The frames in bytes that hold nothing else."""
+    decoder = wire.Decoder()
+    decoder.feed(data)
+    frames = []
+    while (frame := decoder.next()) is not None:
+        frames.append(frame)
+    assert decoder.discarded == 0
+    return frames
+
+
+def packed(records):
+    """Records as bytes, for a comparison of every bit."""
+    return b"".join(STRUCT.pack(*record) for record in records)

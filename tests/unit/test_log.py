@@ -1,0 +1,129 @@
+"""A log in memory keeps the order of the stream, and derives from it no more than it says."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from host.log import Log
+from robot.record import NAMES
+from tests.fakes import Rig, eventful
+
+
+def running(ticks, joined=0):
+    rig = Rig()
+    rig.loop.start()
+    rig.run(ticks)
+    return rig.log(joined)
+
+
+def test_the_stream_comes_out_as_it_went_in():
+    rig = eventful()
+    log = rig.log()
+    copy = Log()
+    log.play(copy)
+    assert (copy.records, copy.events, copy.places) == (log.records, log.events, log.places)
+    for event, place in zip(log.events, log.places, strict=True):
+        assert log.records[place].tick == event["tick"] if place < len(log) else event["tick"] == log.records[-1].tick + 1
+    assert list(log.stream()) == list(copy.stream())
+    assert len(list(log.stream())) == len(log.records) + len(log.events)
+
+
+def test_columns_are_the_channels():
+    log = eventful().log()
+    arrays = log.arrays()
+    assert tuple(arrays) == NAMES
+    for name, array in arrays.items():
+        assert array.tolist() == [getattr(record, name) for record in log.records]
+    assert np.all(np.diff(arrays["tick"]) == 1)
+    assert arrays["left_duty_pct"].min() < 0
+    with pytest.raises(KeyError, match="left_x1"):
+        log.column("x1")
+
+
+def test_differences_of_ticks_do_not_wrap_around():
+    log = running(3)
+    log.records.reverse()
+    assert np.diff(log.column("tick")).tolist() == [-1, -1]
+
+
+def test_speed_is_the_turn_over_the_time_since_the_record_before():
+    log = running(30)
+    omega = log.omega("left")
+    for row in (1, 7, 22, 29):
+        before, now = log.records[row - 1], log.records[row]
+        assert omega[row] == (now.left_phi_rad - before.left_phi_rad) / (now.t_s - before.t_s)
+    assert omega[0] == omega[1]
+    assert np.abs(omega).max() > 5
+    assert np.isnan(running(1).omega("left")).tolist() == [True]
+    assert Log().omega("right").tolist() == []
+
+
+def test_no_speed_spans_a_restart():
+    log = running(20)
+    log.take_event({"event": "restart", "tick": 0, "boot": "b"})
+    # Ticks and times go on as if nothing had been: only the event tells.
+    log.take_records([record._replace(right_phi_rad=record.right_phi_rad + 100) for record in running(35).records[20:]])
+    assert log.restarts() == [20]
+    omega = log.omega("right")
+    assert omega[20] == omega[21]
+    assert np.abs(omega).max() < 20
+    first, second = log.records[:20], log.records[20:]
+    assert log.seconds == first[-1].t_s - first[0].t_s + second[-1].t_s - second[0].t_s
+
+
+@pytest.mark.parametrize(
+    ("pieces", "gaps"),
+    [
+        ([(0, 20)], []),
+        ([(7, 20)], []),
+        ([(0, 5), (5, 20)], []),
+        ([(0, 5), (6, 9), (15, 20)], [(5, 6), (9, 15)]),
+    ],
+)
+def test_gaps_are_found(pieces, gaps):
+    whole = running(20)
+    log = Log()
+    for first, end in pieces:
+        log.take_records(whole.records[first:end])
+    assert log.missing() == gaps
+
+
+def test_what_a_restarted_robot_no_longer_has_is_missing():
+    log = running(20)
+    log.take_event({"event": "restart", "tick": 0, "boot": "b"})
+    log.take_records(running(40).records[30:])
+    assert log.missing() == [(0, 30)]
+    log.take_event({"event": "restart", "tick": 0, "boot": "c"})
+    log.take_records(running(5).records)
+    assert log.missing() == [(0, 30)]
+
+
+def test_kicks_are_found_at_the_record_in_which_they_begin():
+    rig = Rig()
+    rig.loop.start()
+    rig.run(10)
+    begin = rig.kick("phase", ticks=4)
+    rig.run(10)
+    log = rig.log(tick=3)
+    [(row, kick)] = log.kicks()
+    assert log.records[row].tick == kick["begin"] == begin
+    assert log.records[row].kick != 0
+    assert log.records[row - 1].kick == 0
+
+
+def test_a_log_introduces_itself():
+    log = running(20)
+    log.info["brick"] = "sim://"
+    assert repr(log).startswith("<Log: 20 ticks, 0.")
+    assert "sim://" in repr(log)
+    assert "missing" not in repr(log)
+    del log.records[4:6]
+    assert "2 ticks missing" in repr(log)
+    assert repr(Log()) == "<Log: 0 ticks, 0.00 s, kicks: 0>"
+
+
+def test_a_log_alone_loads_nothing_heavy():
+    code = "import sys, host.log; sys.exit(bool({'numpy', 'mcap', 'matplotlib'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
