@@ -10,22 +10,21 @@ Calls block. Links to real robots are kept alive by a thread between calls; an e
 from __future__ import annotations
 
 import os
-import platform
-import subprocess
 import threading
 import uuid
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import UTC, datetime
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from host.conversation import Conversation
+from host.conversation import Conversation, Samples
 from host.errors import KickctlError, NoLink, RefusedByRobot
 from host.links import SIM, Link, LinkLost, make_link
-from robot import __version__
-from robot.blackbox import Snapshot
+from host.origin import origin
+from host.subscription import Subscription
 from robot.record import Record
 from robot.token import TokenError, default_path, load
 
@@ -38,6 +37,8 @@ if TYPE_CHECKING:
 HEARTBEAT_S = 0.1
 ANSWER_S = 5.0
 RECONNECT_S = 10.0
+# How long a new subscription may take to show before it is asked for again.
+RESUBSCRIBE_S = 1.0
 _RECENT_RECORDS = 400
 
 
@@ -74,15 +75,19 @@ class Robot:
         self._talk = Conversation(token, name, client=uuid.uuid4().hex)
         self._lock = threading.RLock()
         self._taps: list[Tap] = []
-        self._state = Snapshot({})
-        self._next_tick: int | None = None
+        self._place = Subscription()
+        self._subscribe_due = 0.0
         self._recent: deque[Record] = deque(maxlen=_RECENT_RECORDS)
         self._leased = False
         self._heartbeat_due = 0.0
         self._closed = threading.Event()
         self._broken: KickctlError | None = None
         with self._lock:
-            self._open()
+            try:
+                self._open()
+            except KickctlError:
+                link.close()
+                raise
             self.hello = self._talk.hello
             self.started_utc = datetime.now(UTC)
             self.clock_zero_s = self._clock_zero()
@@ -202,8 +207,9 @@ class Robot:
         """Feed a tap with everything that the robot sends from now on."""
         with self._lock:
             self._subscribe()
-            if self._next_tick is not None:
-                tap.take_event(self._state.as_event(self._next_tick))
+            snapshot = self._place.snapshot()
+            if snapshot is not None:
+                tap.take_event(snapshot)
             self._taps.append(tap)
 
     def remove_tap(self, tap: Tap) -> None:
@@ -216,31 +222,15 @@ class Robot:
         with self._lock:
             self._request("unsubscribe")  # its answer comes behind the last record of the subscription that there was
             until = self._request("status")["tick"]
-            self._next_tick = None
+            self._place.begin(0)
+            self._subscribe_due = 0.0
             self._taps.append(tap)
-            self._request("subscribe", {"from": 0})
-            while self._next_tick is None or self._next_tick < until:
-                self.pump(HEARTBEAT_S)
+            self.wait(inf, until=lambda: (self._place.next_tick or 0) >= until)
             self.remove_tap(tap)
 
     def info(self) -> dict[str, Any]:
         """What a log must say of its origin."""
-        status = self.status()
-        return {
-            "brick": self.link.uri,
-            "seed": self.hello["seed"],
-            "boot": self.hello["boot"],
-            "robot_software": self.hello["software"],
-            "robot_machine": self.hello["machine"],
-            "host_software": __version__,
-            "host_machine": f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}",
-            "commit": _commit(),
-            "params": status["params"],
-            "polarity": {side: status["params"]["polarity_" + side] for side in ("left", "right")},
-            "battery_v": status["battery_v"],
-            "clock_zero_s": self.clock_zero_s,
-            "started_utc": self.started_utc.isoformat(),
-        }
+        return origin(self.link.uri, self.hello, self.status(), self.clock_zero_s, self.started_utc)
 
     def pump(self, timeout_s: float) -> bool:
         """Take in what the robot has sent, waiting up to timeout_s for it. Returns whether anything came."""
@@ -248,18 +238,24 @@ class Robot:
             if self._broken is not None:
                 raise self._broken
             try:
-                if self._leased and self.link.now() >= self._heartbeat_due:
-                    self._heartbeat_due = self.link.now() + HEARTBEAT_S
-                    self.link.send(self._talk.request("heartbeat", {}, sealed=True)[1])
+                self._send_what_is_due(self.link.now())
                 data = self.link.receive(timeout_s)
             except LinkLost:
                 self._reopen()
                 return False
-            for event, records in self._talk.feed(data):
-                self._take(event, records)
+            for item in self._talk.feed(data):
+                self._take(item)
             return bool(data)
 
     # Inner workings
+
+    def _send_what_is_due(self, now: float) -> None:
+        if self._leased and now >= self._heartbeat_due:
+            self._heartbeat_due = now + HEARTBEAT_S
+            self.link.send(self._talk.request("heartbeat", {}, sealed=True)[1])
+        if self._place.next_tick is not None and not self._place.following and now >= self._subscribe_due:
+            self._subscribe_due = now + RESUBSCRIBE_S
+            self.link.send(self._talk.request("subscribe", {"from": self._place.next_tick}, sealed=False)[1])
 
     def _control(self, command: str, **arguments: Any) -> int:
         if not self._leased:
@@ -272,7 +268,7 @@ class Robot:
             if sealed and not self._talk.trusted:
                 raise RefusedByRobot(
                     "this machine does not have the robot's token, so it may only look, and stop the robot",
-                    f"copy the robot's token file to {default_path()}, mode 600",
+                    f"`./deploy.sh` gives it to both; or copy the robot's token file to {default_path()}, mode 600",
                 )
             return self._exchange(lambda: self._talk.request(command, arguments or {}, sealed), command, ANSWER_S)
 
@@ -297,6 +293,7 @@ class Robot:
                 self.pump(min(HEARTBEAT_S, patience_s))
 
     def _open(self) -> None:
+        """Say hello, prove the token, and take the lease again if this host had it."""
         self.link.open()
         self._talk.begin()
         try:
@@ -305,12 +302,14 @@ class Robot:
             if self._talk.token is not None:
                 self.link.send(self._talk.auth_frame())
                 self._await(lambda: self._talk.trusted)
+            if self._leased:
+                self._retake_lease()
         except LinkLost as error:
             self._talk.raise_refusal()
             raise NoLink(f"the robot at {self.link.uri} hung up: {error}", "is another program listening at that port?") from error
 
     def _await(self, arrived: Callable[[], bool]) -> None:
-        until = self.link.now() + ANSWER_S
+        until = self.link.now() + float(getattr(self.link, "answer_s", ANSWER_S))
         while not arrived():
             if self.link.now() > until:
                 raise NoLink(f"nothing that speaks this protocol answers at {self.link.uri}", "is it the robot's port?")
@@ -318,7 +317,7 @@ class Robot:
             self._talk.raise_refusal()
 
     def _reopen(self) -> None:
-        """Find the robot again, go on in its record where the link broke, and take the lease again if this host had it."""
+        """Find the robot again, to go on in its record where the link broke."""
         until = self.link.now() + RECONNECT_S
         pause = 0.05
         while True:
@@ -330,18 +329,22 @@ class Robot:
                     self._broken = NoLink(f"the link to {self.link.uri} broke and did not come back: {error.message}", error.hint)
                     raise self._broken from error
                 pause = min(1.0, 2.0 * pause)
+        self._place.interrupt()
+        self._subscribe_due = 0.0
         if self._talk.hello["boot"] != self.hello["boot"]:
             self.hello = self._talk.hello
             self.clock_zero_s = self._clock_zero()
-            self._take({"event": "restart", "tick": 0, "boot": self.hello["boot"], "clock_zero_s": self.clock_zero_s}, [])
-            self._next_tick = None if self._next_tick is None else int(self.hello["oldest_tick"])
-        if self._next_tick is not None:
-            self._request("subscribe", {"from": self._next_tick})
-        if self._leased:
-            try:
-                self._request("lease", sealed=True)
-            except KickctlError:
-                self._leased = False
+            if self._place.next_tick is not None:
+                self._place.begin(self.hello["oldest_tick"])
+            self._tell({"event": "restart", "tick": 0, "boot": self.hello["boot"], "clock_zero_s": self.clock_zero_s})
+
+    def _retake_lease(self) -> None:
+        number, frame = self._talk.request("lease", {}, sealed=True)
+        self.link.send(frame)
+        try:
+            self._await(lambda: self._talk.answer(number) is not None)
+        except RefusedByRobot:
+            self._leased = False
 
     def _clock_zero(self) -> float:
         """UTC, in Unix seconds, when the robot's clock was at zero."""
@@ -349,46 +352,36 @@ class Robot:
 
     def _subscribe(self) -> None:
         with self._lock:
-            if self._next_tick is None:
-                self._request("subscribe")
+            if self._place.next_tick is None:
+                self._subscribe_due = self.link.now() + RESUBSCRIBE_S
+                tick = self._request("subscribe")["tick"]
+                if self._place.next_tick is None:
+                    self._place.begin(tick)
 
-    def _take(self, event: dict[str, Any] | None, records: list[Record]) -> None:
-        if event is not None:
-            if event["event"] == "snapshot":
-                self._state = Snapshot(event["params"], event["kick"])
-                self._next_tick = event["tick"]
-            else:
-                self._state.take(event)
-            for tap in self._taps:
-                tap.take_event(event)
-        if records:
-            self._next_tick = records[-1].tick + 1
-            self._recent.extend(records)
-            for tap in self._taps:
-                tap.take_records(records)
+    def _take(self, item: dict[str, Any] | Samples) -> None:
+        if isinstance(item, Samples):
+            fresh = self._place.take_samples(item)
+            if fresh:
+                self._recent.extend(fresh)
+                for tap in self._taps:
+                    tap.take_records(fresh)
+        else:
+            event = self._place.take_event(item)
+            if event is not None:
+                self._tell(event)
+
+    def _tell(self, event: dict[str, Any]) -> None:
+        for tap in self._taps:
+            tap.take_event(event)
 
     def _keep_alive(self) -> None:
         while not self._closed.wait(HEARTBEAT_S / 2):
             if self._lock.acquire(blocking=False):
                 try:
-                    if not self._closed.is_set() and (self._leased or self._next_tick is not None):
+                    if not self._closed.is_set() and (self._leased or self._place.next_tick is not None):
                         while self.pump(0.0):
                             pass
                 except KickctlError:
                     return
                 finally:
                     self._lock.release()
-
-
-def _commit() -> str:
-    """The commit of the checkout that this runs from, with a '+' if it was changed; empty outside of one."""
-    root = Path(__file__).resolve().parent.parent
-    if not (root / ".git").exists():
-        return ""
-    try:
-        done = subprocess.run(
-            ["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True, timeout=5, check=False
-        )
-    except (OSError, subprocess.TimeoutExpired):
-        return ""
-    return done.stdout.strip()

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import os
+import struct
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot
 from robot import wire
 from robot.record import Record, unpack
 
 _MAX_UNCLAIMED = 64
+_HELLO_FIELDS = {"boot": str, "software": str, "machine": str, "seed": int, "tick": int, "oldest_tick": int, "clock_s": float}
+
+
+class Samples(NamedTuple):
+    """Records that follow one another and stand before the event numbered `next_event`."""
+
+    next_event: int
+    records: list[Record]
 
 
 class Conversation:
@@ -37,6 +46,7 @@ class Conversation:
         self.trusted = False
         self.session += 1
         self._counter = 0
+        self._handshake = None
         self._decoder = wire.Decoder()
         self._answers.clear()
         self._refusal = None
@@ -77,7 +87,7 @@ class Conversation:
             return None
         if "error" in message:
             raise from_robot(message["error"])
-        result: dict[str, Any] = message.get("result", {})
+        result: dict[str, Any] = message["result"]
         return result
 
     def raise_refusal(self) -> None:
@@ -86,43 +96,55 @@ class Conversation:
             refusal, self._refusal = self._refusal, None
             raise from_robot(refusal)
 
-    def feed(self, data: bytes) -> Iterator[tuple[dict[str, Any] | None, list[Record]]]:
+    def feed(self, data: bytes) -> Iterator[dict[str, Any] | Samples]:
         """Take in bytes; yields the events and the records among what they complete, in order. Raises NoLink if it is no robot."""
         self._decoder.feed(data)
         return iter(list(self._messages()))
 
-    def _messages(self) -> Iterator[tuple[dict[str, Any] | None, list[Record]]]:
+    def _messages(self) -> Iterator[dict[str, Any] | Samples]:
         while (frame := self._decoder.next()) is not None:
             kind, payload = frame
             try:
                 if kind == wire.SAMPLES:
-                    yield None, unpack(payload)
+                    number, records = wire.open_samples(payload)
+                    yield Samples(number, unpack(records))
                 elif kind == wire.EVENT:
-                    yield wire.load(payload), []
+                    yield _checked_event(wire.load(payload))
                 else:
                     self._control(kind, wire.load(payload))
-            except (wire.BadMessage, ValueError, KeyError) as error:
+            except (wire.BadMessage, ValueError, KeyError, TypeError, AttributeError, struct.error) as error:
                 raise NoLink(f"the robot sends what this release does not understand: {error}", "run the same release on both") from error
 
     def _control(self, kind: int, message: dict[str, Any]) -> None:
         if kind == wire.HELLO:
-            if not isinstance(message.get("nonce"), str) or "boot" not in message:
-                raise wire.BadMessage("a hello without nonce or boot")
-            self.hello = message
-        elif kind == wire.AUTH:
+            if message["host_nonce"] == self._nonce.hex():
+                bytes.fromhex(message["nonce"])
+                self.hello = {**message, **{name: of_type(message[name]) for name, of_type in _HELLO_FIELDS.items()}}
+        elif kind == wire.AUTH and self._handshake is not None:
             if not wire.same(bytes.fromhex(str(message.get("proof"))), self._handshake.robot_proof):
                 raise RefusedByRobot(
                     "this robot does not have the token either: it may be another one", "check its address and the token file"
                 )
             self.trusted = True
         elif kind == wire.REPLY:
-            number = message.get("id")
-            if number is None and "error" in message:
-                self._refusal = message["error"]
-            else:
-                self._answers[number] = message
+            number, outcome = message["id"], "error" if "error" in message else "result"
+            reply = {outcome: {**message[outcome]}}
+            if number is None and outcome == "error":
+                self._refusal = reply[outcome]
+            elif self.hello:  # before it come the answers to whoever used this line before
+                self._answers[number] = reply
                 while len(self._answers) > _MAX_UNCLAIMED:
                     del self._answers[next(iter(self._answers))]
+
+
+def _checked_event(event: dict[str, Any]) -> dict[str, Any]:
+    """The event, if it has what everybody relies on; raises KeyError or BadMessage."""
+    places = event["tick"], event["from" if event["event"] == "lost" else "number"]
+    if event["event"] == "snapshot":
+        _ = {**event["params"]}, event["kick"]
+    if not all(isinstance(place, int) for place in places):
+        raise wire.BadMessage("an event that has no place in the stream")
+    return event
 
 
 def _bytes(frame: Any) -> bytes:

@@ -1,4 +1,4 @@
-"""Ways to a robot: sim:// (embedded, virtual time), tcp://host:port and serial:///dev/...?baud=. Bytes in, bytes out."""
+"""Ways to a robot: sim:// (embedded, virtual time), tcp://host:port, ssh://user@host and serial:///dev/...?baud=. Bytes in, bytes out."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ def _split(uri: str) -> _Parts:
     return _Parts(parts.scheme, parts.hostname or "", port, parts.path, dict(parse_qsl(parts.query, keep_blank_values=True)))
 
 
-_FORMS = "addresses are sim://, tcp://HOST:PORT and serial:///dev/DEVICE?baud=RATE"
+_FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
 
 
 def make_link(uri: str, seed: int | None = None) -> Link:
@@ -178,6 +178,10 @@ def make_link(uri: str, seed: int | None = None) -> Link:
         return SimLink.from_options(uri, parts.options, seed)
     if parts.scheme == "tcp" and parts.host:
         return TcpLink(uri, parts.host, parts.port or PORT)
+    if parts.scheme == "ssh" and parts.host:
+        from host.ssh_link import SshLink
+
+        return SshLink(uri)
     if parts.scheme == "serial" and parts.path:
         baud = parts.options.get("baud", str(BAUD))
         if not baud.isdigit():

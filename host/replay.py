@@ -111,7 +111,7 @@ class _Controller:
         for wheel in self.wheels:
             # From the recorded torque: rounding to whole percents may turn a difference in the last bit into one of 1.
             torque = getattr(record, wheel.side + "_torque")
-            duty = limit_duty(torque, self.params.max_duty_pct) if record.state == RUNNING else 0
+            duty = limit_duty(self.params.duty_scale * torque, self.params.max_duty_pct) if record.state == RUNNING else 0
             replayed = (("x1", wheel.x1), ("x2", wheel.x2), ("force", wheel.force), ("torque", wheel.torque), ("duty_pct", duty))
             for name, value in replayed:
                 recorded = getattr(record, f"{wheel.side}_{name}")

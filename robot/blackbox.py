@@ -58,8 +58,8 @@ class BlackBox(object):
         self.next_tick += 1
 
     def note(self, event, **details):
-        """Put an event into the journal, stamped with the first tick that it concerns: the one about to run. Returns that tick."""
-        entry = dict(details, event=event, tick=self.next_tick)
+        """Put an event into the journal, with its number and the first tick that it concerns: the one about to run. Returns that tick."""
+        entry = dict(details, event=event, tick=self.next_tick, number=self.next_event)
         self._journal.append((self.next_event, entry))
         self.next_event += 1
         while len(self._journal) > JOURNAL_CAPACITY or self._journal[0][1]["tick"] < self.next_tick - self._capacity:

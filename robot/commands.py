@@ -30,7 +30,7 @@ def _status(loop, session, message):
 def _describe(loop, session, message):
     tables = {"params": params.describe, "channels": record.describe, "commands": describe}
     table = message.get("table")
-    if table not in tables:
+    if not isinstance(table, str) or table not in tables:
         raise Refused("usage", "there is no table {!r}".format(table), "tables are: " + ", ".join(sorted(tables)))
     return {"table": tables[table]()}
 

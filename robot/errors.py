@@ -1,13 +1,16 @@
 """The one way in which the robot says no."""
 
 
+LONGEST_MESSAGE = 200  # characters, of which JSON may need twelve bytes each: what is refused may be long, its refusal fits into a frame
+
+
 class Refused(Exception):
     """A request that was not carried out and changed nothing. `code` is for programs, `message` says what and why, `hint` what to do."""
 
     def __init__(self, code, message, hint=""):
         Exception.__init__(self, message)
         self.code = code
-        self.message = message
+        self.message = message[:LONGEST_MESSAGE]
         self.hint = hint
 
     def as_dict(self):

@@ -9,6 +9,7 @@ from robot.errors import Refused
 from robot.kicks import DIRECTION_TICKS, MODES, WHEELS, direction, parse
 from robot.motors import MotorFault
 from robot.params import LONGEST_STEP_TICKS, Params
+from robot.power import Power
 from robot.safety import FAULT, HELD, RUNNING, STOPPED, Lease, Safety, limit_duty
 from robot.wheel import Wheel
 
@@ -33,18 +34,18 @@ class Loop(object):
         self.blackbox = BlackBox(self.params.values())
         self.clock = clock
         self.seed = seed
-        self.battery_v = None if battery is None else battery.voltage_v()
         self.lateness = [0] * (len(LATENESS_EDGES_S) + 1)
         self.missed = self.overruns = self.clamped = 0
         self.done = False
         self._motors = motors
-        self._battery = battery
+        self._power = Power(battery)
         self._random = random.Random(seed)
         self._wheels = [Wheel(side) for side in WHEELS]
         self._travel = [deque(maxlen=DIRECTION_TICKS + 1) for _ in WHEELS]
         self._kick = None
         self._kick_begins = {}
         self._kick_ids = deque()
+        self.battery_v = self._power.latest_v
         self.epoch = self._before = self.deadline = clock.now()
 
     def run(self, serve):
@@ -114,7 +115,7 @@ class Loop(object):
             if self.safety.state == FAULT:
                 self._stop_motors()  # again, for one that did not obey
             return (0, 0)
-        duties = [limit_duty(wheel.torque, params.max_duty_pct) for wheel in self._wheels]
+        duties = [limit_duty(params.duty_scale * wheel.torque, params.max_duty_pct) for wheel in self._wheels]
         for motor, polarity, duty in zip(self._motors, polarities, duties):
             motor.write_duty(polarity * duty)
         return duties
@@ -134,8 +135,22 @@ class Loop(object):
             + (left_phi, left.x1, left.x2, left.force, left.torque, duties[0])
             + (right_phi, right.x1, right.x2, right.force, right.torque, duties[1])
         )
-        if self._battery is not None and tick % BATTERY_TICKS == 0:
-            self.battery_v = self._battery.voltage_v()
+        if tick % BATTERY_TICKS == 0:
+            self._watch_power()
+
+    def _watch_power(self):
+        """Read the battery, say that it is low, stop when it is empty, and let the duties make up for its voltage if that is wanted."""
+        power = self._power
+        power.read()
+        self.battery_v = power.latest_v
+        warning, exhaustion = power.warning(), power.exhaustion()
+        if warning:
+            self.blackbox.note("battery", reason=warning)
+        if exhaustion and self.safety.state in (RUNNING, HELD):
+            self.stop(exhaustion)
+        scale = power.duty_scale() if self.params.battery_compensation == "on" else self.params.duty_scale
+        if scale != self.params.duty_scale:
+            self.set_params({"duty_scale": scale})
 
     def start(self):
         """Set the neurons to random potentials and run from the next tick on. Returns that tick. Raises Refused."""
@@ -154,7 +169,13 @@ class Loop(object):
         return self.blackbox.next_tick
 
     def clear(self):
-        """Leave a fault for the stopped state. Returns the tick. Raises Refused."""
+        """Leave a fault for the stopped state, once every motor is there. Returns the tick. Raises Refused."""
+        if self.safety.state == FAULT:
+            for motor in self._motors:
+                try:
+                    motor.find()
+                except MotorFault as fault:
+                    raise Refused("fault", "the fault stays: {}".format(fault)) from None
         self.safety.clear()
         return self.blackbox.note("clear")
 
@@ -203,9 +224,10 @@ class Loop(object):
         if policy == "stop":
             self.stop(reason)
         elif policy == "hold":
-            self.safety.hold(reason)
             self._stop_motors()
-            self.blackbox.note("hold", reason=reason)
+            if self.safety.state == RUNNING:
+                self.safety.hold(reason)
+                self.blackbox.note("hold", reason=reason)
 
     def _fail(self, reason):
         """Latch a fault; one that lasts, or follows from the first, is not told again."""

@@ -23,12 +23,20 @@ class Motor:
         """Stop and hold by the electrical brake. May be called at any time, any number of times; raises MotorFault if it failed."""
         raise NotImplementedError
 
+    def find(self):
+        """Find a motor that failed again, braked, its angle going on from where it was; nothing if it is well. Raises MotorFault.
+
+        What cannot be lost need not have this method of its own.
+        """
+
 
 class Battery:
-    """Where the motors' power comes from."""
+    """Where the motors' power comes from. Below warn_v (V) it should be charged, below stop_v it no longer can drive the robot."""
+
+    warn_v = stop_v = 0.0
 
     def voltage_v(self):
-        """The battery's voltage in V at this moment."""
+        """The battery's voltage in V at this moment, or None if it cannot be told."""
         raise NotImplementedError
 
 

@@ -25,6 +25,8 @@ _ROWS = (
     _number("k", "1", 0.0, 100.0, 8.0, "spring constant of the simulated rods"),
     _number("tick_s", "s", 0.01, 0.1, 0.03, "control period; tau_s must be at least three of them"),
     _number("max_duty_pct", "%", 0.0, 100.0, 85.0, "duty cycle at torque M = 1"),
+    _choice("battery_compensation", "off", ("off", "on"), "whether the robot itself sets duty_scale, to nominal / battery voltage"),
+    _number("duty_scale", "1", 0.5, 2.0, 1.0, "factor on every duty cycle; max_duty_pct bounds the product all the same"),
     _choice("rods", 2, (1, 2), "transmission rods on each wheel"),
     _choice("polarity_left", 1, (1, -1), "-1 if the left motor is mounted mirrored", at_rest_only=True),
     _choice("polarity_right", 1, (1, -1), "-1 if the right motor is mounted mirrored", at_rest_only=True),

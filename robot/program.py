@@ -6,8 +6,8 @@ import signal
 import sys
 
 from robot import token
+from robot.errors import Refused
 from robot.loop import Loop
-from robot.params import check_value
 from robot.server import Server
 
 PORT = 5425  # KICK on a telephone's keys
@@ -32,15 +32,21 @@ def choose_seed(options):
     return int.from_bytes(os.urandom(4), "big") if options.seed is None else options.seed
 
 
-def run(options, motors, battery, clock, seed):
-    """Serve and tick until SIGINT or SIGTERM. Prints READY when it listens. Returns the exit status."""
+def run(options, motors, battery, clock, seed, panels=()):
+    """Serve and tick until SIGINT or SIGTERM. Prints READY when it listens. Returns the exit status.
+
+    panels: what people see and touch on the robot; their serve(loop) is called in the time that ticks leave, and must return at once.
+    """
     try:
         secret, new = token.load_or_make(options.token)
     except token.TokenError as error:
         return _give_up(str(error))
     loop = Loop(motors, battery, clock, seed)
     if options.tick is not None:
-        loop.set_params({"tick_s": check_value("tick_s", options.tick)})
+        try:
+            loop.set_params({"tick_s": options.tick})
+        except Refused as refusal:
+            return _give_up("{}; {}".format(refusal.message, refusal.hint))
     server = Server(loop, secret)
     try:
         port = server.listen(options.host, options.port)
@@ -57,10 +63,18 @@ def run(options, motors, battery, clock, seed):
     if not options.idle:
         loop.start()
     print("READY tcp://{}:{}".format(options.host, port), flush=True)
+
+    def serve(timeout_s):
+        for panel in panels:
+            panel.serve(loop)
+        server.serve(timeout_s)
+
     try:
-        loop.run(server.serve)
+        loop.run(serve)
     finally:
         server.close()
+        for panel in panels:
+            panel.close()
     return 0
 
 

@@ -13,9 +13,12 @@ READ_BYTES = 2048
 # A peer that does not read is not read from either beyond this; its records wait in the black box.
 FULL_BYTES = 65536
 STREAM_BYTES = 16384
+# The kernel's part of what waits for a peer, which would grow to megabytes by itself.
+SEND_BUFFER_BYTES = 65536
 GREETING_S = 5.0
-ACCEPTS_PER_CALL = 4
 LINE_RETRY_S = 1.0
+# Nobody pauses for so long within a frame: what a line that is silent seems to have begun was noise.
+LINE_SILENCE_S = 0.2
 _LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
 
 
@@ -26,13 +29,19 @@ class Peer(object):
         self.link = link
         self.fd = link.fileno()
         self.session = session
-        self.since = since
+        self.since = self.heard = since
         self.lasting = lasting
         self.decoder = wire.Decoder()
         self.out = bytearray()
 
-    def read(self):
+    def read(self, now):
         """Take in what has arrived. False if the link is at its end."""
+        if self.lasting and not select.select((self.fd,), (), (), 0.0)[0]:
+            # Without anything to read a serial line answers with nothing, as it does at its end; a connection says "later".
+            if now - self.heard > LINE_SILENCE_S:
+                self.decoder.skip()
+            return True
+        self.heard = now
         try:
             data = os.read(self.fd, READ_BYTES)
         except OSError as error:
@@ -103,7 +112,7 @@ class Server(object):
         return self._listener.getsockname()[1]
 
     def adopt(self, link, lasting=False):
-        """Talk over an open, non-blocking link with fileno() and close(); a lasting one (a serial line) survives noise. Returns the Peer."""
+        """The Peer at an open, non-blocking link with fileno() and close(); a lasting one, a serial line, survives noise."""
         session = Session(self._loop, self._token, self.boot)
         peer = Peer(link, session, self._loop.clock.now(), lasting)
         self._peers.append(peer)
@@ -139,37 +148,38 @@ class Server(object):
         select.select(readers, writers, (), timeout_s)
 
     def _talk(self):
-        """One round over all links. Returns whether another round would find frames that have arrived already."""
-        if self._listener is not None:
-            self._accept()
+        """One round over all links. Returns whether another round would find peers or frames that have arrived already."""
+        now = self._loop.clock.now()
+        more = self._listener is not None and self._accept()
         for line in self._lines:
             self._mend(line)
-        more = False
         for peer in list(self._peers):
             answered = peer.answer()
             alive = True
             if not answered and len(peer.out) < FULL_BYTES:
-                alive = peer.read()
+                alive = peer.read(now)
                 answered = peer.answer()
             alive = peer.write() and alive
             more = more or answered
-            late = not peer.session.greeted and not peer.lasting and self._loop.clock.now() - peer.since > GREETING_S
+            late = not peer.session.greeted and not peer.lasting and now - peer.since > GREETING_S
             if not alive or late:
                 self._drop(peer)
         return more
 
     def _accept(self):
-        for _ in range(ACCEPTS_PER_CALL):
-            try:
-                link = self._listener.accept()[0]
-            except OSError:
-                return
-            link.setblocking(False)
-            link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            _detect_half_open(link)
-            if len(self._peers) >= MAX_PEERS:
-                self._make_room()
-            self.adopt(link)
+        """Take in one connection, so that it is heard before the next could push it out. Returns whether there was one."""
+        try:
+            link = self._listener.accept()[0]
+        except OSError:
+            return False
+        link.setblocking(False)
+        link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
+        _detect_half_open(link)
+        if len(self._peers) >= MAX_PEERS:
+            self._make_room()
+        self.adopt(link)
+        return True
 
     def _mend(self, line):
         now = self._loop.clock.now()

@@ -8,12 +8,20 @@ from robot import __version__, commands, wire
 from robot.errors import Refused
 from robot.record import STRUCT
 
-_BATCH = wire.MAX_PAYLOAD // STRUCT.size
+_BATCH = wire.MAX_SAMPLES // STRUCT.size
 
 
 def new_id():
     """Sixteen random bytes as text: a nonce, or the name of a boot."""
     return binascii.hexlify(os.urandom(wire.NONCE_BYTES)).decode("ascii")
+
+
+def _identity(message):
+    """The number of a request, which its reply repeats. Raises BadMessage if there is none."""
+    number = message.get("id")
+    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < 2**63:
+        raise wire.BadMessage("a request needs an id, a whole number from 0 to 2^63 - 1")
+    return number
 
 
 class Session(object):
@@ -31,7 +39,7 @@ class Session(object):
         self._counter = 0
         self._cursor = None
         self._event_cursor = 0
-        self._announcements = []
+        self._introduced = False
 
     @property
     def greeted(self):
@@ -51,24 +59,27 @@ class Session(object):
             if kind == wire.AUTH:
                 return self._authenticate(wire.load(payload))
             if kind == wire.COMMAND:
+                if not self.trusted:
+                    return self.refuse("token", "commands need the robot's token", "without it a peer may look, and stop the robot")
                 payload = self._unseal(payload)
             elif kind != wire.ASK:
                 raise wire.BadMessage("frames of type {} come from the robot only".format(kind))
             message = wire.load(payload)
-            identity = message.get("id")
-            if isinstance(identity, bool) or not isinstance(identity, int):
-                identity = None
-            result = commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
+            identity = _identity(message)
+            answer = {"result": commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)}
         except Refused as refusal:
-            return wire.encode_json(wire.REPLY, {"id": identity, "error": refusal.as_dict()})
-        except wire.BadMessage as error:
+            answer = {"error": refusal.as_dict()}
+        except (wire.BadMessage, RecursionError) as error:  # what is nested too deeply to be shown in a refusal
             return self.refuse("broken", str(error), "see PROTOCOL.md for what the robot understands")
-        return wire.encode_json(wire.REPLY, {"id": identity, "result": result})
+        return wire.encode_json(wire.REPLY, dict(answer, id=identity))
 
     def refuse(self, code, message, hint):
         """The last frame of a conversation that cannot go on."""
         self.closing = True
-        return wire.encode_json(wire.REPLY, {"id": None, "error": {"code": code, "message": message[:200], "hint": hint}})
+        self.trusted = False
+        self._handshake = None
+        self._cursor = None
+        return wire.encode_json(wire.REPLY, {"id": None, "error": Refused(code, message, hint).as_dict()})
 
     def _peer(self):
         return "'{}'".format(self.name) if self.name else "a peer without a name"
@@ -94,6 +105,7 @@ class Session(object):
         self._handshake = wire.Handshake(self._token, nonce, binascii.unhexlify(own_nonce))
         loop = self._loop
         answer = {"protocol": wire.PROTOCOL, "software": __version__, "boot": self._boot, "nonce": own_nonce, "seed": loop.seed}
+        answer.update(host_nonce=binascii.hexlify(nonce).decode("ascii"))
         answer.update(tick=loop.blackbox.next_tick, oldest_tick=loop.blackbox.oldest_tick, clock_s=loop.clock.now() - loop.epoch)
         answer.update(machine="{} {} {}".format(platform.machine(), platform.python_implementation(), platform.python_version()))
         return wire.encode_json(wire.HELLO, answer)
@@ -110,22 +122,15 @@ class Session(object):
         return wire.encode_json(wire.AUTH, {"proof": robot_proof})
 
     def _unseal(self, payload):
-        if not self.trusted:
-            raise Refused("token", "commands need the robot's token", "without it a peer may look, and stop the robot")
         self._counter, payload = wire.unseal(self._handshake.key, self._counter, payload)
         self._loop.lease.heard(self.client, self._loop.clock.now())
         return payload
 
     def subscribe(self, tick):
         """Send records from `tick` on, or from the oldest that is left. Returns the first tick that will be sent."""
-        box = self._loop.blackbox
-        self._cursor = max(tick, box.oldest_tick)
-        self._announcements = []
-        if self._cursor > tick:
-            self._announcements.append({"event": "lost", "tick": self._cursor, "from": tick})
-        self._event_cursor, snapshot = box.snapshot(self._cursor)
-        self._announcements.append(snapshot)
-        return self._cursor
+        self._cursor = tick
+        self._introduced = False
+        return max(tick, self._loop.blackbox.oldest_tick)
 
     def unsubscribe(self):
         """Send no more records."""
@@ -136,10 +141,16 @@ class Session(object):
         if self._cursor is None:
             return None
         box = self._loop.blackbox
-        if self._cursor < box.oldest_tick:
-            self.subscribe(self._cursor)
-        if self._announcements:
-            return wire.encode_json(wire.EVENT, self._announcements.pop(0))
+        oldest = box.oldest_tick
+        if self._cursor < oldest:
+            lost = {"event": "lost", "tick": oldest, "from": self._cursor}
+            self._cursor = oldest
+            self._introduced = False
+            return wire.encode_json(wire.EVENT, lost)
+        if not self._introduced:
+            self._introduced = True
+            self._event_cursor, snapshot = box.snapshot(self._cursor)
+            return wire.encode_json(wire.EVENT, dict(snapshot, number=self._event_cursor))
         event = box.event(self._event_cursor)
         if event is not None and event["tick"] <= self._cursor:
             self._event_cursor += 1
@@ -149,4 +160,4 @@ class Session(object):
         if not records:
             return None
         self._cursor += len(records) // STRUCT.size
-        return wire.encode(wire.SAMPLES, records)
+        return wire.encode_samples(self._event_cursor, records)

@@ -27,7 +27,7 @@ def load(path):
             mode = os.fstat(file.fileno()).st_mode
             text = file.read(4 * TOKEN_BYTES)
     except (OSError, ValueError) as error:
-        raise TokenError("the token file {} cannot be read: {}".format(path, error))
+        raise TokenError("the token file {} cannot be read: {}".format(path, error)) from error
     if mode & (stat.S_IRWXG | stat.S_IRWXO):
         raise TokenError("the token file {} is open to others; close it: chmod 600 {}".format(path, path))
     try:
@@ -47,7 +47,7 @@ def load_or_make(path):
     except FileExistsError:
         return load(path), False
     except OSError as error:
-        raise TokenError("the token file {} cannot be made: {}".format(path, error))
+        raise TokenError("the token file {} cannot be made: {}".format(path, error)) from error
     with os.fdopen(handle, "w") as file:
         file.write(binascii.hexlify(os.urandom(TOKEN_BYTES)).decode("ascii") + "\n")
     return load(path), True

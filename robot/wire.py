@@ -11,8 +11,10 @@ PROTOCOL = (1, 0)
 SYNC = b"\xa5K"
 _HEADER = struct.Struct(">2sBH")
 _CHECK = struct.Struct(">I")
+_SAMPLES = struct.Struct(">I")
 _SEAL = struct.Struct(">Q16s")
 MAX_PAYLOAD = 4096
+MAX_SAMPLES = MAX_PAYLOAD - _SAMPLES.size
 OVERHEAD = _HEADER.size + _CHECK.size
 # Noise can look like the beginning of a frame. A peer that makes it do so on purpose costs a checksum each time, hence the bound.
 MAX_FALSE_STARTS = 16
@@ -47,6 +49,18 @@ def dump(message):
     return json.dumps(message, allow_nan=False, separators=(",", ":")).encode("utf-8")
 
 
+def encode_samples(number, records):
+    """The frame of whole records (bytes, up to MAX_SAMPLES) that stand before the event of this number."""
+    return encode(SAMPLES, _SAMPLES.pack(number) + records)
+
+
+def open_samples(payload):
+    """(number, records) of a frame of samples. Raises BadMessage."""
+    if len(payload) < _SAMPLES.size:
+        raise BadMessage("too short for samples")
+    return _SAMPLES.unpack_from(payload)[0], payload[_SAMPLES.size :]
+
+
 def _no_constant(name):
     raise ValueError("{} is not a number in JSON".format(name))
 
@@ -56,7 +70,7 @@ def load(payload):
     try:
         message = json.loads(payload.decode("utf-8"), parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
-        raise BadMessage("not JSON: {}".format(error))
+        raise BadMessage("not JSON: {}".format(error)) from error
     if not isinstance(message, dict):
         raise BadMessage("not a JSON object but a {}".format(type(message).__name__))
     return message
@@ -72,6 +86,10 @@ class Decoder(object):
     def feed(self, data):
         """Take in bytes as they came, in pieces of any size."""
         self._buffer += data
+
+    def skip(self):
+        """What seems to be the beginning of a frame is none: look for the next behind it."""
+        self._discard(min(1, len(self._buffer)))
 
     def next(self):
         """The next whole frame as (type, payload), or None until more is fed. Bytes of no sound frame are skipped and counted."""

@@ -130,6 +130,11 @@ class SimMotor(Motor):
         self._catch_up()
         self._load = self._mount * torque
 
+    def set_supply(self, open_v: float) -> None:
+        """Another open-circuit voltage (V) of the battery from now on."""
+        self._catch_up()
+        self._battery_v = open_v
+
     def truth(self) -> Truth:
         """The wheel's state now."""
         self._catch_up()
@@ -168,6 +173,10 @@ class SimBattery(Battery):
         self._source_ohm = source_ohm
         self._motors = motors
 
+    def set_open(self, open_v: float) -> None:
+        """Another open-circuit voltage from now on."""
+        self._open_v = open_v
+
     def voltage_v(self) -> float:
         return self._open_v - self._source_ohm * sum(motor.draw_a() for motor in self._motors)
 
@@ -192,9 +201,7 @@ class SimBrick:
     ) -> None:
         random = Random(f"brick {seed}")
         published = load(motor)
-        open_v = published.battery_v if battery_v is None else battery_v
-        if not 0.0 < open_v <= HIGHEST_BATTERY_V:
-            raise ValueError(f"a battery of {open_v!r} V cannot drive the brick: give more than 0 and at most {HIGHEST_BATTERY_V} V")
+        open_v = _checked(published.battery_v if battery_v is None else battery_v)
         self.clock: Clock = VirtualClock(seed, jitter=jitter) if clock is None else clock
         self.seed = seed
 
@@ -207,6 +214,13 @@ class SimBrick:
         self.motors = (specimen("left", mount[0]), specimen("right", mount[1]))
         self.battery = SimBattery(open_v, published.source_resistance, self.motors)
 
+    def set_battery(self, open_v: float) -> None:
+        """Another open-circuit voltage from now on. Raises ValueError for one that is no battery's."""
+        _checked(open_v)
+        for motor in self.motors:
+            motor.set_supply(open_v)
+        self.battery.set_open(open_v)
+
     def truth(self) -> tuple[Truth, Truth]:
         """The state of the left and the right wheel now."""
         left, right = self.motors
@@ -215,3 +229,9 @@ class SimBrick:
     def set_load(self, side: int, torque: float) -> None:
         """A torque (N m, forward positive) on the wheel of side 0 (left) or 1 (right) from now on."""
         self.motors[side].set_load(torque)
+
+
+def _checked(open_v: float) -> float:
+    if not 0.0 < open_v <= HIGHEST_BATTERY_V:
+        raise ValueError(f"a battery of {open_v!r} V cannot drive the brick: give more than 0 and at most {HIGHEST_BATTERY_V} V")
+    return open_v

@@ -7,12 +7,14 @@ import errno
 import os
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 from sim_motor.brick import SimBrick
 from sim_motor.sysfs import Tree
 from sim_motor.tacho import failure
 
+ENDED_BY_SIGNAL = 8  # what libfuse's main function returns then
 _WANTED = {os.O_RDONLY: os.R_OK, os.O_WRONLY: os.W_OK, os.O_RDWR: os.R_OK | os.W_OK}
 
 
@@ -71,7 +73,8 @@ def serve(mountpoint: str, brick: SimBrick) -> int:
         import mfusepy
     except (ImportError, OSError) as error:
         return _give_up(f"the file tree needs mfusepy and libfuse3 ({error}): run `make setup`, and apt-get install fuse3")
-    if not os.path.isdir(mountpoint) or os.path.ismount(mountpoint) or os.listdir(mountpoint):
+    folder = Path(mountpoint)
+    if not folder.is_dir() or folder.is_mount() or any(folder.iterdir()):
         return _give_up(f"{mountpoint} is no empty folder to mount on: make one, or unmount what is there: fusermount3 -u {mountpoint}")
     tree = Tree(brick)
     tree.run_to(brick.clock.now())
@@ -88,7 +91,9 @@ def serve(mountpoint: str, brick: SimBrick) -> int:
             **fresh,
         )
     except RuntimeError as error:
-        return _give_up(f"cannot mount on {mountpoint} (FUSE error {error}): it needs /dev/fuse and the package fuse3, and the right to mount")
+        if error.args == (ENDED_BY_SIGNAL,):
+            return 0
+        return _give_up(f"cannot mount on {mountpoint} (FUSE error {error}): it needs /dev/fuse, the package fuse3 and the right to mount")
     return 0
 
 

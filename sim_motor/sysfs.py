@@ -152,7 +152,9 @@ class Tree:
     def _index(self) -> None:
         """Find files and folders by path, after a device came or went."""
         self._files = {
-            f"{folder}/{name}": (device, attribute) for folder, device in self._devices.items() for name, attribute in device.attributes.items()
+            f"{folder}/{name}": (device, attribute)
+            for folder, device in self._devices.items()
+            for name, attribute in device.attributes.items()
         }
         self._folders: dict[str, set[str]] = {"/": set(), "/tacho-motor": set()}
         for path in [*self._files, "/tacho-motor"]:

@@ -246,7 +246,7 @@ class TachoMotor:
 
 
 def _one_of(names: "tuple[str, ...] | dict[str, int]", text: str) -> str:
-    name = text[:-1] if text.endswith("\n") else text
+    name = text.removesuffix("\n")
     if name not in names:
         raise failure(errno.EINVAL)
     return name

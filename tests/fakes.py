@@ -104,7 +104,7 @@ class Rig:
             if kind == wire.EVENT:
                 tap.take_event(wire.load(payload))
             else:
-                tap.take_records(unpack(payload))
+                tap.take_records(unpack(wire.open_samples(payload)[1]))
 
     def log(self, tick=0, **info):
         log = Log(info)

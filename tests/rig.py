@@ -176,8 +176,8 @@ class Client:
         return result
 
     def _take(self, data):
-        for event, records in self.talk.feed(data):
-            self.stream += records if event is None else [event]
+        for item in self.talk.feed(data):
+            self.stream += [item] if isinstance(item, dict) else item.records
 
 
 def whole(data):

@@ -17,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run all of it into one log; 1 if the kick did not reverse the robot or a claim did not hold."""
     from host import claims, showing
-    from host.figures.kick import draw
+    from host.figures.kick import KICK_WINDOW_S, draw
     from host.kicking import describe, kick_and_watch, title
     from host.primitives import drive
     from host.progress import progress
@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
         drive(robot, log, "forward")
         steady = showing.steady(robot, log)
         outcome = kick_and_watch(robot, log, "phase", ticks=4)
-        figure = draw(log, path.with_suffix(".png"), title(outcome))
+        figure = draw(log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick)
         advance(1)
         say(f"starting {STARTS} times from random potentials ...")
         starts = showing.starts(robot, log, STARTS)

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Kick, write log and figure, and answer; 1 if a kicked wheel did not reverse."""
-    from host.figures.kick import draw
+    from host.figures.kick import KICK_WINDOW_S, draw
     from host.kicking import describe, kick_and_watch, require_running, title, wait_settled
 
     details = {name: getattr(options, name) for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")}
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
             outcome = kick_and_watch(robot, log, options.mode, wheel=options.wheel, **details)
         brick, seed = robot.link.uri, robot.hello["seed"]
     sentence = describe(outcome)
-    figure = draw(log, path.with_suffix(".png"), title(outcome))
+    figure = draw(log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick)
     if options.json:
         show({**outcome.as_dict(), "brick": brick, "seed": seed, "log": str(path), "figure": str(figure)})
     else:

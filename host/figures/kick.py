@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isnan, nan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 from host.log import Event, Log
 from robot.kicks import WHEELS
 
+# What to show of one kick: two turns of the wheels before it, and long enough after it for them to settle.
+KICK_WINDOW_S = (-1.0, 2.0)
 STALL_TORQUE = 0.1  # friction holds a wheel at torques below this one (paper, section 'Robot')
 
 # The colours of the paper's figure.
@@ -53,18 +56,25 @@ def _label(kick: Event) -> str:
     return f"{kick['mode']} kick, {ticks}{wheel}"
 
 
-def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | None = None) -> Path:
+def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | None = None, zero_tick: int | None = None) -> Path:
     """Draw a PNG, 1600 pixels wide, at `path`, over whatever the file held.
 
-    window: the stretch (s) to show, in the figure's own time, which is 0 at the begin of the log's first kick, or of the log if it
-    has none; all of the log by default. Of a robot that began anew only what came after is shown. ValueError if there are no ticks.
+    window: the stretch (s) to show as far as there is data, in the figure's own time, which is 0 at the begin of zero_tick; all of
+    the log by default. zero_tick: by default that of the log's first kick, or of the log if it has none. Of a robot that began anew
+    only what came after is shown. ValueError if there are no ticks, or not that one.
     """
     begin = max([0, *log.restarts()])
     if begin >= len(log):
         raise ValueError("there are no ticks in the log to draw")
     kicks = spans(log, begin)
     zero_s = kicks[0].begin_s if kicks else log.records[begin].t_s
-    first_s, last_s = window or (log.records[begin].t_s - zero_s, log.records[-1].t_s - zero_s)
+    if zero_tick is not None:
+        zero_s = next((record.t_s for record in log.records[begin:] if record.tick == zero_tick), nan)
+        if isnan(zero_s):
+            raise ValueError(f"tick {zero_tick} is not in the log")
+    first_s, last_s = log.records[begin].t_s - zero_s, log.records[-1].t_s - zero_s
+    if window is not None:
+        first_s, last_s = max(first_s, window[0]), min(last_s, window[1])
     inside = [Span(span.begin_s - zero_s, span.end_s - zero_s, span.label) for span in kicks]
     inside = [span for span in inside if span.begin_s <= last_s and span.end_s >= first_s]
     with rc_context(_STYLE):
@@ -79,7 +89,7 @@ def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | N
                 axes.axvline(span.begin_s, color=_KICK, linewidth=1.2)
         _name(neurons, inside, first_s, last_s)
         speeds.set_xlim(first_s, last_s)
-        speeds.set_xlabel("time since the first kick (s)" if kicks else "time (s)")
+        speeds.set_xlabel("time since the kick (s)" if kicks else "time (s)")
         figure.align_ylabels()
         figure.savefig(path, format="png")
     return Path(path)

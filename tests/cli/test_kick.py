@@ -10,7 +10,8 @@ import pytest
 from host.log import Log
 from robot.record import KICK_NAMES, STATES
 
-FIELDS = set("mode ticks shift_rad wheel applied_tick before after reversed settling_s brick seed log figure".split())
+OUTCOME = {"mode", "ticks", "shift_rad", "wheel", "applied_tick", "before", "after", "reversed", "settling_s"}
+FIELDS = OUTCOME | {"brick", "seed", "log", "figure"}
 
 
 def test_the_json_is_one_object_that_says_what_happened(kickctl):

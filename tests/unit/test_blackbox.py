@@ -58,7 +58,7 @@ class BlackBoxMachine(RuleBasedStateMachine):
 
     def _note(self, event, **details):
         assert self.box.note(event, **details) == self.ticks
-        self.journal.append(dict(details, event=event, tick=self.ticks))
+        self.journal.append(dict(details, event=event, tick=self.ticks, number=len(self.journal)))
 
     @rule(name=st.sampled_from(sorted(PARAMS)), value=st.integers(0, 9), times=st.integers(1, 2))
     def change(self, name, value, times):

@@ -154,7 +154,7 @@ def test_the_figure_fits_a_projector(drawn, tmp_path):
     assert width == 1600
     assert 800 <= height <= 1200
     shown = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
-    assert {"A kick", "time since the first kick (s)"} <= {text.get_text() for text in shown}
+    assert {"A kick", "time since the kick (s)"} <= {text.get_text() for text in shown}
     assert min(text.get_fontsize() for text in shown) >= 12
 
 

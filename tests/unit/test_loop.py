@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot import motors
 from robot.controller import step_wheel
 from robot.errors import Refused
 from robot.loop import KICKS_REMEMBERED, LATENESS_EDGES_S
@@ -377,7 +378,7 @@ def test_parameters_change_all_or_none_and_from_the_next_tick_on():
     assert rig.loop.set_params({"k": 0.0, "a": 5.0}) == 2
     rig.run(1)
     assert [record.left_force == 0.0 for record in rig.records] == [False, False, True]
-    assert rig.events[-1] == {"event": "params", "tick": 2, "set": {"k": 0.0, "a": 5.0}}
+    assert rig.events[-1] == {"event": "params", "tick": 2, "number": 1, "set": {"k": 0.0, "a": 5.0}}
 
 
 def test_a_held_robot_still_runs_as_far_as_polarity_goes():
@@ -436,7 +437,7 @@ def test_a_held_robot_brakes_pauses_its_neurons_and_goes_on_from_them():
 
 
 def test_a_battery_is_read_now_and_then():
-    class Battery:
+    class Battery(motors.Battery):
         reads = 0
 
         def voltage_v(self):

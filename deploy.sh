@@ -1,0 +1,172 @@
+#!/bin/sh
+# Brings the robot's program to a brick over ssh, starts it there and sees that it is well; ./deploy.sh --help tells the rest.
+# What the brick has to do for it stands in robot/service/brick.sh.
+set -eu
+
+usage() {
+    cat <<'END'
+./deploy.sh [OPTION] [USER@HOST]      the brick; by default robot@ev3dev.local (password: maker)
+
+Without an option: check the brick, copy the robot's program and the token that lets this machine command it, stop the motors and the
+program that runs, start the new one and see that it is well. If it is not, the one before it runs again.
+
+  --service    the same, and have the program start with the brick from now on, announced in the network (asks for the brick's password)
+  --rollback   go back to the release before this one
+  --status     tell which release is on the brick and how it is
+  --logs       show what the robot's program said
+  --dry-run    tell what would be done; connect to nothing
+  --help       this
+
+Environment:
+  KICK_ROBOT_ARGS    what the program is started with from now on, such as '--left outA --right outD'; see python3 -m robot --help
+  KICK_TOKEN         the token's file, by default ~/.config/kickctl/token; made, or fetched from the brick, if there is none
+  KICK_SSH_OPTIONS   options for ssh, such as '-p 2222 -i key'
+
+Exit status: 0 done; 1 not done, and the brick is as it was; 2 wrong use; 3 no connection; 4 the brick is not fit (Python, space,
+battery); 5 no robot's program is well on the brick now.
+END
+}
+
+say() { printf '%s\n' "$*"; }
+step() {
+    doing=$*
+    say "==> $*"
+}
+fail() { # fail STATUS WHAT REMEDY
+    printf 'deploy: %s\n  %s\n' "$2" "$3" >&2
+    exit "$1"
+}
+
+remedy="is it on? Try the address on its screen (robot@192.168...) or robot@ev3dev-2.local; kickctl discover looks around"
+# One connection for everything, made by the first command; a new one costs seconds on a brick. Left alone, it ends by itself.
+on_brick() { # on_brick [-t] COMMAND: run it there with this standard input, -t with a terminal if there is one, to ask for a password
+    terminal=-T
+    if [ "$1" = -t ]; then
+        shift
+        [ ! -t 0 ] || terminal=-t
+    fi
+    # shellcheck disable=SC2086 # options are words
+    ssh -o ControlMaster=auto -o ControlPath="$folder/ssh" -o ControlPersist=60 -o ConnectTimeout=20 -o ServerAliveInterval=5 \
+        -o LogLevel=ERROR "$terminal" ${KICK_SSH_OPTIONS-} -- "$brick" "$1" || {
+        status=$?
+        [ "$status" != 255 ] || fail 3 "no connection to $brick, while $doing" "$remedy"
+        return "$status"
+    }
+    remedy="no half-done release ever runs there; './deploy.sh --status $brick' tells how it is; then try again"
+}
+
+leave() {
+    [ ! -e "$folder/ssh" ] || ssh -o ControlPath="$folder/ssh" -O exit -- "$brick" 2>/dev/null || true
+    rm -rf "$folder"
+}
+
+dry_run() {
+    case $verb in
+    status | logs) say "would connect to $brick and show its $verb" ;;
+    rollback) say "would connect to $brick, stop the robot's program, reset its motors, and start the release before" ;;
+    deploy)
+        say "would deploy release $id to $brick:"
+        say "  check there: Python 3.5 or newer, 20 MB of space, battery"
+        say "  copy to ~/kickctl/releases/$id, check every file's sum, and compile:"
+        sed 's/^[0-9a-f]*  /    /' "$folder/SHA256SUMS"
+        if [ -e "$token" ]; then say "  copy the token $token"; else say "  fetch the brick's token, or make one, as $token"; fi
+        [ -z "${KICK_ROBOT_ARGS+set}" ] || say "  start the program from now on with: $KICK_ROBOT_ARGS"
+        say "  stop the robot's program (SIGTERM, after 5 s SIGKILL), reset all motors"
+        say "  make $id the current release${service:+ and have systemd start it with the brick}"
+        say "  start it, wait up to 60 s until it is ready, ask it how it is; if it is not well, start the release before again"
+        ;;
+    esac
+}
+
+give_token() { # both must have the same; one that the brick has already may be in use by other machines
+    if [ ! -e "$token" ]; then
+        theirs=$(on_brick "cat .config/kickctl/token 2>/dev/null || true" </dev/null)
+        if [ -n "$theirs" ]; then
+            step "fetching the brick's token as $token"
+            (umask 077 && mkdir -p "$(dirname "$token")" && printf '%s\n' "$theirs" >"$token")
+        fi
+    fi
+    made=$(python3 -B -c '
+import sys
+from robot import token
+try:
+    print("" if token.load_or_make(sys.argv[1])[1] else "there")
+except token.TokenError as error:
+    sys.exit(str(error))' "$token" 2>&1) || fail 1 "$made" "mend that file, or delete it to have a new one made, and deploy again"
+    [ -n "$made" ] || step "making a token"
+    step "copying the token $token"
+    on_brick "sh $files/robot/service/brick.sh token" <"$token"
+}
+
+upload() {
+    files=kickctl/releases/$id
+    if on_brick "cd $files 2>/dev/null && sha256sum --quiet -c SHA256SUMS >/dev/null 2>&1" </dev/null; then
+        step "release $id is there already"
+        return
+    fi
+    step "copying release $id"
+    incoming=.incoming-$id-$$
+    tar -cz robot/*.py robot/service/* -C "$folder" SHA256SUMS |
+        on_brick "set -e; mkdir -p kickctl/releases/$incoming; cd kickctl/releases/$incoming; tar -xzm" || {
+        [ $? != 3 ] || exit 3
+        fail 1 "the copy did not arrive whole; what runs on the brick is untouched" "is its card full, or failing? Try again"
+    }
+    step "checking and compiling it there"
+    on_brick "sh kickctl/releases/$incoming/robot/service/brick.sh adopt $id $incoming" </dev/null
+}
+
+deploy() {
+    on_brick "sh -s check" <robot/service/brick.sh
+    upload
+    give_token
+    if [ -n "${KICK_ROBOT_ARGS+set}" ]; then
+        printf '%s\n' "$KICK_ROBOT_ARGS" | on_brick "cat >kickctl/arguments.new"
+    fi
+    step "changing over to $id"
+    on_brick -t "sh $files/robot/service/brick.sh activate $id $service"
+    say
+    say "The robot's program runs on $brick. Kick it:"
+    say "  kickctl --brick ssh://$brick kick --mode phase --ticks 4"
+    say "If its wheels should rest: kickctl --brick ssh://$brick stop"
+}
+
+verb=deploy service='' dry='' brick=robot@ev3dev.local named=''
+for argument; do
+    case $argument in
+    --help | -h) usage && exit 0 ;;
+    --dry-run) dry=yes ;;
+    --service) service=service ;;
+    --rollback | --status | --logs)
+        [ "$verb" = deploy ] || fail 2 "--$verb and $argument at once" "give one of them"
+        verb=${argument#--}
+        ;;
+    -*) fail 2 "there is no option $argument" "./deploy.sh --help lists them" ;;
+    '') fail 2 "the brick's name is empty" "give it as USER@HOST, or leave it out for $brick" ;;
+    *)
+        [ -z "$named" ] || fail 2 "two bricks: $brick and $argument" "deploy to one after the other"
+        brick=$argument named=yes
+        ;;
+    esac
+done
+[ -z "$service" ] || [ "$verb" = deploy ] || fail 2 "--service and --$verb at once" "give one of them"
+
+token=${KICK_TOKEN:-${XDG_CONFIG_HOME:-$HOME/.config}/kickctl/token}
+case $token in /*) ;; *) token=$PWD/$token ;; esac
+cd "$(dirname "$0")"
+folder=$(mktemp -d)
+trap leave EXIT
+trap 'exit 130' HUP INT TERM
+version=$(sed -n 's/^__version__ = "\(.*\)"$/\1/p' robot/__init__.py)
+sha256sum robot/*.py robot/service/* >"$folder/SHA256SUMS"
+id=$version-$(sha256sum <"$folder/SHA256SUMS" | cut -c 1-10)
+
+if [ -n "$dry" ]; then
+    dry_run
+    exit 0
+fi
+step "connecting to $brick"
+case $verb in
+deploy) deploy ;;
+rollback) on_brick -t "sh kickctl/current/robot/service/brick.sh rollback" ;;
+*) on_brick "sh -s $verb" <robot/service/brick.sh ;;
+esac

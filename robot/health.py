@@ -1,0 +1,100 @@
+"""Whether the robot's program on this machine is well: python3 -m robot.health. deploy.sh has the brick ask before it trusts a release."""
+
+import argparse
+import binascii
+import os
+import socket
+import sys
+import time
+
+from robot import __version__, token, wire
+from robot.program import PORT
+
+HOST = "127.0.0.1"
+# The robot's machine is slow, and has just started the program.
+PATIENCE_S = 20.0
+# A program that ticks does so within this time.
+LONGEST_TICK_S = 2.0
+
+
+class Unwell(Exception):
+    """The program does not do what it should; the message says what."""
+
+
+class Questioner(object):
+    """A conversation with the robot that listens on a port of this machine. Raises OSError, BadMessage and Unwell."""
+
+    def __init__(self, port):
+        self._link = socket.create_connection((HOST, port), timeout=PATIENCE_S)
+        self._decoder = wire.Decoder()
+
+    def ask(self, kind, **message):
+        """The message that answers a frame."""
+        self._link.sendall(wire.encode_json(kind, message))
+        while True:
+            frame = self._decoder.next()
+            if frame is not None:
+                answer = wire.load(frame[1])
+                if "error" in answer:
+                    raise Unwell("it refuses: {}".format(answer["error"].get("message")))
+                return answer
+            data = self._link.recv(wire.MAX_PAYLOAD)
+            if not data:
+                raise Unwell("it hangs up")
+            self._decoder.feed(data)
+
+    def status(self):
+        """What the robot answers to 'status'."""
+        return self.ask(wire.ASK, id=1, do="status")["result"]
+
+    def close(self):
+        """Hang up."""
+        self._link.close()
+
+
+def examine(port, secret):
+    """The status of the robot at a port, which has shown its release, that it has the token, and that it ticks.
+
+    Raises OSError, BadMessage and Unwell.
+    """
+    robot = Questioner(port)
+    try:
+        nonce = os.urandom(wire.NONCE_BYTES)
+        text = binascii.hexlify(nonce).decode("ascii")
+        hello = robot.ask(wire.HELLO, protocol=wire.PROTOCOL, name="health", client="health", nonce=text)
+        if hello["software"] != __version__:
+            raise Unwell("it is of release {}, not {}: another program answers".format(hello["software"], __version__))
+        shake = wire.Handshake(secret, nonce, binascii.unhexlify(hello["nonce"]))
+        answer = robot.ask(wire.AUTH, proof=binascii.hexlify(shake.host_proof).decode("ascii"))
+        if not wire.same(binascii.unhexlify(answer["proof"]), shake.robot_proof):
+            raise Unwell("it does not have the token")
+        first = status = robot.status()
+        until = time.monotonic() + LONGEST_TICK_S
+        while status["tick"] == first["tick"]:
+            if time.monotonic() > until:
+                raise Unwell("it does not tick")
+            time.sleep(status["params"]["tick_s"])
+            status = robot.status()
+        return status
+    finally:
+        robot.close()
+
+
+def main():
+    """Print in a line how the robot is. Returns 0 if it is well, a fault of its motors included, else 1."""
+    arguments = argparse.ArgumentParser(description="Asks the robot's program on this machine whether it is well.")
+    arguments.add_argument("--port", type=int, default=PORT)
+    arguments.add_argument("--token", default=token.default_path())
+    options = arguments.parse_args()
+    try:
+        status = examine(options.port, token.load(options.token))
+    except (OSError, ValueError, KeyError, wire.BadMessage, token.TokenError, Unwell) as error:
+        print("the robot's program at port {} is not well: {}".format(options.port, error))
+        return 1
+    battery = "" if status["battery_v"] is None else ", battery {:.1f} V".format(status["battery_v"])
+    print("{} ({}){}".format(status["state"], status["reason"], battery))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,43 @@
+"""The brick's two lights tell the robot's state."""
+
+import os
+
+from robot.record import STATES
+
+DARK, RED, GREEN, ORANGE = (0, 0), (255, 0), (0, 255), (255, 255)  # brightness of the red and the green half
+LEFT_AND_RIGHT = {
+    "idle": (ORANGE, ORANGE),
+    "running": (GREEN, GREEN),
+    "held": (GREEN, ORANGE),
+    "stopped": (RED, ORANGE),
+    "fault": (RED, RED),
+}
+
+
+class Lights(object):
+    """Both lights. root: where the kernel's classes of devices are. Lights that are not there, or not ours, stay as they are."""
+
+    def __init__(self, root):
+        self._folder = os.path.join(root, "leds")
+        self._state = None
+
+    def serve(self, loop):
+        """Show the loop's state, if it is another than before."""
+        state = loop.safety.state
+        if state != self._state:
+            self._state = state
+            self._show(LEFT_AND_RIGHT[STATES[state]])
+
+    def close(self):
+        """Out: no program runs."""
+        self._show((DARK, DARK))
+
+    def _show(self, lights):
+        for side, light in enumerate(lights):
+            for colour, brightness in zip(("red", "green"), light):
+                name = "led{}:{}:brick-status".format(side, colour)
+                try:
+                    with open(os.path.join(self._folder, name, "brightness"), "w") as file:
+                        file.write(str(brightness))
+                except OSError:
+                    pass

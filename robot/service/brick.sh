@@ -1,0 +1,246 @@
+#!/bin/sh
+# The brick's side of deploy.sh: sh brick.sh VERB [ARGUMENT]. It needs what ev3dev has: a POSIX shell, coreutils, util-linux, Python.
+#
+# Below ~/kickctl:
+#   releases/RELEASE    the robot's program; what has this name arrived whole
+#   current, previous   links to the release that runs and to the one before it
+#   arguments           what the program is started with, such as --left outA
+#   robot.log           what it said since its last start by deploy.sh; before that: robot.log.1
+#
+# Exit status: 0 done; 1 not done, and the brick is as it was; 4 the brick is not fit for it; 5 no robot's program is well now.
+set -eu
+
+ROOT=$HOME/kickctl
+TOKEN=$HOME/.config/kickctl/token
+# Where the kernel's devices and the system's settings are; tests have them elsewhere.
+CLASS=${KICK_SYSFS:-/sys/class}
+ETC=${KICK_ETC:-/etc}
+UNIT=$ETC/systemd/system/kickctl.service
+
+LEAST_FREE_KB=20000
+# What the brick itself warns of; writing to the card must not be cut short by an empty battery.
+LEAST_LITHIUM_UV=6500000
+LEAST_OTHER_UV=5500000
+READY_S=60
+STOP_S=5
+
+# Whoever deploys may be gone by now; that is no reason to stop half-way.
+tell() { echo "$*" 2>/dev/null || true; }
+
+refuse() { # refuse WHAT REMEDY: the brick is not fit
+    tell "deploy: $1"
+    tell "  $2"
+    exit 4
+}
+
+only_one() {
+    mkdir -p "$ROOT"
+    exec 9>>"$ROOT/lock"
+    flock -n 9 || { tell "deploy: somebody else is deploying to this brick at this moment"; tell "  wait until they are done"; exit 1; }
+}
+
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+
+release() { basename "$(readlink "$ROOT/$1" 2>/dev/null || true)"; } # release current|previous: its name, or nothing
+
+switch() { # switch LINK RELEASE: in one step, so that the link always leads somewhere
+    ln -sfn "releases/$2" "$ROOT/$1.new"
+    mv -fT "$ROOT/$1.new" "$ROOT/$1"
+}
+
+program_pid() { # the program's process id; nothing if it does not run, or if the number has become somebody else's
+    pid=$(cat "$ROOT/robot.pid" 2>/dev/null) || return 0
+    case $(readlink "/proc/$pid/cwd" 2>/dev/null) in "$(cd "$ROOT" && pwd -P)"/releases/*) echo "$pid" ;; esac
+}
+
+port() { sed -n 's/^READY .*:\([0-9]*\)$/\1/p' "$ROOT/robot.log" 2>/dev/null | tail -n 1; }
+
+check() { # whether this machine can run the program at all
+    version=$(python3 -c 'import sys; print("%d.%d.%d" % sys.version_info[:3]); sys.exit(sys.version_info < (3, 5))' 2>/dev/null) ||
+        refuse "the brick's python3 is ${version:-missing}, and the robot's program needs 3.5 or newer" \
+            "is this an EV3 with ev3dev-stretch? Its card has Python 3.5.3: see robot/README.md for how to write one"
+    free=$(df -Pk "$HOME" | awk 'NR == 2 { print $4 }')
+    [ "$free" -ge "$LEAST_FREE_KB" ] ||
+        refuse "the brick's card has $((free / 1000)) MB left, and $((LEAST_FREE_KB / 1000)) MB are needed" \
+            "delete what is old there; 'du -ah ~ | sort -h | tail' on the brick shows what is large"
+    least=$LEAST_OTHER_UV
+    [ "$(cat "$CLASS/power_supply/lego-ev3-battery/technology" 2>/dev/null)" != Li-ion ] || least=$LEAST_LITHIUM_UV
+    battery=$(cat "$CLASS/power_supply/lego-ev3-battery/voltage_now" 2>/dev/null || true)
+    [ "${battery:-$least}" -ge "$least" ] ||
+        refuse "the brick's battery is low: $(volts "$battery"), and $(volts "$least") are needed" "charge it, or put in fresh cells, and try again"
+    tell "Python $version, $((free / 1000)) MB free, battery $(volts "$battery")"
+}
+
+volts() { [ -n "$1" ] && echo "$1" | awk '{ printf "%.1f V", $1 / 1e6 }' || echo "not measured"; }
+
+token() { # keep what comes on standard input as the robot's token
+    umask 077
+    mkdir -p "${TOKEN%/*}"
+    cat >"$TOKEN.new"
+    [ ! -s "$TOKEN" ] || cmp -s "$TOKEN" "$TOKEN.new" || tell "  the brick had another token: machines that have that one can no longer command it"
+    mv -f "$TOKEN.new" "$TOKEN"
+}
+
+adopt() { # adopt RELEASE FOLDER: make a release of an upload, if it is sound
+    only_one
+    cd "$ROOT/releases/$2"
+    sha256sum --quiet -c SHA256SUMS || { tell "deploy: the upload arrived damaged"; tell "  try again; if it stays so, the card may be failing"; exit 1; }
+    python3 -m compileall -q robot || { tell "deploy: the brick's Python cannot read this release"; tell "  run 'make lint' where you changed it"; exit 1; }
+    cd ..
+    sync # or a loss of power could leave empty files under a good name
+    rm -rf "$1"
+    mv -T "$2" "$1"
+    rm -rf .incoming-*
+}
+
+reset_motors() { # a motor under run-direct turns on without its program
+    for command in "$CLASS"/tacho-motor/motor*/command; do
+        [ ! -e "$command" ] || echo reset >"$command" || tell "deploy: $command could not be written: pull that motor's cable if it turns"
+    done
+}
+
+stop_program() {
+    [ ! -e "$UNIT" ] || as_root systemctl stop kickctl || true
+    running=$(program_pid)
+    if [ -n "$running" ]; then
+        kill -TERM "$running" 2>/dev/null || true
+        waited=0
+        while [ -n "$(program_pid)" ] && [ "$waited" -lt $((5 * STOP_S)) ]; do
+            sleep 0.2
+            waited=$((waited + 1))
+        done
+        [ -z "$(program_pid)" ] || kill -KILL "$running" 2>/dev/null || true
+    fi
+    reset_motors
+}
+
+start_program() { # start the current release and wait until it is ready and well
+    rm -f "$ROOT/robot.pid"
+    [ ! -e "$ROOT/robot.log" ] || mv -f "$ROOT/robot.log" "$ROOT/robot.log.1"
+    if [ -e "$UNIT" ]; then
+        as_root systemctl reset-failed kickctl 2>/dev/null || true
+        as_root systemctl start --no-block kickctl
+    else
+        setsid nice -n -10 sh "$ROOT/current/robot/service/brick.sh" run </dev/null >/dev/null 2>&1 9>&- &
+    fi
+    waited=0
+    while [ -z "$(port)" ]; do
+        if [ -e "$ROOT/robot.pid" ] && [ -z "$(program_pid)" ]; then
+            tell "it ended before it was ready"
+            return 1
+        elif [ "$waited" -ge $((2 * READY_S)) ]; then
+            tell "it was not ready after $READY_S s"
+            return 1
+        fi
+        sleep 0.5
+        waited=$((waited + 1))
+        [ $((waited % 10)) != 0 ] || tell "  starting for $((waited / 2)) s; a brick takes 10 to 30"
+    done
+    examine
+}
+
+examine() { # ask the program how it is
+    health=$(cd "$ROOT/current" && python3 -m robot.health --port "$(port)" --token "$TOKEN") || {
+        tell "$health"
+        return 1
+    }
+    tell "$health"
+}
+
+install_service() {
+    sed -e "s|@USER@|$(id -un)|" -e "s|@ROOT@|$ROOT|" -e "s|@CLASS@|$CLASS|" "$ROOT/current/robot/service/kickctl.service" >"$ROOT/unit.new"
+    as_root install -D -m 644 "$ROOT/unit.new" "$UNIT"
+    rm -f "$ROOT/unit.new"
+    as_root systemctl daemon-reload
+    as_root systemctl enable kickctl
+}
+
+announce() { # have avahi tell the network that a robot is here
+    sed -e "s|@USER@|$(id -un)|" -e "s|@PORT@|$(port)|" "$ROOT/current/robot/service/kickctl-avahi.service" >"$ROOT/avahi.new"
+    as_root install -D -m 644 "$ROOT/avahi.new" "$ETC/avahi/services/kickctl.service"
+    rm -f "$ROOT/avahi.new"
+}
+
+activate() { # activate RELEASE [service]: run it, as a service from now on if asked; if it is not well, run again what ran before
+    only_one
+    trap '' HUP INT PIPE # nobody may stop this half-way, not even by going away
+    [ -d "$ROOT/releases/$1" ] || { tell "deploy: there is no release $1 on the brick"; exit 1; }
+    old=$(release current)
+    old_arguments=$(cat "$ROOT/arguments" 2>/dev/null || true)
+    tell "stopping the robot's program, resetting its motors"
+    stop_program
+    switch current "$1"
+    [ ! -e "$ROOT/arguments.new" ] || mv -f "$ROOT/arguments.new" "$ROOT/arguments"
+    [ "${2-}" != service ] || install_service
+    tell "starting $1"
+    if start_program; then
+        [ "$old" = "$1" ] || [ -z "$old" ] || switch previous "$old"
+        [ ! -e "$UNIT" ] || announce
+        prune
+        return
+    fi
+    tell "its last words:"
+    tell "$(tail -n 15 "$ROOT/robot.log" 2>/dev/null | sed 's/^/    /')"
+    stop_program
+    echo "$old_arguments" >"$ROOT/arguments"
+    go_back "$1" "$old"
+}
+
+go_back() { # go_back FAILED OLD: exits
+    if [ -z "$2" ]; then
+        rm -f "$ROOT/current"
+        tell "deploy: release $1 does not run, and there was none before it; the motors are off"
+        tell "  mend what its last words say, and deploy again"
+        exit 5
+    fi
+    tell "starting $2 again"
+    switch current "$2"
+    if start_program; then
+        [ "$1" = "$2" ] || tell "deploy: release $1 does not run; $2 runs again"
+        tell "  mend what its last words say, and deploy again"
+        exit 1
+    fi
+    stop_program
+    tell "deploy: neither $1 nor $2 runs; the motors are off"
+    tell "  is a cable out, or another program at work? The brick's log tells: deploy.sh --logs"
+    exit 5
+}
+
+prune() { # keep the release that runs and the one before
+    for folder in "$ROOT"/releases/*; do
+        case ${folder##*/} in "$(release current)" | "$(release previous)") ;; *) rm -rf "$folder" ;; esac
+    done
+}
+
+rollback() {
+    before=$(release previous)
+    [ -n "$before" ] || { tell "deploy: there is no release before this one on the brick"; tell "  check out the one you want, and deploy it"; exit 1; }
+    activate "$before"
+}
+
+run() { # become the robot's program; robot.pid keeps its number
+    cd "$ROOT/current"
+    cd "$(pwd -P)" # the release that it began with, whatever becomes current
+    echo $$ >"$ROOT/robot.pid"
+    # shellcheck disable=SC2046 # one word each
+    exec python3 -m robot --token "$TOKEN" $(cat "$ROOT/arguments" 2>/dev/null) >>"$ROOT/robot.log" 2>&1
+}
+
+status() {
+    [ -n "$(release current)" ] || { tell "nothing was deployed here yet"; exit 5; }
+    tell "release  $(release current)"
+    tell "before   $(release previous)"
+    tell "service  $([ -e "$UNIT" ] && echo "installed: it starts with the brick" || echo "not installed: it does not start with the brick")"
+    if [ -z "$(program_pid)" ]; then
+        tell "program  does not run: deploy.sh starts it, deploy.sh --logs tells what it said last"
+        exit 5
+    fi
+    tell "program  runs as process $(program_pid), $(grep '^READY' "$ROOT/robot.log" | tail -n 1)"
+    state=$(examine) || ill=5
+    tell "state    $state"
+    exit "${ill:-0}"
+}
+
+logs() { tail -n "${1:-200}" "$ROOT/robot.log" 2>/dev/null || { tell "the brick has no log yet: nothing was started there by deploy.sh"; exit 1; }; }
+
+"$@"

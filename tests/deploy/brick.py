@@ -1,0 +1,236 @@
+"""A stand-in for the brick: a real sshd on loopback whose logins find themselves in a folder of the test, and a checkout to deploy from."""
+
+import contextlib
+import getpass
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SSHD = shutil.which("sshd", path="/usr/sbin:/usr/local/sbin:" + os.environ["PATH"])
+PRIVILEGE_SEPARATION = Path("/run/sshd")
+
+needs_sshd = pytest.mark.skipif(SSHD is None, reason="there is no sshd: apt-get install openssh-server")
+
+SSHD_CONFIG = """\
+ListenAddress 127.0.0.1
+Port {port}
+HostKey {folder}/host_key
+AuthorizedKeysFile {folder}/user_key.pub
+PidFile none
+StrictModes no
+UsePAM no
+PasswordAuthentication no
+KbdInteractiveAuthentication no
+PermitRootLogin prohibit-password
+ForceCommand {folder}/login
+"""
+
+# What a login on the brick finds: its own home, devices, settings and programs.
+LOGIN = """\
+#!/bin/sh
+unset XDG_CONFIG_HOME KICK_TOKEN
+export HOME={brick}/home KICK_SYSFS={brick}/class KICK_ETC={brick}/etc PATH={brick}/bin:$PATH
+cd
+exec sh -c "$SSH_ORIGINAL_COMMAND"
+"""
+
+SSH_CONFIG = """\
+Host brick
+    HostName 127.0.0.1
+    Port {port}
+    User {user}
+    IdentityFile {folder}/user_key
+    IdentitiesOnly yes
+    UserKnownHostsFile {folder}/known_hosts
+    GlobalKnownHostsFile /dev/null
+    StrictHostKeyChecking yes
+"""
+
+
+def free_port():
+    """A port of loopback that nobody listens on just now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def write(path, text, mode=0o644):
+    """Write a file, and the folders that it is in."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    path.chmod(mode)
+
+
+class Brick:
+    """The machine behind sshd. `home` is where its user lives, `sysfs` its devices, `etc` its settings, `bin` programs of its own."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.home, self.sysfs, self.etc, self.bin = (folder / "brick" / name for name in ("home", "class", "etc", "bin"))
+        for path in (self.home, self.etc, self.bin):
+            path.mkdir(parents=True)
+        self.port = free_port()
+        self.replace("python3", f'exec {sys.executable} "$@"')
+        self.ssh_config = folder / "ssh_config"
+        for key in ("host_key", "user_key"):
+            subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key], check=True)
+        write(folder / "known_hosts", f"[127.0.0.1]:{self.port} {(folder / 'host_key.pub').read_text(encoding='utf-8')}")
+        write(folder / "login", LOGIN.format(brick=folder / "brick"), 0o755)
+        self.reach_through(self.port)
+        self._sshd = None
+
+    def replace(self, program, script):
+        """Have the brick run this shell script instead of one of its programs."""
+        write(self.bin / program, f"#!/bin/sh\n{script}\n", 0o755)
+
+    def reach_through(self, port):
+        """Have ssh reach the brick through another port of this machine."""
+        settings = SSH_CONFIG.format(port=port, user=getpass.getuser(), folder=self.folder)
+        write(
+            self.ssh_config,
+            settings.replace("    StrictHostKeyChecking", f"    HostKeyAlias [127.0.0.1]:{self.port}\n    StrictHostKeyChecking"),
+        )
+
+    def boot(self):
+        """Start sshd, and wait until it answers."""
+        if os.getuid() == 0:
+            PRIVILEGE_SEPARATION.mkdir(mode=0o755, exist_ok=True)  # sshd insists, and only its own service would make it
+        write(self.folder / "sshd_config", SSHD_CONFIG.format(port=self.port, folder=self.folder))
+        with (self.folder / "sshd.log").open("w") as log:
+            self._sshd = subprocess.Popen([SSHD, "-D", "-e", "-f", self.folder / "sshd_config"], stderr=log)
+        wait_until(self._answers)
+
+    def _answers(self):
+        assert self._sshd.poll() is None, (self.folder / "sshd.log").read_text(encoding="utf-8")
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0) as link:
+            return link.recv(4) == b"SSH-"
+
+    def shut_down(self):
+        """End sshd and every process that was left at work on the brick."""
+        for pid in self.processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        self._sshd.terminate()
+        self._sshd.wait(10)
+
+    def processes(self):
+        """Numbers of all processes that live in the brick's home."""
+        found = []
+        for process in Path("/proc").iterdir():
+            with contextlib.suppress(OSError):
+                if process.name.isdigit() and str((process / "cwd").readlink()).startswith(str(self.home)):
+                    found.append(int(process.name))
+        return found
+
+    # What deploy.sh has made of it
+
+    @property
+    def kickctl(self):
+        return self.home / "kickctl"
+
+    def release(self, link="current"):
+        """The name of the current or previous release, None if there is none."""
+        path = self.kickctl / link
+        return path.resolve(strict=True).name if path.is_symlink() else None
+
+    def releases(self):
+        """The names of whatever stands among the releases."""
+        return sorted(path.name for path in (self.kickctl / "releases").iterdir()) if (self.kickctl / "releases").exists() else []
+
+    def pid(self):
+        """The number of the robot's program, None if it does not run."""
+        path = self.kickctl / "robot.pid"
+        pid = int(path.read_text(encoding="ascii")) if path.exists() else -1
+        return pid if pid in self.processes() else None
+
+    def runs(self):
+        """The name of the release whose program runs, None if none does."""
+        return None if self.pid() is None else Path(f"/proc/{self.pid()}/cwd").readlink().name
+
+    def stop_program(self):
+        """Have the robot's program end, as somebody on the brick might."""
+        os.kill(self.pid(), signal.SIGTERM)
+        wait_until(lambda: self.pid() is None)
+
+    def log(self):
+        return (self.kickctl / "robot.log").read_text(encoding="utf-8")
+
+    def uri(self):
+        """The robot's address through the tunnel."""
+        return "ssh://brick?port=" + re.findall(r"READY tcp://\S*:(\d+)", self.log())[-1]
+
+
+class Checkout:
+    """A copy of what deploy.sh needs, to change at will; and the machine that it stands on, with a token of its own."""
+
+    def __init__(self, folder, brick):
+        self.folder = folder / "checkout"
+        self.bin = folder / "host-bin"
+        self.token = folder / "token"
+        self._brick = brick
+        (self.folder / "robot").mkdir(parents=True)
+        shutil.copy(ROOT / "deploy.sh", self.folder)
+        for path in (ROOT / "robot").glob("*.py"):
+            shutil.copy(path, self.folder / "robot")
+        shutil.copytree(ROOT / "robot" / "service", self.folder / "robot" / "service")
+
+    def environment(self, **more):
+        """The environment of a program on this machine."""
+        return {
+            **os.environ,
+            "PATH": f"{self.bin}:{os.environ['PATH']}",
+            "KICK_TOKEN": str(self.token),
+            "KICK_SSH_OPTIONS": f"-F {self._brick.ssh_config}",
+            **more,
+        }
+
+    def deploy(self, *arguments, to="brick", **environment):
+        """Run deploy.sh: (exit status, all it has printed)."""
+        with self.deploying(*arguments, to=to, **environment) as process:
+            output = process.communicate(timeout=100)[0]
+            return process.returncode, output
+
+    def deploying(self, *arguments, to="brick", **environment):
+        """A running deploy.sh."""
+        environment.setdefault("KICK_ROBOT_ARGS", f"--sysfs {self._brick.sysfs} --host 127.0.0.1 --port 0 --seed 5")
+        return subprocess.Popen(
+            [self.folder / "deploy.sh", *arguments, to],
+            env=self.environment(**environment),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def change(self, module="__init__", text="\n# changed\n"):
+        """Add lines to a module, so that this is another release."""
+        with (self.folder / "robot" / f"{module}.py").open("a", encoding="utf-8") as file:
+            file.write(text)
+
+    def kickctl(self, *arguments):
+        """Run kickctl: (exit status, standard output, standard error)."""
+        done = subprocess.run(
+            [sys.executable, "-m", "host", *arguments],
+            env=self.environment(PYTHONPATH=str(ROOT)),
+            capture_output=True,
+            text=True,
+            timeout=100,
+            check=False,
+        )
+        return done.returncode, done.stdout, done.stderr
+
+
+def wait_until(condition, seconds=30.0):
+    until = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.02)

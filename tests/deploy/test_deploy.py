@@ -1,0 +1,183 @@
+"""deploy.sh against a real sshd: what it does when all is well, and that whatever goes wrong leaves a brick that works."""
+
+import shutil
+import stat
+
+import pytest
+
+from tests.deploy.brick import needs_sshd, write
+
+pytestmark = needs_sshd
+
+
+def test_the_first_deploy_brings_a_whole_release_and_starts_it(brick, checkout):
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert brick.runs() == brick.release() == brick.releases()[0]
+    assert brick.release("previous") is None
+    assert "kickctl --brick ssh://brick kick" in output
+    current = brick.kickctl / "current"
+    assert sorted(path.name for path in (current / "robot").glob("*.py")) == sorted(
+        path.name for path in (checkout.folder / "robot").glob("*.py")
+    )
+    assert {path.name for path in current.iterdir()} == {"robot", "SHA256SUMS"}
+    compiled = {path.name.partition(".")[0] for path in (current / "robot" / "__pycache__").iterdir()}
+    assert compiled == {path.stem for path in (current / "robot").glob("*.py")}
+
+
+def test_host_and_brick_share_a_token_that_nobody_else_can_read(brick, checkout):
+    assert not checkout.token.exists()
+    checkout.deploy()
+    theirs = brick.home / ".config" / "kickctl" / "token"
+    assert len(bytes.fromhex(checkout.token.read_text(encoding="ascii"))) == 32
+    assert theirs.read_text(encoding="ascii") == checkout.token.read_text(encoding="ascii")
+    for path in (checkout.token, theirs):
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+def test_a_second_host_takes_over_the_bricks_token(brick, checkout):
+    checkout.deploy()
+    first = checkout.token.rename(checkout.token.with_name("first"))
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert checkout.token.read_text(encoding="ascii") == first.read_text(encoding="ascii")
+    assert stat.S_IMODE(checkout.token.stat().st_mode) == 0o600
+    assert checkout.kickctl("--brick", brick.uri(), "clear")[0] == 5  # understood as a command: the motors are not there
+
+
+def test_a_token_that_is_open_to_others_is_not_sent(brick, checkout):
+    write(checkout.token, "00" * 32 + "\n", 0o644)
+    status, output = checkout.deploy()
+    assert status == 1
+    assert "chmod 600" in output
+    assert not (brick.home / ".config").exists()
+    assert brick.runs() is None
+
+
+def test_a_second_deploy_of_the_same_keeps_the_release_and_starts_it_anew(brick, checkout):
+    checkout.deploy()
+    first = brick.release(), brick.pid()
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert "is there already" in output
+    assert brick.runs() == brick.release() == first[0]
+    assert brick.pid() != first[1]
+    assert brick.release("previous") is None
+    assert len(brick.processes()) == len({brick.pid(), *brick.processes()})
+
+
+def test_upgrade_then_rollback_and_forth_again(brick, checkout):
+    checkout.deploy()
+    old = brick.release()
+    checkout.change()
+    status, output = checkout.deploy()
+    assert status == 0, output
+    new = brick.release()
+    assert new != old
+    assert (brick.runs(), brick.release("previous")) == (new, old)
+    status, output = checkout.deploy("--rollback")
+    assert status == 0, output
+    assert (brick.runs(), brick.release(), brick.release("previous")) == (old, old, new)
+    assert checkout.deploy("--rollback")[0] == 0
+    assert (brick.runs(), brick.release("previous")) == (new, old)
+
+
+def test_only_the_release_before_is_kept(brick, checkout):
+    seen = []
+    for _ in range(3):
+        assert checkout.deploy()[0] == 0
+        seen.append(brick.release())
+        checkout.change()
+    assert brick.releases() == sorted(seen[1:])
+
+
+def test_rollback_of_a_first_release_is_refused(brick, checkout):
+    checkout.deploy()
+    status, output = checkout.deploy("--rollback")
+    assert status == 1
+    assert "no release before" in output
+    assert brick.runs() == brick.release()
+
+
+def test_all_motors_are_reset_while_no_program_runs(brick, checkout):
+    """The old program is gone, and the new one not yet there, when `reset` is written: to every motor, whatever its port."""
+    motors = [brick.sysfs / "tacho-motor" / f"motor{number}" / "command" for number in (0, 3)]
+    for motor in motors:
+        write(motor, "")
+    assert checkout.deploy()[0] == 0
+    assert [motor.read_text(encoding="ascii") for motor in motors] == ["reset\n", "reset\n"]
+
+
+def test_arguments_stay_until_others_are_given(brick, checkout):
+    checkout.deploy(KICK_ROBOT_ARGS=f"--sysfs {brick.sysfs} --host 127.0.0.1 --port 0 --seed 77")
+    seed = '"seed": 77'
+    assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
+    environment = checkout.environment()
+    checkout.environment = lambda **more: {**environment, **{name: value for name, value in more.items() if name != "KICK_ROBOT_ARGS"}}
+    assert checkout.deploy()[0] == 0
+    assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
+
+
+def test_status_and_logs(brick, checkout):
+    status, output = checkout.deploy("--status")
+    assert status == 5
+    assert "nothing was deployed" in output
+    assert checkout.deploy("--logs")[0] == 1
+    checkout.deploy()
+    status, output = checkout.deploy("--status")
+    assert status == 0
+    assert brick.release() in output
+    assert "left motor (outB): there is none" in output
+    assert "READY tcp://127.0.0.1:" in checkout.deploy("--logs")[1]
+    brick.stop_program()
+    status, output = checkout.deploy("--status")
+    assert status == 5
+    assert "does not run" in output
+
+
+def test_a_dry_run_connects_to_nothing_and_writes_nothing(checkout, brick):
+    status, output = checkout.deploy("--dry-run", to="robot@nowhere.invalid")
+    assert status == 0
+    assert "robot/loop.py" in output
+    assert brick.releases() == []
+    assert not checkout.token.exists()
+    for verb in ("--rollback", "--status", "--logs"):
+        status, output = checkout.deploy("--dry-run", verb, to="robot@nowhere.invalid")
+        assert (status, "would connect to robot@nowhere.invalid" in output) == (0, True)
+
+
+@pytest.mark.parametrize(
+    "arguments", [("--fly",), ("--status", "--logs"), ("--rollback", "--service"), ("another",), ("",), ("-oProxyCommand=touch x",)]
+)
+def test_wrong_use_is_told_before_anything_is_done(checkout, brick, arguments):
+    status, output = checkout.deploy(*arguments)
+    assert status == 2
+    assert output.startswith("deploy: ")
+    assert len(output.splitlines()) == 2
+    assert brick.releases() == []
+
+
+def test_help_names_every_option_and_exit_status(checkout, brick):
+    status, output = checkout.deploy("--help")
+    assert status == 0
+    for word in (
+        "--service",
+        "--rollback",
+        "--status",
+        "--logs",
+        "--dry-run",
+        "KICK_ROBOT_ARGS",
+        "KICK_TOKEN",
+        "KICK_SSH_OPTIONS",
+        "5 no robot's",
+    ):
+        assert word in output
+
+
+def test_nothing_but_the_robots_own_files_is_sent(brick, checkout):
+    write(checkout.folder / "robot" / "secret.txt", "")
+    write(checkout.folder / "robot" / "__pycache__" / "loop.cpython-35.pyc", "")
+    shutil.copy(checkout.folder / "deploy.sh", checkout.folder / "robot" / "notes.sh")
+    checkout.deploy()
+    sent = [path for path in (brick.kickctl / "current").rglob("*") if path.suffix in (".txt", ".sh") or "35" in path.name]
+    assert [path.name for path in sent] == ["brick.sh"]

@@ -1,0 +1,100 @@
+"""kickctl discover, with real multicast DNS on loopback."""
+
+import json
+import socket
+from contextlib import contextmanager
+from types import SimpleNamespace
+
+import pytest
+from zeroconf import ServiceInfo, Zeroconf
+
+from host import discovery
+from host.cli import main
+from host.discovery import BRICK, ROBOT, USER, look_around
+from host.errors import NoLink, WrongUse
+
+LOOPBACK = ["127.0.0.1"]
+# Questions go out at once, after 1 s and after 3 s, and a record that was told within the last second is not told again.
+LONG_S = 4.0
+
+
+@contextmanager
+def announced(*services):
+    """Services (type, name, port, last number of the address, properties) that answer on loopback."""
+    with Zeroconf(interfaces=LOOPBACK) as network:
+        for kind, name, port, number, properties in services:
+            addresses = [socket.inet_aton(f"127.0.0.{number}")]
+            server = f"{name.replace(' ', '-')}.local."
+            info = ServiceInfo(kind, f"{name}.{kind}", port, 0, 0, properties, server, addresses=addresses)
+            network.register_service(info, cooperating_responders=True)  # nobody has to be asked whether the name is free
+        yield
+
+
+def test_robots_come_first_then_bricks_then_nothing_else():
+    services = [
+        (BRICK, "a plain brick", 22, 2, {USER: "robot"}),
+        (BRICK, "file server", 22, 3, {}),
+        (ROBOT, "runner", 5425, 4, {}),
+        (ROBOT, "other port", 5426, 5, {}),
+        (BRICK, "runner", 22, 4, {USER: "robot"}),
+    ]
+    with announced(*services):
+        found = look_around(LONG_S, LOOPBACK)
+    assert [(one.name, one.uri) for one in found] == [
+        ("other port", "tcp://127.0.0.5:5426"),
+        ("runner", "tcp://127.0.0.4"),
+        ("a plain brick", "ssh://robot@127.0.0.2"),
+    ]
+    assert found[0].host == "other-port.local"
+
+
+def record(kind, name, **properties):
+    """A service's record as it came in, unlike one to send, unchecked."""
+    values = {key.encode(): value.encode() for key, value in properties.items()}
+    return SimpleNamespace(
+        type=kind, name=f"{name}.{kind}", server="x.local.", port=1, properties=values, parsed_addresses=lambda version: ["127.0.0.6"]
+    )
+
+
+def test_what_a_stranger_announces_is_printed_without_tricks():
+    assert discovery._found(record(ROBOT, "evil\x1b[2J\x07")).name == "evil[2J"
+    brick = discovery._found(record(BRICK, "b", **{USER: "-oProxyCommand=x y;z\n"}))
+    assert brick.uri == "ssh://oProxyCommandxyz@127.0.0.6"
+    assert discovery._found(record(BRICK, "b", **{USER: ""})) is None
+
+
+@pytest.mark.parametrize("arguments", [(), ("--json",)])
+def test_the_verb_prints_addresses_that_the_other_verbs_take(capsys, monkeypatch, arguments):
+    monkeypatch.setattr(discovery.look_around, "__defaults__", (LOOPBACK,))
+    with announced((ROBOT, "runner", 5425, 4, {})):
+        assert main(["discover", "--seconds", str(LONG_S), *arguments]) == 0
+    out = capsys.readouterr().out
+    if arguments:
+        (robot,) = json.loads(out)["robots"]
+        assert (robot["uri"], robot["host"], robot["addresses"]) == ("tcp://127.0.0.4", "runner.local", ["127.0.0.4"])
+    else:
+        assert out == "tcp://127.0.0.4  (runner: robot)\n"
+
+
+def test_nobody_there_is_told_with_what_to_try(capsys, monkeypatch):
+    monkeypatch.setattr(discovery.look_around, "__defaults__", (LOOPBACK,))
+    assert main(["discover", "--seconds", "0.3", "--json"]) == 3
+    captured = capsys.readouterr()
+    assert json.loads(captured.out) == {"robots": []}
+    for advice in ("USB", "address", "ev3dev-2.local"):
+        assert advice in captured.err
+
+
+@pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan"), float("inf")])
+def test_no_time_to_listen(seconds):
+    with pytest.raises(WrongUse):
+        look_around(seconds, LOOPBACK)
+
+
+def test_no_network_is_told_in_words(monkeypatch):
+    def no_network(**options):
+        raise OSError(101, "Network is unreachable")
+
+    monkeypatch.setattr(discovery, "Zeroconf", no_network)
+    with pytest.raises(NoLink, match="Network is unreachable"):
+        look_around(0.1)

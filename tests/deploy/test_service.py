@@ -1,0 +1,116 @@
+"""The robot's program as a service: deploy.sh puts it in place, and the unit's own words make the motors stop however it ends."""
+
+import getpass
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.deploy.brick import ROOT, needs_sshd, wait_until, write
+
+pytestmark = needs_sshd
+
+
+@pytest.fixture
+def served(brick, checkout):
+    """A brick with a motor and systemd, to which the program was deployed as a service."""
+    write(brick.sysfs / "tacho-motor" / "motor0" / "command", "")
+    brick.replace("systemctl", f'exec {sys.executable} {Path(__file__).parent / "systemd.py"} "$@"')
+    status, output = checkout.deploy("--service")
+    assert status == 0, output
+    yield brick
+    manager = brick.etc / "systemd" / "system" / "manager.pid"
+    if manager.exists():
+        os.kill(int(manager.read_text(encoding="ascii")), signal.SIGKILL)
+
+
+def unit(brick):
+    return brick.etc / "systemd" / "system" / "kickctl.service"
+
+
+def commands(brick):
+    return (brick.etc / "systemd" / "systemctl.log").read_text(encoding="ascii").splitlines()
+
+
+def notified(brick):
+    return (unit(brick).parent / "notified").read_text(encoding="ascii").splitlines()
+
+
+def resets(brick):
+    """How the motor's command file ends up; emptied for the next time."""
+    command = brick.sysfs / "tacho-motor" / "motor0" / "command"
+    text = command.read_text(encoding="ascii")
+    command.write_text("", encoding="ascii")
+    return text
+
+
+def test_the_program_starts_with_the_brick_and_tells_systemd_that_it_lives(served, checkout):
+    assert commands(served)[:2] == ["daemon-reload", "enable kickctl"]
+    assert served.runs() == served.release()
+    wait_until(lambda: notified(served)[-1].endswith("WATCHDOG=1"))
+    assert notified(served)[0] == f"{served.pid()} READY=1"
+    assert "it starts with the brick" in checkout.deploy("--status")[1]
+
+
+def test_upgrade_and_rollback_go_through_systemd(served, checkout):
+    old = served.release()
+    checkout.change()
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert served.runs() == served.release() != old
+    assert commands(served).count("stop kickctl") == 1
+    assert commands(served).count("enable kickctl") == 1
+    checkout.change("params", "\nraise RuntimeError('no')\n")
+    assert checkout.deploy()[0] == 1
+    assert checkout.deploy("--rollback")[0] == 0
+    assert served.runs() == old
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV, signal.SIGSTOP])
+def test_whatever_ends_the_program_resets_the_motors_and_starts_it_anew(served, number):
+    resets(served)
+    pid = served.pid()
+    os.kill(pid, number)  # one that hangs is aborted when it misses to say that it lives
+    wait_until(lambda: served.pid() not in (None, pid))
+    assert resets(served).endswith("reset\n")
+    wait_until(lambda: f"{served.pid()} READY=1" in notified(served))
+
+
+def test_a_program_that_ends_well_is_not_started_again(served):
+    resets(served)
+    pid = served.pid()
+    served.stop_program()
+    wait_until(lambda: not (unit(served).parent / "manager.pid").exists())
+    assert f"{pid} STOPPING=1" in notified(served)
+    assert resets(served).endswith("reset\n")
+    assert served.pid() is None
+
+
+def test_the_network_is_told_the_port_that_the_robot_listens_on(served):
+    told = dict(re.findall(r"<(\S+)>(.*)</\1>", (served.etc / "avahi" / "services" / "kickctl.service").read_text(encoding="utf-8")))
+    assert told["type"] == "_kickctl._tcp"
+    assert told["port"] == served.uri().partition("port=")[2]
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd-analyze: apt-get install systemd")
+def test_systemd_understands_every_line_of_the_unit(tmp_path):
+    text = (ROOT / "robot" / "service" / "kickctl.service").read_text(encoding="utf-8")
+    for name, value in (("@USER@", getpass.getuser()), ("@ROOT@", "/home/robot/kickctl"), ("@CLASS@", "/sys/class")):
+        text = text.replace(name, value)
+    write(tmp_path / "kickctl.service", text)
+    done = subprocess.run(
+        ["systemd-analyze", "verify", "--man=no", tmp_path / "kickctl.service"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_unit_uses_nothing_that_the_bricks_systemd_does_not_know():
+    """What came after systemd 232, of what such a unit might want."""
+    text = (ROOT / "robot" / "service" / "kickctl.service").read_text(encoding="utf-8")
+    for later in ("append:", "truncate:", "ExecCondition", "RestartMode", "RestartSteps", "OOMPolicy", "TimeoutStartFailureMode"):
+        assert later not in text

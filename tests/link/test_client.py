@@ -1,0 +1,456 @@
+"""The host's client: links that break, robots that begin anew or stay away, and what a log must not miss or hear twice."""
+
+import gc
+import json
+import os
+import socket
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from host.client import RECONNECT_S, Robot, connect
+from host.conversation import Conversation
+from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
+from host.links import LinkLost, TcpLink
+from host.log import Log
+from host.sim_link import SimLink
+from host.subscription import Subscription
+from robot import wire
+from robot.blackbox import BlackBox
+from robot.loop import Loop
+from robot.motors import MonotonicClock
+from robot.record import unpack
+from robot.server import Server
+from tests.rig import TOKEN, Client, Clock, Motor, Rig, packed
+
+
+class RigLink(SimLink):
+    """An embedded robot on the rig whose link can be cut anywhere, and which can go away and begin anew."""
+
+    def __init__(self, capacity=20000):
+        clock = Clock()
+        super().__init__("sim://rig", SimpleNamespace(motors=(Motor(turn=0.1), Motor(turn=0.2)), battery=None, clock=clock, seed=1))
+        self.capacity = capacity
+        self.loop.blackbox.__init__(self.loop.params.values(), capacity)
+        self.loop.safety.__init__()
+        self.loop.start()
+        self.left = None
+        self.away_until = 0.0
+
+    def open(self):
+        if self.now() < self.away_until:
+            self.run_tick()
+            raise NoLink("the robot is away")
+        super().open()
+
+    def receive(self, timeout_s):
+        data = super().receive(timeout_s)
+        if self.left is not None:
+            data, self.left = data[: self.left], self.left - len(data)
+            if self.left <= 0:
+                self.cut()
+        return data
+
+    def cut(self, away_s=0.0):
+        """Lose the link, and everything on its way."""
+        self.left = None
+        self.close()
+        self.away_until = self.now() + away_s
+
+    def restart(self):
+        """Another boot of the same robot."""
+        self.close()
+        self.loop = Loop(self.brick.motors, None, self.brick.clock, 2)
+        self.server = Server(self.loop, self.token)
+        self.loop.start()
+
+    def records(self):
+        box = self.loop.blackbox
+        return unpack(b"".join(box.read(tick, 1) for tick in range(box.oldest_tick, box.next_tick)))
+
+    def events(self):
+        return [event for _, event in self.loop.blackbox._journal]
+
+
+@pytest.fixture
+def link():
+    return RigLink()
+
+
+@pytest.fixture
+def robot(link):
+    with Robot(link, link.token) as robot:
+        yield robot
+
+
+def once(events):
+    """The events of the robot's own in a log, which must be told once each."""
+    return [event for event in events if event["event"] not in ("snapshot", "lost", "restart")]
+
+
+# Cut links
+
+
+@settings(max_examples=40)
+@given(st.lists(st.tuples(st.integers(0, 3000), st.sampled_from(("kick", "set", "wait"))), max_size=12))
+def test_a_log_misses_nothing_and_hears_nothing_twice_wherever_the_link_is_cut(cuts):
+    link = RigLink()
+    link.loop.set_params({"link_loss": "continue"})
+    with Robot(link, link.token) as robot:
+        log = Log()
+        robot.add_tap(log)
+        first = link.loop.blackbox.next_tick
+        for place, what in cuts:
+            link.left = place
+            if what == "kick":
+                robot.kick("membrane")
+            elif what == "set":
+                robot.set(k=place / 100.0)
+            robot.wait(0.3)
+        robot.wait(0.2)
+        robot.remove_tap(log)
+    assert [record.tick for record in log.records] == list(range(first, first + len(log.records)))
+    assert packed(log.records) == packed(link.records()[first : first + len(log.records)])
+    told = once(log.events)
+    noted = json.loads(json.dumps([event for event in link.events() if event["tick"] >= first]))
+    assert told == noted[: len(told)]
+    assert all(event["tick"] > log.records[-1].tick for event in noted[len(told) :])
+    assert len([event for event in told if event["event"] == "kick"]) == sum(what == "kick" for _, what in cuts)
+    assert [event["event"] for event in log.events if event["event"] in ("snapshot", "lost")] == ["snapshot"]
+
+
+def test_a_command_that_the_link_swallowed_is_done_once(robot, link):
+    """Cut before the robot has read it, and cut before its answer is back: the kick happens, once, in the tick that is told."""
+    robot.set(link_loss="continue")
+    for cut_the_answer in (False, True):
+        before = len(link.events())
+        send = link.send
+
+        def swallow(data, send=send, cut_the_answer=cut_the_answer):
+            link.send = send
+            if cut_the_answer:
+                send(data)
+                link.run_tick()
+            link.cut()
+
+        link.send = swallow
+        tick = robot.kick("membrane")
+        robot.wait(0.1)
+        kicks = [event for event in link.events()[before:] if event["event"] == "kick"]
+        assert [event["tick"] for event in kicks] == [tick]
+
+
+def test_a_host_that_comes_back_still_controls(robot, link):
+    robot.set(link_loss="hold")
+    link.cut(away_s=1.0)
+    robot.wait(0.1)
+    assert robot.status()["state"] == "running"
+    assert [event["event"] for event in link.events()[-3:]] == ["link_loss", "hold", "resume"]
+    link.cut(away_s=0.1)
+    robot.set(k=5.0)
+    assert link.events()[-1]["event"] == "params"
+
+
+def test_a_host_whose_place_was_taken_is_told_so(robot, link):
+    robot.set(link_loss="continue")
+    link.cut(away_s=1.0)
+    while link.loop.lease.holder is not None:
+        link.run_tick()
+    other = Client(link.loop, link.token, name="other")
+    other.session._token = link.token
+    other.greet().tell("lease")
+    link.loop.params.link_loss_s = 10.0
+    robot.wait(0.1)
+    with pytest.raises(RefusedByRobot, match="other"):
+        robot.kick("membrane")
+    robot.stop()
+    assert link.loop.safety.reason == "stop frame from 'kickctl'"
+
+
+def test_a_host_that_was_away_too_long_is_told_exactly_what_it_lost():
+    link = RigLink(capacity=50)
+    with Robot(link, link.token) as robot:
+        log = Log()
+        robot.add_tap(log)
+        robot.wait(0.3)
+        link.cut(away_s=6.0)
+        robot.wait(6.5)
+    (lost,) = [event for event in log.events if event["event"] == "lost"]
+    assert log.missing() == [(lost["from"], lost["tick"])]
+    ticks = [record.tick for record in log.records]
+    assert lost["from"] in range(8, 14)
+    assert lost["tick"] - lost["from"] > 100
+    assert ticks == [*range(ticks[0], lost["from"]), *range(lost["tick"], ticks[-1] + 1)]
+    assert log.events[-1]["event"] == "snapshot"
+
+
+def test_a_robot_that_began_anew_is_noticed_and_followed(robot, link):
+    log = Log()
+    robot.add_tap(log)
+    robot.wait(0.5)
+    boot = robot.hello["boot"]
+    link.restart()
+    robot.wait(0.5)
+    assert robot.hello["boot"] != boot
+    assert [event["event"] for event in log.events] == ["snapshot", "restart", "snapshot", "start"]
+    assert log.restarts() == [log.places[1]]
+    after = log.records[log.places[1] :]
+    assert [record.tick for record in after] == list(range(len(after)))
+    assert log.missing() == []
+
+
+def test_a_robot_that_stays_away_is_given_up_on(robot, link):
+    robot.wait(0.1)
+    begin = link.now()
+    link.cut(away_s=1000.0)
+    with pytest.raises(NoLink, match="did not come back"):
+        robot.wait(1.0)
+    assert RECONNECT_S <= link.now() - begin < RECONNECT_S + 1.0
+    for call in (robot.status, robot.stop, lambda: robot.pump(0.0), lambda: robot.kick("phase")):
+        with pytest.raises(NoLink):
+            call()
+
+
+def test_a_silent_robot_is_given_up_on(robot, link):
+    robot.wait(0.1)
+    serve, link.server.serve = link.server.serve, lambda timeout_s: None
+    with pytest.raises(NoLink, match="does not answer"):
+        robot.status()
+    with pytest.raises(NoLink, match="no more records"):
+        robot.wait(1.0)
+    link.server.serve = serve
+
+
+# Calls
+
+
+def test_a_pull_brings_the_whole_black_box_once(robot, link):
+    robot.wait(0.5)
+    robot.kick("position", ticks=2)
+    robot.wait(0.5)
+    log = Log()
+    robot.pull(log)
+    assert [event["event"] for event in log.events] == ["snapshot", "start", "kick"]
+    assert packed(log.records) == packed(link.records()[: len(log.records)])
+    assert log.records[0].tick == 0
+    assert len(log.records) > 30
+    again = Log()
+    link.left = 2000
+    robot.pull(again)
+    assert packed(again.records)[: len(packed(log.records))] == packed(log.records)
+    assert again.missing() == []
+
+
+def test_a_lease_is_kept_while_waiting_and_given_back_at_the_end(link):
+    with Robot(link, link.token) as robot:
+        robot.lease()
+        robot.wait(5.0)
+        assert link.loop.lease.holder is not None
+    assert link.loop.lease.holder is None
+    link.run_tick()
+    assert link.loop.safety.reason == "started"
+
+
+def test_numbers_that_are_none_are_refused_before_they_are_sent(robot):
+    for call in (lambda: robot.set(k=float("nan")), lambda: robot.kick("phase", shift=float("inf"))):
+        with pytest.raises(WrongUse):
+            call()
+    assert robot.status()["params"]["k"] == 8.0
+
+
+def test_a_machine_without_the_token_may_look_and_stop(link):
+    with Robot(link, None) as robot:
+        assert robot.status()["state"] == "running"
+        assert len(robot.record(0.3).records) >= 10
+        for call in (robot.start, robot.lease, lambda: robot.kick("phase"), lambda: robot.set(k=1.0), robot.clear):
+            with pytest.raises(RefusedByRobot, match="token"):
+                call()
+        robot.stop()
+        assert robot.status()["state"] == "stopped"
+
+
+def test_a_wrong_token_is_refused_and_leaves_nothing_open(link):
+    files = len(os.listdir("/proc/self/fd"))  # noqa: PTH208
+    with pytest.raises(RefusedByRobot, match="token"):
+        Robot(link, b"x" * 32)
+    gc.collect()
+    assert len(os.listdir("/proc/self/fd")) == files  # noqa: PTH208
+
+
+def test_a_session_leaves_nothing_open():
+    with connect("sim://", seed=1) as robot:
+        robot.wait(0.1)
+        files = len(os.listdir("/proc/self/fd"))  # noqa: PTH208
+    assert len(os.listdir("/proc/self/fd")) == files - 2  # noqa: PTH208
+
+
+# Real links
+
+
+class TcpRobot:
+    """A robot's program in a thread, in real time."""
+
+    def __init__(self, **params):
+        self.loop = Loop((Motor(turn=0.1), Motor(turn=0.1)), None, MonotonicClock(), 1)
+        self.loop.set_params({"tick_s": 0.01, **params})
+        self.server = Server(self.loop, TOKEN)
+        self.port = self.server.listen("127.0.0.1", 0)
+        self.loop.start()
+        self._thread = threading.Thread(target=self.loop.run, args=(self.server.serve,))
+        self._thread.start()
+
+    def link(self):
+        return TcpLink(f"tcp://127.0.0.1:{self.port}", "127.0.0.1", self.port)
+
+    def close(self):
+        self.loop.done = True
+        self._thread.join()
+        self.server.close()
+
+
+@pytest.fixture
+def machine():
+    machine = TcpRobot(link_loss_s=0.2)
+    yield machine
+    machine.close()
+
+
+def test_an_idle_notebook_keeps_its_lease_and_its_record(machine):
+    """Real time: nothing but the client's own thread keeps the link alive here."""
+    with Robot(machine.link(), TOKEN) as robot:
+        robot.lease()
+        log = Log()
+        robot.add_tap(log)
+        time.sleep(0.7)
+        assert machine.loop.lease.holder is not None
+        assert machine.loop.safety.reason == "started"
+        assert len(log) > 40
+        assert log.missing() == []
+
+
+def test_a_tcp_link_that_breaks_comes_back_without_a_gap(machine):
+    with Robot(machine.link(), TOKEN) as robot:
+        log = Log()
+        robot.add_tap(log)
+        for _ in range(5):
+            robot.wait(0.05)
+            robot.link._socket.shutdown(socket.SHUT_RDWR)
+        robot.wait(0.05)
+        assert log.missing() == []
+        assert len(log) > 25
+        assert [event["event"] for event in log.events] == ["snapshot"]
+
+
+def test_where_nobody_listens_is_told_in_words():
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        port = unused.getsockname()[1]
+        with pytest.raises(NoLink, match="no robot answers"):
+            Robot(TcpLink(f"tcp://127.0.0.1:{port}", "127.0.0.1", port), None)
+
+
+# What comes from the robot
+
+scraps = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=6,
+)
+fields = st.sampled_from(("id", "result", "error", "event", "tick", "number", "from", "params", "kick", "nonce", "host_nonce", "boot", "proof", "code"))
+messages = st.dictionaries(fields, scraps | st.sampled_from(("snapshot", "lost", "params", "kick", "00" * 16)), max_size=6).map(wire.dump)
+
+
+@given(st.lists(st.tuples(st.sampled_from(wire.TYPES), st.binary(max_size=300) | messages), max_size=6), st.booleans())
+def test_no_frame_of_a_strange_robot_raises_anything_but_words(frames, greeted):
+    talk = Conversation(TOKEN, "n", "c")
+    place = Subscription()
+    talk.begin()
+    talk.hello_frame()
+    if greeted:
+        link = Client(Rig().loop)
+        link.talk = talk
+        link.greet()
+    for kind, payload in frames:
+        try:
+            for item in talk.feed(wire.encode(kind, payload)):
+                place.take_event(item) if isinstance(item, dict) else place.take_samples(item)
+            for number in (None, 1):
+                talk.answer(number)
+        except KickctlError as error:
+            assert error.message
+
+
+def test_answers_to_who_used_the_line_before_are_not_taken_for_ones_own():
+    """Over a serial line, what the robot still has to say to the one before comes first."""
+    rig = Rig()
+    before, after = Client(rig.loop).greet(), Conversation(TOKEN, "n", "c")
+    after.begin()
+    stale = before.session.receive(wire.ASK, wire.dump({"id": 1, "do": "status"}))
+    hello = before.session.receive(*_frame(before.talk.hello_frame()))
+    list(before.talk.feed(hello))
+    stale += hello + before.session.receive(*_frame(before.talk.auth_frame()))
+    hello = after.hello_frame()
+    list(after.feed(stale))
+    assert after.hello == {}
+    list(after.feed(before.session.receive(*_frame(hello))))
+    assert after.hello
+    number, _ = after.request("status", {}, sealed=False)
+    assert number == 1
+    assert after.answer(number) is None
+    list(after.feed(before.session.receive(*_frame(after.auth_frame()))))
+    assert after.trusted
+
+
+def _frame(data):
+    decoder = wire.Decoder()
+    decoder.feed(data)
+    return decoder.next()
+
+
+@settings(max_examples=60)
+@given(st.data())
+def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
+    """Any frame may get lost. The client notices from numbers alone, asks again, and everything passes once and in order."""
+    rig = Rig()
+    rig.loop.blackbox = BlackBox(rig.loop.params.values(), 40)
+    rig.loop.start()
+    client = Client(rig.loop, token=None).greet()
+    place, log = Subscription(), Log()
+
+    def arrive(frame):
+        for item in client.talk.feed(frame):
+            if isinstance(item, dict):
+                event = place.take_event(item)
+                if event is not None:
+                    log.take_event(event)
+            else:
+                log.take_records(place.take_samples(item))
+
+    place.begin(client.ask("subscribe")["tick"])
+    for number in range(data.draw(st.integers(5, 40))):
+        for _ in range(data.draw(st.integers(0, 3))):
+            rig.loop.set_params({"k": float(number % 90)})
+        rig.run(data.draw(st.integers(0, 3) | st.just(60)))
+        while (frame := client.session.stream()) is not None:
+            if data.draw(st.integers(0, 3)):
+                arrive(frame)
+        if not place.following and data.draw(st.booleans()):
+            client.session.subscribe(place.next_tick)
+    for _ in range(2):
+        rig.run(1)
+        client.session.subscribe(place.next_tick)
+        while (frame := client.session.stream()) is not None:
+            arrive(frame)
+    missing = [(event["from"], event["tick"]) for event in log.events if event["event"] == "lost"]
+    told = {tick for first, end in missing for tick in range(first, end)}
+    ticks = [record.tick for record in log.records]
+    assert sorted({*ticks, *told}) == list(range(rig.loop.blackbox.next_tick))
+    assert len(ticks) + len(told) == rig.loop.blackbox.next_tick
+    numbers = [event["number"] for event in once(log.events)]
+    assert numbers == sorted(set(numbers))
+    if not missing:
+        assert once(log.events) == rig.events

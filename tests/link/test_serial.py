@@ -1,0 +1,280 @@
+"""The same conversation over serial lines: pseudo-terminals with a cable between them that makes noise and comes off."""
+
+import os
+import select
+import threading
+import time
+import tty
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from host import client as client_module
+from host.client import Robot
+from host.links import make_link
+from host.log import Log
+from robot import program, wire
+from robot.loop import Loop
+from robot.motors import MonotonicClock
+from robot.record import STATES, unpack
+from robot.server import LINE_SILENCE_S, Server
+from tests.rig import TOKEN, Motor, Rig
+
+STOP = wire.encode(wire.STOP, b"")
+TICK_S = 0.01
+
+
+class Cable:
+    """Two serial ports, `robot` and `host`, and what joins them; between frames it adds what `noise` returns."""
+
+    def __init__(self, folder, noise=lambda: b""):
+        self.paths = {name: folder / name for name in ("robot", "host")}
+        self.noise = noise
+        self._masters = {}
+        self._decoders = {}
+        self._ended = threading.Event()
+        self.plug()
+        self._thread = threading.Thread(target=self._carry)
+        self._thread.start()
+
+    def plug(self):
+        """Make the ports appear."""
+        masters = {}
+        for name, path in self.paths.items():
+            masters[name], slave = os.openpty()
+            tty.setraw(slave)
+            os.set_blocking(masters[name], False)
+            path.symlink_to(os.ttyname(slave))
+            os.close(slave)
+            self._decoders[name] = wire.Decoder()
+        self._masters = masters
+
+    def unplug(self):
+        """Take the ports away from whoever has them open."""
+        masters, self._masters = self._masters, {}
+        time.sleep(0.02)
+        for path in self.paths.values():
+            path.unlink(missing_ok=True)
+        for master in masters.values():
+            os.close(master)
+
+    def close(self):
+        self._ended.set()
+        self._thread.join()
+        self.unplug()
+
+    def _carry(self):
+        while not self._ended.is_set():
+            masters = self._masters
+            try:
+                for name in masters:
+                    other = masters["host" if name == "robot" else "robot"]
+                    if select.select((masters[name],), (), (), 0.001)[0]:
+                        self._decoders[name].feed(os.read(masters[name], 4096))
+                    while (frame := self._decoders[name].next()) is not None:
+                        os.write(other, self.noise() + wire.encode(*frame))
+            except OSError:
+                # Nobody has the other port open, or it came off.
+                time.sleep(0.002)
+
+
+class Machine:
+    """A robot's program in a thread, in real time, at the end of a cable."""
+
+    def __init__(self, path, token=TOKEN):
+        self.loop = Loop((Motor(turn=0.1), Motor(turn=0.1)), None, MonotonicClock(), 1)
+        self.loop.set_params({"tick_s": TICK_S})
+        self.server = Server(self.loop, token)
+        self.server.attach(program._line_opener(str(path)))
+        self.loop.start()
+        self._thread = threading.Thread(target=self.loop.run, args=(self.server.serve,))
+        self._thread.start()
+        while not self.server._peers:
+            time.sleep(0.001)
+
+    def close(self):
+        self.loop.done = True
+        self._thread.join()
+        self.server.close()
+
+
+def noisy(seed):
+    random = Random(seed)
+    return lambda: random.randbytes(random.randrange(12)) if random.random() < 0.5 else random.choice((b"", b"\xa5", wire.SYNC, STOP[:6]))
+
+
+@pytest.fixture
+def joined(tmp_path):
+    """(cable, machine, uri)"""
+    cable = Cable(tmp_path, noisy(1))
+    machine = Machine(cable.paths["robot"])
+    yield cable, machine, f"serial://{cable.paths['host']}?baud=115200"
+    machine.close()
+    cable.close()
+
+
+def test_a_whole_conversation_over_a_noisy_line(joined):
+    _, machine, uri = joined
+    with Robot(make_link(uri), TOKEN, "serial") as robot:
+        log = Log(robot.info())
+        robot.add_tap(log)
+        assert [row["name"] for row in robot.describe("channels")][0] == "tick"
+        robot.set(k=6.0)
+        applied = robot.kick("position", ticks=3)
+        robot.wait(0.5)
+        robot.stop()
+        robot.wait(0.05)
+        robot.remove_tap(log)
+        assert robot.status()["state"] == "stopped"
+    ticks = [record.tick for record in log.records]
+    assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
+    assert len(ticks) >= 0.5 / TICK_S
+    assert [record.tick for record in log.records if record.kick] == [applied, applied + 1, applied + 2]
+    assert [event["event"] for event in log.events] == ["snapshot", "params", "kick", "stop"]
+    box = machine.loop.blackbox
+    assert log.records[:30] == unpack(b"".join(box.read(tick, 1) for tick in ticks[:30]))
+
+
+def test_a_line_that_comes_off_is_taken_up_again_without_a_gap(joined, monkeypatch):
+    monkeypatch.setattr(client_module, "ANSWER_S", 0.6)
+    cable, machine, uri = joined
+    machine.loop.set_params({"link_loss": "continue"})
+    with Robot(make_link(uri), TOKEN, "serial") as robot:
+        log = Log()
+        robot.add_tap(log)
+        robot.wait(0.1)
+        cable.unplug()
+        threading.Timer(0.2, cable.plug).start()
+        robot.wait(0.5)
+        robot.kick("membrane")
+        robot.wait(0.05)
+        assert robot.link.uri == uri
+    assert log.missing() == []
+    assert len(log.kicks()) == 1
+    assert not [event for event in log.events if event["event"] == "lost"]
+
+
+def test_the_robot_ends_its_side_with_its_program(joined):
+    _, machine, uri = joined
+    with Robot(make_link(uri), None) as robot:
+        robot.wait(0.05)
+    machine.close()
+    assert machine.server._peers == []
+    assert STATES[machine.loop.safety.state] == "running"
+
+
+# The robot's side alone, in virtual time
+
+
+@pytest.fixture
+def line():
+    """(rig, server, the file descriptor of the line's far end)"""
+    rig = Rig()
+    rig.loop.start()
+    server = Server(rig.loop, TOKEN)
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    os.set_blocking(slave, False)
+    far = open(slave, "r+b", buffering=0)  # noqa: SIM115
+    server.attach(lambda: far)
+    yield rig, server, master
+    server.close()
+    far.close()
+    os.close(master)
+
+
+def served(rig, server, seconds=0.03):
+    """Serve until the line has been heard, and let time pass."""
+    for _ in range(20):
+        server.serve(0.0)
+        time.sleep(0.0005)
+    rig.clock.time += seconds
+
+
+def test_a_silent_line_stays_open(line):
+    rig, server, _ = line
+    for _ in range(300):
+        served(rig, server, 1.0) if rig.clock.time < 3 else server.serve(0.0)
+    assert len(server._peers) == 1
+
+
+@pytest.mark.parametrize("noise", [b"", b"\xff", b"\xa5", os.urandom(100).replace(wire.SYNC, b""), wire.SYNC + b"\x63", STOP[:3] + STOP])
+def test_a_stop_behind_noise_is_heard(line, noise):
+    rig, server, master = line
+    os.write(master, noise + STOP)
+    served(rig, server)
+    served(rig, server)
+    assert STATES[rig.loop.safety.state] == "stopped"
+
+
+@pytest.mark.parametrize("header", [wire.SYNC + b"\x08\x0f\xff", wire.SYNC + b"\x03\x10\x00" + STOP[:2]])
+def test_a_stop_behind_what_looks_like_a_long_frame_is_heard_once_the_line_falls_silent(line, header):
+    """A flipped bit in a length would otherwise swallow everything for kilobytes."""
+    rig, server, master = line
+    os.write(master, header + STOP)
+    served(rig, server)
+    assert STATES[rig.loop.safety.state] == "running"
+    rig.clock.time += LINE_SILENCE_S
+    served(rig, server)
+    assert STATES[rig.loop.safety.state] == "stopped"
+
+
+def test_a_frame_that_arrives_in_pieces_is_not_torn_apart(line):
+    rig, server, master = line
+    for byte in STOP[:-1]:
+        os.write(master, bytes([byte]))
+        served(rig, server, 0.9 * LINE_SILENCE_S)
+    assert STATES[rig.loop.safety.state] == "running"
+    os.write(master, STOP[-1:])
+    served(rig, server)
+    assert STATES[rig.loop.safety.state] == "stopped"
+
+
+def test_a_refused_conversation_on_a_line_can_begin_anew_but_not_go_on(line):
+    rig, server, master = line
+    os.write(master, wire.encode(wire.ASK, b"{}"))
+    served(rig, server)
+    (peer,) = server._peers
+    assert not peer.session.closing
+    assert wire.load(_one_frame(master)[1])["error"]["code"] == "broken"
+    os.write(master, wire.encode_json(wire.HELLO, {"protocol": [1, 0], "name": "n", "client": "c", "nonce": "00" * 16}))
+    served(rig, server)
+    assert _one_frame(master)[0] == wire.HELLO
+    os.write(master, wire.encode(wire.COMMAND, bytes(30)))
+    served(rig, server)
+    assert wire.load(_one_frame(master)[1])["error"]["code"] == "token"
+    os.write(master, wire.encode_json(wire.ASK, {"id": 1, "do": "status"}))
+    served(rig, server)
+    assert wire.load(_one_frame(master)[1])["error"]["code"] == "broken"
+
+
+def _one_frame(master):
+    decoder = wire.Decoder()
+    decoder.feed(os.read(master, 4096))
+    frame = decoder.next()
+    assert decoder.next() is None
+    return frame
+
+
+def test_a_line_that_cannot_be_opened_is_tried_again_now_and_then():
+    rig = Rig()
+    server = Server(rig.loop, TOKEN)
+    tries = []
+
+    def opens():
+        tries.append(rig.clock.time)
+        raise OSError("no such line")
+
+    server.attach(opens)
+    for _ in range(100):
+        rig.clock.wait(rig.loop.deadline, server.serve)
+        rig.loop.tick()
+    assert len(tries) == 3
+
+
+def test_a_missing_port_is_told_in_words(tmp_path):
+    with pytest.raises(client_module.NoLink) as error:
+        Robot(make_link(f"serial://{tmp_path / 'nothing'}"), None)
+    assert "cannot be opened" in error.value.message
+    assert Path(tmp_path).exists()

@@ -1,0 +1,117 @@
+"""robot.health asks the robot's program on this machine; here the program runs in a thread of the test."""
+
+import socket
+import threading
+from contextlib import contextmanager
+
+import pytest
+
+from robot import health, wire
+from robot.health import Unwell, examine, main
+from robot.loop import Loop
+from robot.motors import MonotonicClock
+from robot.server import Server
+from tests.rig import TOKEN, Motor
+
+
+@contextmanager
+def robot(ticks=True):
+    """(port, loop) of a robot that answers, and ticks or not."""
+    loop = Loop((Motor(), Motor()), None, MonotonicClock(), 1)
+    server = Server(loop, TOKEN)
+    port = server.listen("127.0.0.1", 0)
+
+    def answer():
+        while not loop.done:
+            server.serve(0.01)
+
+    thread = threading.Thread(target=(lambda: loop.run(server.serve)) if ticks else answer)
+    thread.start()
+    try:
+        yield port, loop
+    finally:
+        loop.done = True
+        thread.join()
+        server.close()
+
+
+@contextmanager
+def program(answers):
+    """The port of a program that sends these bytes to whoever connects, and hangs up."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+
+        def serve():
+            link = listener.accept()[0]
+            link.recv(4096)
+            link.sendall(answers)
+            link.close()
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        yield listener.getsockname()[1]
+        thread.join()
+
+
+def hello(**changes):
+    answer = {"software": health.__version__, "nonce": "00" * wire.NONCE_BYTES, "boot": "1"}
+    return wire.encode_json(wire.HELLO, {**answer, **changes})
+
+
+def test_a_robot_that_ticks_is_well():
+    with robot() as (port, _):
+        assert examine(port, TOKEN)["state"] == "idle"
+
+
+def test_a_robot_in_fault_is_well_as_a_program(capsys, monkeypatch, tmp_path):
+    (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
+    (tmp_path / "token").chmod(0o600)
+    with robot() as (port, loop):
+        loop.safety.fault("the cable is out")
+        monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")])
+        assert main() == 0
+    assert capsys.readouterr().out == "fault (the cable is out)\n"
+
+
+def test_one_that_does_not_tick_is_not(monkeypatch):
+    monkeypatch.setattr(health, "LONGEST_TICK_S", 0.1)
+    with robot(ticks=False) as (port, _), pytest.raises(Unwell, match="does not tick"):
+        examine(port, TOKEN)
+
+
+def test_one_with_another_token_is_not():
+    with robot() as (port, _), pytest.raises(Unwell, match="the token is not this robot's"):
+        examine(port, bytes(wire.TOKEN_BYTES))
+
+
+@pytest.mark.parametrize(
+    ("answers", "words"),
+    [
+        (b"", "hangs up"),
+        (b"HTTP/1.1 400 Bad Request\r\n\r\n", "hangs up"),
+        (hello(software="9.9.9"), "of release 9.9.9"),
+        (hello() + wire.encode_json(wire.AUTH, {"proof": "00" * 32}), "does not have the token"),
+    ],
+)
+def test_what_is_no_robot_of_this_release_is_not(answers, words):
+    with program(answers) as port, pytest.raises(Unwell, match=words):
+        examine(port, TOKEN)
+
+
+@pytest.mark.parametrize("answers", [wire.encode(wire.HELLO, b"[]"), wire.encode(wire.HELLO, b"{}"), hello(nonce="x"), b""])
+def test_any_trouble_is_a_line_and_a_status(capsys, monkeypatch, tmp_path, answers):
+    (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
+    (tmp_path / "token").chmod(0o600)
+    with program(answers) as port:
+        monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")])
+        assert main() == 1
+    out = capsys.readouterr().out
+    assert out.startswith(f"the robot's program at port {port} is not well: ")
+    assert out.count("\n") == 1
+
+
+def test_nobody_there(capsys, monkeypatch, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+    monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "none")])
+    assert main() == 1
+    assert "token" in capsys.readouterr().out

@@ -1,0 +1,138 @@
+"""The watchdog process over a tree of plain files: whatever ends or stops the loop's process, the motors are told to stop."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from robot.motors import MotorFault
+from robot.watchdog import MOST_UNANSWERED, Watchdog, stop_all, watch
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE_S = 20.0
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """Two motors that run."""
+    for number in range(2):
+        folder = tmp_path / "tacho-motor" / f"motor{number}"
+        folder.mkdir(parents=True)
+        (folder / "command").write_text("")
+        (folder / "duty_cycle_sp").write_text("9")
+    return tmp_path
+
+
+def stopped(tree):
+    """Whether every motor has been told to stop, with a stored duty of 0."""
+    motors = list((tree / "tacho-motor").iterdir())
+    return all((motor / "command").read_text() == "stop" and (motor / "duty_cycle_sp").read_text() == "0" for motor in motors)
+
+
+def eventually(condition):
+    """Whether it comes true, given time enough for any machine."""
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        if condition():
+            return True
+        time.sleep(0.01)
+    return False
+
+
+_LOOP = """
+import os, signal, sys, time
+from robot.watchdog import Watchdog
+dog = Watchdog(sys.argv[1])
+print(dog.pid, flush=True)
+end = sys.argv[2]
+for beat in range(10**6):
+    dog.feed()
+    time.sleep(0.02)
+    if beat == 20 and end != "live":
+        if end == "segv":
+            os.kill(os.getpid(), signal.SIGSEGV)
+        if end == "raise":
+            raise RuntimeError("the loop failed")
+        time.sleep(3600)
+"""
+
+
+def loop_process(tree, end):
+    """A process that feeds its watchdog until it comes to its end."""
+    return subprocess.Popen([sys.executable, "-c", _LOOP, str(tree), end], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+
+
+@pytest.mark.parametrize("end", ["segv", "raise", "hang"])
+def test_motors_stop_when_the_loop_comes_to_an_end(tree, end):
+    with loop_process(tree, end) as process:
+        assert eventually(lambda: stopped(tree))
+        process.kill()
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP, signal.SIGTERM])
+def test_motors_stop_when_the_loop_is_killed_or_frozen(tree, number):
+    with loop_process(tree, "live") as process:
+        process.stdout.readline()
+        time.sleep(0.3)
+        assert not stopped(tree)
+        process.send_signal(number)
+        assert eventually(lambda: stopped(tree))
+        process.kill()
+
+
+def test_a_watchdog_that_was_killed_is_noticed_by_the_loop(tree):
+    dog = Watchdog(str(tree))
+    dog.feed()
+    os.kill(dog.pid, signal.SIGKILL)
+    with pytest.raises(MotorFault, match="watchdog"):
+        for _ in range(MOST_UNANSWERED + 1):
+            dog.feed()
+    dog.close()
+
+
+def test_a_watchdog_that_was_frozen_is_noticed_by_the_loop(tree):
+    dog = Watchdog(str(tree))
+    os.kill(dog.pid, signal.SIGSTOP)
+    with pytest.raises(MotorFault, match="does not answer"):
+        for _ in range(MOST_UNANSWERED + 1):
+            dog.feed()
+    os.kill(dog.pid, signal.SIGCONT)
+    dog.close()
+
+
+def test_a_loop_that_froze_and_came_back_finds_itself_stopped(tree):
+    dog = Watchdog(str(tree))
+    assert eventually(lambda: stopped(tree))  # nobody feeds it
+    with pytest.raises(MotorFault):
+        for _ in range(MOST_UNANSWERED + 1):
+            dog.feed()
+    dog.close()
+
+
+def test_the_watchdog_leaves_motors_alone_while_it_is_fed(tree):
+    one, other = socket.socketpair()
+    stops = []
+    watching = threading.Thread(target=lambda: watch(other, lambda: stops.append("stop"), silence_s=PATIENCE_S))
+    watching.start()
+    for _ in range(100):
+        one.send(b".")
+        assert one.recv(1) == b"."
+    assert stops == []
+    one.close()
+    watching.join(PATIENCE_S)
+    assert stops == ["stop"]
+
+
+def test_a_motor_that_cannot_be_stopped_does_not_spare_the_others(tree):
+    broken = tree / "tacho-motor" / "motor0" / "command"
+    broken.unlink()
+    failed = stop_all(str(tree))
+    assert len(failed) == 1
+    assert "motor0/command" in failed[0]
+    assert (tree / "tacho-motor" / "motor1" / "command").read_text() == "stop"
