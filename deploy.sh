@@ -106,13 +106,14 @@ upload() {
     fi
     step "copying release $id"
     incoming=.incoming-$id-$$
+    there=kickctl/releases/$incoming
     tar -cz robot/*.py robot/service/* -C "$folder" SHA256SUMS |
-        on_brick "set -e; mkdir -p kickctl/releases/$incoming; cd kickctl/releases/$incoming; tar -xzm" || {
+        on_brick "mkdir -p $there && tar -xzmC $there || { rm -rf $there; exit 1; }" || {
         [ $? != 3 ] || exit 3
         fail 1 "the copy did not arrive whole; what runs on the brick is untouched" "is its card full, or failing? Try again"
     }
     step "checking and compiling it there"
-    on_brick "sh kickctl/releases/$incoming/robot/service/brick.sh adopt $id $incoming" </dev/null
+    on_brick "sh $there/robot/service/brick.sh adopt $id $incoming" </dev/null
 }
 
 deploy() {

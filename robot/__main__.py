@@ -8,6 +8,7 @@ from robot.lights import Lights
 from robot.motors import MonotonicClock, MotorFault
 from robot.notify import Notify
 from robot.program import choose_seed, parser, run
+from robot.watchdog import Watchdog
 
 # The host is another machine; it must have the token.
 EVERYWHERE = "0.0.0.0"  # noqa: S104
@@ -25,6 +26,7 @@ def main():
     except ImportError as error:
         print("{}: the robot runs on ev3dev, which has python3-ev3dev2; elsewhere try python -m sim_motor".format(error), file=sys.stderr)
         return 2
+    watchdog = Watchdog(options.sysfs)
     motors = (Ev3Motor("left", options.left, options.sysfs), Ev3Motor("right", options.right, options.sysfs))
     for motor in motors:
         try:
@@ -37,7 +39,7 @@ def main():
     except OSError as error:
         print("the battery cannot be watched: {}".format(error), file=sys.stderr)
         battery = None
-    panels = (Lights(options.sysfs), BackButton(), Notify(os.environ))
+    panels = (watchdog, Lights(options.sysfs), BackButton(), Notify(os.environ))
     return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
 
 

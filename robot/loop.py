@@ -67,8 +67,7 @@ class Loop(object):
         try:
             duties = self._control(dt_s)
         except MotorFault as fault:
-            self._fail(str(fault))
-            self._stop_motors()
+            self.fail(str(fault))
             duties = (0, 0)
         self._record(now, dt_s, late_s, missed, duties)
         self.deadline += self.params.tick_s
@@ -167,6 +166,11 @@ class Loop(object):
             self.safety.stop(reason)
             self.blackbox.note("stop", reason=reason)
         return self.blackbox.next_tick
+
+    def fail(self, reason):
+        """Stop the motors and latch a fault, for a cause inside of a tick or outside."""
+        self._fail(reason)
+        self._stop_motors()
 
     def clear(self):
         """Leave a fault for the stopped state, once every motor is there. Returns the tick. Raises Refused."""

@@ -14,7 +14,7 @@ import sys
 from robot.motors import MotorFault
 
 # Longer than the longest tick and a late one's outlier, and short enough to keep 250 ms together with the stopping itself.
-SILENCE_S = 0.18
+SILENCE_S = 0.2
 # The loop does not wait for echoes; it gives the watchdog this many ticks before it takes it for dead.
 MOST_UNANSWERED = 40
 
@@ -36,10 +36,14 @@ def stop_all(root):
 
 
 def watch(link, stop, silence_s=SILENCE_S):
-    """Echo what comes over `link` until it ends or is silent for silence_s, then call stop(). Returns why it ended."""
+    """Echo what comes over `link` until it ends or falls silent for silence_s, then call stop(). Returns why it ended.
+
+    Before the first byte it may be silent for as long as it likes: a program takes seconds to start on the brick.
+    """
     reason = "the loop has ended"
+    patience_s = None
     while True:
-        if not select.select([link], (), (), silence_s)[0]:
+        if not select.select([link], (), (), patience_s)[0]:
             reason = "the loop hangs"
             break
         try:
@@ -47,6 +51,7 @@ def watch(link, stop, silence_s=SILENCE_S):
             if not beat:
                 break
             link.send(beat)
+            patience_s = silence_s
         except OSError:
             break
     stop()

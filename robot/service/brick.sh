@@ -27,16 +27,16 @@ STOP_S=5
 # Whoever deploys may be gone by now; that is no reason to stop half-way.
 tell() { echo "$*" 2>/dev/null || true; }
 
-refuse() { # refuse WHAT REMEDY: the brick is not fit
-    tell "deploy: $1"
-    tell "  $2"
-    exit 4
+give_up() { # give_up STATUS WHAT REMEDY
+    tell "deploy: $2"
+    tell "  $3"
+    exit "$1"
 }
 
 only_one() {
     mkdir -p "$ROOT"
     exec 9>>"$ROOT/lock"
-    flock -n 9 || { tell "deploy: somebody else is deploying to this brick at this moment"; tell "  wait until they are done"; exit 1; }
+    flock -n 9 || give_up 1 "somebody else is deploying to this brick at this moment" "wait until they are done"
 }
 
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
@@ -57,40 +57,47 @@ port() { sed -n 's/^READY .*:\([0-9]*\)$/\1/p' "$ROOT/robot.log" 2>/dev/null | t
 
 check() { # whether this machine can run the program at all
     version=$(python3 -c 'import sys; print("%d.%d.%d" % sys.version_info[:3]); sys.exit(sys.version_info < (3, 5))' 2>/dev/null) ||
-        refuse "the brick's python3 is ${version:-missing}, and the robot's program needs 3.5 or newer" \
+        give_up 4 "the brick's python3 is ${version:-missing}, and the robot's program needs 3.5 or newer" \
             "is this an EV3 with ev3dev-stretch? Its card has Python 3.5.3: see robot/README.md for how to write one"
     free=$(df -Pk "$HOME" | awk 'NR == 2 { print $4 }')
     [ "$free" -ge "$LEAST_FREE_KB" ] ||
-        refuse "the brick's card has $((free / 1000)) MB left, and $((LEAST_FREE_KB / 1000)) MB are needed" \
+        give_up 4 "the brick's card has $((free / 1000)) MB left, and $((LEAST_FREE_KB / 1000)) MB are needed" \
             "delete what is old there; 'du -ah ~ | sort -h | tail' on the brick shows what is large"
     least=$LEAST_OTHER_UV
     [ "$(cat "$CLASS/power_supply/lego-ev3-battery/technology" 2>/dev/null)" != Li-ion ] || least=$LEAST_LITHIUM_UV
     battery=$(cat "$CLASS/power_supply/lego-ev3-battery/voltage_now" 2>/dev/null || true)
     [ "${battery:-$least}" -ge "$least" ] ||
-        refuse "the brick's battery is low: $(volts "$battery"), and $(volts "$least") are needed" "charge it, or put in fresh cells, and try again"
+        give_up 4 "the brick's battery is low: $(volts "$battery"), and $(volts "$least") are needed" \
+            "charge it, or put in fresh cells, and try again"
     tell "Python $version, $((free / 1000)) MB free, battery $(volts "$battery")"
 }
 
-volts() { [ -n "$1" ] && echo "$1" | awk '{ printf "%.1f V", $1 / 1e6 }' || echo "not measured"; }
+volts() { [ -n "$1" ] && echo "$1" | awk '{ printf "%.2f V", $1 / 1e6 }' || echo "not measured"; }
 
 token() { # keep what comes on standard input as the robot's token
     umask 077
     mkdir -p "${TOKEN%/*}"
     cat >"$TOKEN.new"
-    [ ! -s "$TOKEN" ] || cmp -s "$TOKEN" "$TOKEN.new" || tell "  the brick had another token: machines that have that one can no longer command it"
+    [ ! -s "$TOKEN" ] || cmp -s "$TOKEN" "$TOKEN.new" ||
+        tell "  the brick had another token: machines that have that one can no longer command it"
     mv -f "$TOKEN.new" "$TOKEN"
 }
 
 adopt() { # adopt RELEASE FOLDER: make a release of an upload, if it is sound
     only_one
     cd "$ROOT/releases/$2"
-    sha256sum --quiet -c SHA256SUMS || { tell "deploy: the upload arrived damaged"; tell "  try again; if it stays so, the card may be failing"; exit 1; }
-    python3 -m compileall -q robot || { tell "deploy: the brick's Python cannot read this release"; tell "  run 'make lint' where you changed it"; exit 1; }
+    sha256sum --quiet -c SHA256SUMS || discard "$2" "the upload arrived damaged" "try again; if it stays so, the card may be failing"
+    python3 -m compileall -q robot || discard "$2" "the brick's Python cannot read this release" "'make lint' finds what it cannot read"
     cd ..
     sync # or a loss of power could leave empty files under a good name
     rm -rf "$1"
     mv -T "$2" "$1"
     rm -rf .incoming-*
+}
+
+discard() { # discard FOLDER WHAT REMEDY
+    rm -rf "${ROOT:?}/releases/$1"
+    give_up 1 "$2" "$3"
 }
 
 reset_motors() { # a motor under run-direct turns on without its program
@@ -118,8 +125,8 @@ start_program() { # start the current release and wait until it is ready and wel
     rm -f "$ROOT/robot.pid"
     [ ! -e "$ROOT/robot.log" ] || mv -f "$ROOT/robot.log" "$ROOT/robot.log.1"
     if [ -e "$UNIT" ]; then
-        as_root systemctl reset-failed kickctl 2>/dev/null || true
-        as_root systemctl start --no-block kickctl
+        as_root systemctl reset-failed kickctl 2>/dev/null || true # or the starts of the last minutes count
+        as_root systemctl start --no-block kickctl || return 1
     else
         setsid nice -n -10 sh "$ROOT/current/robot/service/brick.sh" run </dev/null >/dev/null 2>&1 9>&- &
     fi
@@ -148,32 +155,36 @@ examine() { # ask the program how it is
 }
 
 install_service() {
-    sed -e "s|@USER@|$(id -un)|" -e "s|@ROOT@|$ROOT|" -e "s|@CLASS@|$CLASS|" "$ROOT/current/robot/service/kickctl.service" >"$ROOT/unit.new"
-    as_root install -D -m 644 "$ROOT/unit.new" "$UNIT"
-    rm -f "$ROOT/unit.new"
-    as_root systemctl daemon-reload
-    as_root systemctl enable kickctl
+    sed -e "s|@USER@|$(id -un)|" -e "s|@ROOT@|$ROOT|" -e "s|@CLASS@|$CLASS|" \
+        "$ROOT/current/robot/service/kickctl.service" >"$ROOT/unit.new" &&
+        as_root install -D -m 644 "$ROOT/unit.new" "$UNIT" &&
+        as_root systemctl daemon-reload &&
+        as_root systemctl enable kickctl &&
+        rm -f "$ROOT/unit.new"
 }
 
-announce() { # have avahi tell the network that a robot is here
+announce() { # have avahi tell the network that a robot is here; it works without
     sed -e "s|@USER@|$(id -un)|" -e "s|@PORT@|$(port)|" "$ROOT/current/robot/service/kickctl-avahi.service" >"$ROOT/avahi.new"
-    as_root install -D -m 644 "$ROOT/avahi.new" "$ETC/avahi/services/kickctl.service"
+    as_root install -D -m 644 "$ROOT/avahi.new" "$ETC/avahi/services/kickctl.service" || tell "  the network is not told"
     rm -f "$ROOT/avahi.new"
 }
 
 activate() { # activate RELEASE [service]: run it, as a service from now on if asked; if it is not well, run again what ran before
     only_one
     trap '' HUP INT PIPE # nobody may stop this half-way, not even by going away
-    [ -d "$ROOT/releases/$1" ] || { tell "deploy: there is no release $1 on the brick"; exit 1; }
+    [ -d "$ROOT/releases/$1" ] || give_up 1 "there is no release $1 on the brick" "deploy it anew"
+    if [ "${2-}" = service ] || [ -e "$UNIT" ]; then
+        # Ask for the password before anything is touched.
+        as_root true || give_up 1 "a service needs the brick's administrator" "deploy at a terminal, where sudo can ask for the password"
+    fi
     old=$(release current)
     old_arguments=$(cat "$ROOT/arguments" 2>/dev/null || true)
     tell "stopping the robot's program, resetting its motors"
     stop_program
     switch current "$1"
     [ ! -e "$ROOT/arguments.new" ] || mv -f "$ROOT/arguments.new" "$ROOT/arguments"
-    [ "${2-}" != service ] || install_service
     tell "starting $1"
-    if start_program; then
+    if { [ "${2-}" != service ] || install_service; } && start_program; then
         [ "$old" = "$1" ] || [ -z "$old" ] || switch previous "$old"
         [ ! -e "$UNIT" ] || announce
         prune
@@ -187,23 +198,19 @@ activate() { # activate RELEASE [service]: run it, as a service from now on if a
 }
 
 go_back() { # go_back FAILED OLD: exits
+    mend="mend what its last words say, and deploy again"
     if [ -z "$2" ]; then
         rm -f "$ROOT/current"
-        tell "deploy: release $1 does not run, and there was none before it; the motors are off"
-        tell "  mend what its last words say, and deploy again"
-        exit 5
+        give_up 5 "release $1 does not run, and there was none before it; the motors are off" "$mend"
     fi
     tell "starting $2 again"
     switch current "$2"
     if start_program; then
-        [ "$1" = "$2" ] || tell "deploy: release $1 does not run; $2 runs again"
-        tell "  mend what its last words say, and deploy again"
-        exit 1
+        prune
+        give_up 1 "release $1 did not run; $2 runs again" "$mend"
     fi
     stop_program
-    tell "deploy: neither $1 nor $2 runs; the motors are off"
-    tell "  is a cable out, or another program at work? The brick's log tells: deploy.sh --logs"
-    exit 5
+    give_up 5 "neither $1 nor $2 runs; the motors are off" "is another program at work? The brick's log may tell: ./deploy.sh --logs"
 }
 
 prune() { # keep the release that runs and the one before
@@ -214,7 +221,7 @@ prune() { # keep the release that runs and the one before
 
 rollback() {
     before=$(release previous)
-    [ -n "$before" ] || { tell "deploy: there is no release before this one on the brick"; tell "  check out the one you want, and deploy it"; exit 1; }
+    [ -n "$before" ] || give_up 1 "there is no release before this one on the brick" "check out the one that you want, and deploy it"
     activate "$before"
 }
 
@@ -230,7 +237,9 @@ status() {
     [ -n "$(release current)" ] || { tell "nothing was deployed here yet"; exit 5; }
     tell "release  $(release current)"
     tell "before   $(release previous)"
-    tell "service  $([ -e "$UNIT" ] && echo "installed: it starts with the brick" || echo "not installed: it does not start with the brick")"
+    service="no: ./deploy.sh --service makes it one"
+    [ ! -e "$UNIT" ] || service="yes: the program starts with the brick"
+    tell "service  $service"
     if [ -z "$(program_pid)" ]; then
         tell "program  does not run: deploy.sh starts it, deploy.sh --logs tells what it said last"
         exit 5
@@ -241,6 +250,9 @@ status() {
     exit "${ill:-0}"
 }
 
-logs() { tail -n "${1:-200}" "$ROOT/robot.log" 2>/dev/null || { tell "the brick has no log yet: nothing was started there by deploy.sh"; exit 1; }; }
+logs() {
+    [ -e "$ROOT/robot.log" ] || give_up 1 "the brick has no log" "./deploy.sh starts the robot's program there, which writes one"
+    tail -n 200 "$ROOT/robot.log"
+}
 
 "$@"

@@ -32,13 +32,15 @@ PasswordAuthentication no
 KbdInteractiveAuthentication no
 PermitRootLogin prohibit-password
 ForceCommand {folder}/login
+# Or the login's shell would read what the user of this machine has it do at each start.
+SetEnv HOME={folder}/brick/home
 """
 
 # What a login on the brick finds: its own home, devices, settings and programs.
 LOGIN = """\
 #!/bin/sh
 unset XDG_CONFIG_HOME KICK_TOKEN
-export HOME={brick}/home KICK_SYSFS={brick}/class KICK_ETC={brick}/etc PATH={brick}/bin:$PATH
+export KICK_SYSFS={brick}/class KICK_ETC={brick}/etc PATH={brick}/bin:$PATH
 cd
 exec sh -c "$SSH_ORIGINAL_COMMAND"
 """
@@ -102,8 +104,10 @@ class Brick:
 
     def boot(self):
         """Start sshd, and wait until it answers."""
-        if os.getuid() == 0:
-            PRIVILEGE_SEPARATION.mkdir(mode=0o755, exist_ok=True)  # sshd insists, and only its own service would make it
+        # A sshd of root insists on this empty folder, which only its own service would make.
+        self._made_folder = os.getuid() == 0 and not PRIVILEGE_SEPARATION.exists()
+        if self._made_folder:
+            PRIVILEGE_SEPARATION.mkdir(mode=0o755)
         write(self.folder / "sshd_config", SSHD_CONFIG.format(port=self.port, folder=self.folder))
         with (self.folder / "sshd.log").open("w") as log:
             self._sshd = subprocess.Popen([SSHD, "-D", "-e", "-f", self.folder / "sshd_config"], stderr=log)
@@ -121,6 +125,8 @@ class Brick:
                 os.kill(pid, signal.SIGKILL)
         self._sshd.terminate()
         self._sshd.wait(10)
+        if self._made_folder:
+            PRIVILEGE_SEPARATION.rmdir()
 
     def processes(self):
         """Numbers of all processes that live in the brick's home."""
@@ -149,12 +155,14 @@ class Brick:
     def pid(self):
         """The number of the robot's program, None if it does not run."""
         path = self.kickctl / "robot.pid"
-        pid = int(path.read_text(encoding="ascii")) if path.exists() else -1
+        pid = int("0" + path.read_text(encoding="ascii").strip()) if path.exists() else 0
         return pid if pid in self.processes() else None
 
     def runs(self):
         """The name of the release whose program runs, None if none does."""
-        return None if self.pid() is None else Path(f"/proc/{self.pid()}/cwd").readlink().name
+        with contextlib.suppress(OSError):
+            return Path(f"/proc/{self.pid()}/cwd").readlink().name
+        return None
 
     def stop_program(self):
         """Have the robot's program end, as somebody on the brick might."""

@@ -141,6 +141,7 @@ def test_a_broken_upload_is_noticed(deployed, checkout, tar):
     assert "not arrive whole" in output or "damaged" in output
     assert deployed.pid() == pid
     assert (deployed.runs(), deployed.release()) == (release, release)
+    assert not [name for name in deployed.releases() if name.startswith(".")]
     (checkout.bin / "tar").unlink()
     assert checkout.deploy()[0] == 0
     assert deployed.release() != release

@@ -54,7 +54,7 @@ def test_the_program_starts_with_the_brick_and_tells_systemd_that_it_lives(serve
     assert served.runs() == served.release()
     wait_until(lambda: notified(served)[-1].endswith("WATCHDOG=1"))
     assert notified(served)[0] == f"{served.pid()} READY=1"
-    assert "it starts with the brick" in checkout.deploy("--status")[1]
+    assert "the program starts with the brick" in checkout.deploy("--status")[1]
 
 
 def test_upgrade_and_rollback_go_through_systemd(served, checkout):
@@ -79,6 +79,19 @@ def test_whatever_ends_the_program_resets_the_motors_and_starts_it_anew(served, 
     wait_until(lambda: served.pid() not in (None, pid))
     assert resets(served).endswith("reset\n")
     wait_until(lambda: f"{served.pid()} READY=1" in notified(served))
+
+
+def test_without_the_administrators_password_nothing_is_touched(served, checkout):
+    served.replace("id", '[ "$1" = -un ] && echo robot || echo 1000')
+    served.replace("sudo", "exit 1")
+    release, pid = served.release(), served.pid()
+    checkout.change()
+    status, output = checkout.deploy()
+    assert status == 1
+    assert "at a terminal" in output
+    assert (served.release(), served.pid()) == (release, pid)
+    served.replace("sudo", 'exec "$@"')
+    assert checkout.deploy()[0] == 0
 
 
 def test_a_program_that_ends_well_is_not_started_again(served):

@@ -25,12 +25,13 @@ class Cells(Battery):
 def test_one_low_reading_is_no_low_battery():
     cells = Cells()
     power = Power(cells)
-    cells.volts = 5.5
+    cells.volts = 5.6
     power.read()
-    cells.volts = 7.5
-    power.read()
+    assert power.latest_v == 5.6
     assert not power.warning()
     assert not power.exhaustion()
+    power.read()
+    assert power.exhaustion()
 
 
 def test_a_low_battery_is_told_once_until_it_has_been_charged():

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from robot.motors import MotorFault
-from robot.watchdog import MOST_UNANSWERED, Watchdog, stop_all, watch
+from robot.watchdog import MOST_UNANSWERED, SILENCE_S, Watchdog, stop_all, watch
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE_S = 20.0
@@ -108,11 +108,22 @@ def test_a_watchdog_that_was_frozen_is_noticed_by_the_loop(tree):
 
 def test_a_loop_that_froze_and_came_back_finds_itself_stopped(tree):
     dog = Watchdog(str(tree))
-    assert eventually(lambda: stopped(tree))  # nobody feeds it
+    dog.feed()
+    assert eventually(lambda: stopped(tree))  # nobody feeds it any more
     with pytest.raises(MotorFault):
         for _ in range(MOST_UNANSWERED + 1):
             dog.feed()
     dog.close()
+
+
+def test_a_program_that_takes_long_to_start_is_not_taken_for_dead(tree):
+    dog = Watchdog(str(tree))
+    time.sleep(3 * SILENCE_S)
+    for _ in range(3):
+        dog.feed()
+    assert not stopped(tree)
+    dog.close()
+    assert stopped(tree)
 
 
 def test_the_watchdog_leaves_motors_alone_while_it_is_fed(tree):
