@@ -360,7 +360,9 @@ scraps = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
     max_leaves=6,
 )
-fields = st.sampled_from(("id", "result", "error", "event", "tick", "number", "from", "params", "kick", "nonce", "host_nonce", "boot", "proof", "code"))
+fields = st.sampled_from(
+    ("id", "result", "error", "event", "tick", "number", "from", "params", "kick", "nonce", "host_nonce", "boot", "proof", "code")
+)
 messages = st.dictionaries(fields, scraps | st.sampled_from(("snapshot", "lost", "params", "kick", "00" * 16)), max_size=6).map(wire.dump)
 
 
@@ -431,10 +433,12 @@ def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
                 log.take_records(place.take_samples(item))
 
     place.begin(client.ask("subscribe")["tick"])
+    ticks_of_events = [0]
+    pauses = st.integers(0, 3) | st.just(60) if data.draw(st.booleans()) else st.integers(0, 3)
     for number in range(data.draw(st.integers(5, 40))):
         for _ in range(data.draw(st.integers(0, 3))):
-            rig.loop.set_params({"k": float(number % 90)})
-        rig.run(data.draw(st.integers(0, 3) | st.just(60)))
+            ticks_of_events.append(rig.loop.set_params({"k": float(number % 90)}))
+        rig.run(data.draw(pauses))
         while (frame := client.session.stream()) is not None:
             if data.draw(st.integers(0, 3)):
                 arrive(frame)
@@ -452,5 +456,4 @@ def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
     assert len(ticks) + len(told) == rig.loop.blackbox.next_tick
     numbers = [event["number"] for event in once(log.events)]
     assert numbers == sorted(set(numbers))
-    if not missing:
-        assert once(log.events) == rig.events
+    assert {number for number, tick in enumerate(ticks_of_events) if tick not in told} <= set(numbers)

@@ -62,7 +62,6 @@ def ticks_of(log):
     return [record.tick for record in log.records]
 
 
-
 def test_an_hour_with_a_cut_every_minute_misses_no_tick():
     link = BreakingLink(seed=1)
     kicks = []

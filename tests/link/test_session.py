@@ -85,7 +85,13 @@ def test_before_the_hello_nothing_is_understood(rig, kind):
 def test_the_token_alone_does_not_control(rig):
     client = Client(rig.loop).greet()
     before = rig.fingerprint()
-    for name, arguments in (("start", {}), ("stop", {}), ("clear", {}), ("kick", {"kick": {"id": "1", "mode": "membrane"}}), ("set", {"set": {"k": 1.0}})):
+    for name, arguments in (
+        ("start", {}),
+        ("stop", {}),
+        ("clear", {}),
+        ("kick", {"kick": {"id": "1", "mode": "membrane"}}),
+        ("set", {"set": {"k": 1.0}}),
+    ):
         refused("lease", client.tell, name, **arguments)
     assert rig.fingerprint() == before
 
@@ -279,7 +285,10 @@ def test_numbers_that_are_none_never_arrive(rig, client, do, number):
     """Neither as JSON that says NaN, nor as JSON that overflows."""
     arguments = {"set": {"k": number}} if do == "set" else {"id": "1", "mode": "phase", "shift": number}
     before = rig.fingerprint()
-    for text in (json.dumps({"id": 9, "do": do, do: arguments}), f'{{"id":9,"do":"{do}","{do}":{{"id":"1","mode":"phase","shift":-1e999,"k":1e999}}}}'):
+    for text in (
+        json.dumps({"id": 9, "do": do, do: arguments}),
+        f'{{"id":9,"do":"{do}","{do}":{{"id":"1","mode":"phase","shift":-1e999,"k":1e999}}}}',
+    ):
         fresh = Client(rig.loop, client="tester").greet()
         sealed = wire.seal(fresh.talk._handshake.key, 1, text.encode())
         error = reply(fresh.session.receive(wire.COMMAND, sealed))["error"]
@@ -322,7 +331,9 @@ def test_a_status_with_the_longest_names_fits_into_a_frame(rig):
 
 
 @pytest.mark.parametrize("text", ["\U0001f9be" * 300, "\x7f" * 4000, "\u20ac" * 600, "\ud800" * 600, "'\\" * 900], ids=ascii)
-@pytest.mark.parametrize("request_", [{"do": "{}"}, {"do": "status", "{}": 1}, {"do": "describe", "table": "{}"}, {"do": "subscribe", "from": "{}"}])
+@pytest.mark.parametrize(
+    "request_", [{"do": "{}"}, {"do": "status", "{}": 1}, {"do": "describe", "table": "{}"}, {"do": "subscribe", "from": "{}"}]
+)
 def test_a_refusal_of_something_long_fits_into_a_frame(rig, client, text, request_):
     message = {name.replace("{}", text): value.replace("{}", text) if isinstance(value, str) else value for name, value in request_.items()}
     error = reply(client.session.receive(wire.ASK, json.dumps(dict(message, id=1)).encode()))["error"]
@@ -340,7 +351,10 @@ values = st.recursive(
 names = st.sampled_from(("id", "do", "from", "table", "kick", "set", "proof", "protocol", "name", "client", "nonce", "mode", "k"))
 sensible = st.fixed_dictionaries(
     {"do": st.sampled_from(list(commands.TABLE)) | values, "id": st.integers(0, 9) | values},
-    optional={"kick": st.dictionaries(st.sampled_from(("id", "mode", "ticks", "wheel")), values) | values, "set": st.dictionaries(names, values) | values},
+    optional={
+        "kick": st.dictionaries(st.sampled_from(("id", "mode", "ticks", "wheel")), values) | values,
+        "set": st.dictionaries(names, values) | values,
+    },
 )
 messages = (st.dictionaries(names | strings, values, max_size=5) | sensible).map(lambda message: json.dumps(message).encode())
 payloads = st.binary(max_size=100) | messages
@@ -369,7 +383,11 @@ def test_no_depth_of_nesting_is_too_much(rig, pattern):
     client = Client(rig.loop, token=None).greet()
     for depth in (*range(1, 1100, 3), 2000):
         inner = pattern * depth + ("1" if closing == "}" else "") + closing * depth
-        for text in (f'{{"id":1,"do":{inner}}}', f'{{"id":1,"do":"describe","table":{inner}}}', f'{{"id":1,"do":"subscribe","from":{inner}}}'):
+        for text in (
+            f'{{"id":1,"do":{inner}}}',
+            f'{{"id":1,"do":"describe","table":{inner}}}',
+            f'{{"id":1,"do":"subscribe","from":{inner}}}',
+        ):
             if len(text) <= wire.MAX_PAYLOAD:
                 assert "error" in reply(client.session.receive(wire.ASK, text.encode()))
 

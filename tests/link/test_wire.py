@@ -13,7 +13,9 @@ kinds = st.sampled_from(wire.TYPES)
 payloads = st.binary(max_size=200) | st.integers(0, wire.MAX_PAYLOAD).map(bytes) | st.just(wire.SYNC * 20)
 frames = st.tuples(kinds, payloads)
 # Bytes that look like the beginning of a frame, more often than chance would make them.
-noise = st.lists(st.binary(max_size=30) | st.just(wire.SYNC) | st.just(wire.SYNC + b"\x08\x00") | st.just(b"\xa5"), max_size=30).map(b"".join)
+noise = st.lists(st.binary(max_size=30) | st.just(wire.SYNC) | st.just(wire.SYNC + b"\x08\x00") | st.just(b"\xa5"), max_size=30).map(
+    b"".join
+)
 
 
 def decode(chunks):
@@ -140,7 +142,9 @@ def test_any_payload_is_a_message_or_a_bad_one(payload):
     assert isinstance(message, dict)
 
 
-@pytest.mark.parametrize("text", ['{"a": NaN}', '{"a": Infinity}', '{"a": -Infinity}', "[]", "1", '"a"', "null", "", "{", '{"a": 1}x', "\ufeff{}"])
+@pytest.mark.parametrize(
+    "text", ['{"a": NaN}', '{"a": Infinity}', '{"a": -Infinity}', "[]", "1", '"a"', "null", "", "{", '{"a": 1}x', "\ufeff{}"]
+)
 def test_what_is_no_json_object_is_a_bad_message(text):
     with pytest.raises(wire.BadMessage):
         wire.load(text.encode())

@@ -135,7 +135,15 @@ def test_a_phase_kick_takes_each_wheels_sign_from_its_direction(directions, sign
 
 @pytest.mark.parametrize(
     ("travel", "expected"),
-    [(1.0, 1), (-1.0, -1), (0.0, 0), (REST_TRAVEL_RAD, 0), (-REST_TRAVEL_RAD, 0), (1.01 * REST_TRAVEL_RAD, 1), (-1.01 * REST_TRAVEL_RAD, -1)],
+    [
+        (1.0, 1),
+        (-1.0, -1),
+        (0.0, 0),
+        (REST_TRAVEL_RAD, 0),
+        (-REST_TRAVEL_RAD, 0),
+        (1.01 * REST_TRAVEL_RAD, 1),
+        (-1.01 * REST_TRAVEL_RAD, -1),
+    ],
 )
 def test_two_counts_of_the_encoder_are_rest(travel, expected):
     assert direction(travel) == expected

@@ -10,8 +10,12 @@ from hypothesis import strategies as st
 from robot.errors import Refused
 from robot.params import LONGEST_STEP_TICKS, TABLE, Params, check_value, describe
 
-values = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.floats(0.0, 100.0), st.text(max_size=9), st.lists(st.integers()))
-changes = st.dictionaries(st.sampled_from((*TABLE, "speed", "")), values | st.sampled_from((1, -1, 2, "stop", "hold", 0.05, 8.0)), max_size=4)
+values = st.one_of(
+    st.none(), st.booleans(), st.integers(), st.floats(), st.floats(0.0, 100.0), st.text(max_size=9), st.lists(st.integers())
+)
+changes = st.dictionaries(
+    st.sampled_from((*TABLE, "speed", "")), values | st.sampled_from((1, -1, 2, "stop", "hold", 0.05, 8.0)), max_size=4
+)
 
 
 def test_the_defaults_pass_their_own_checks():

@@ -35,7 +35,16 @@ def test_what_is_no_number_moves_nothing(most):
 
 @pytest.mark.parametrize(
     ("torque", "most", "duty"),
-    [(0.5, 85.0, 42), (1.0, 85.0, 85), (-1.0, 85.0, -85), (inf, 85.0, 85), (-inf, 100.0, -100), (inf, 0.0, 0), (1.0, 84.6, 84), (2.0, 300.0, 100)],
+    [
+        (0.5, 85.0, 42),
+        (1.0, 85.0, 85),
+        (-1.0, 85.0, -85),
+        (inf, 85.0, 85),
+        (-inf, 100.0, -100),
+        (inf, 0.0, 0),
+        (1.0, 84.6, 84),
+        (2.0, 300.0, 100),
+    ],
 )
 def test_some_duties(torque, most, duty):
     assert limit_duty(torque, most) == duty
