@@ -5,10 +5,13 @@ BIN := .venv/bin
 STAMP := .venv/.complete
 # The locker itself is no dependency of the project: it lives in a venv of its own.
 LOCKER := uv==0.13.9
+# Neither is the mutator, nor what it runs the tests of one small file with.
+MUTATOR := mutmut==3.8.1 coverage hypothesis pytest pytest-timeout
+MUTANTS := build/mutants
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test lint bench lock clean
+.PHONY: help setup demo test lint bench faults soak mutants lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
@@ -34,6 +37,15 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 bench: $(STAMP) ## measure the speed of what has to be fast
 	$(BIN)/python -m tests.bench
 
+faults: $(STAMP) ## try every fault twenty times on live motors, and print how long they ran on
+	$(BIN)/python -m tests.faults
+
+soak: $(STAMP) ## kick, cut and break a robot for an hour (SOAK_S=... seconds), and see whether it loses a tick or grows
+	$(BIN)/python -m tests.soak
+
+mutants: $(MUTANTS)/.complete ## see whether the tests notice every small change to robot/safety.py
+	$(MUTANTS)/bin/python -m tests.mutants
+
 lock: .venv-lock/.complete ## renew requirements.lock with the newest versions that fit together
 	.venv-lock/bin/uv pip compile pyproject.toml --group dev --output-file requirements.lock --upgrade --quiet --universal \
 		--python-version 3.11 --generate-hashes --no-emit-index-url --custom-compile-command 'make lock'
@@ -57,4 +69,9 @@ $(STAMP): requirements.lock pyproject.toml
 .venv-lock/.complete: Makefile
 	$(PYTHON) -m venv --clear .venv-lock
 	.venv-lock/bin/python -m pip install --quiet --disable-pip-version-check $(LOCKER)
+	@touch $@
+
+$(MUTANTS)/.complete: Makefile
+	$(PYTHON) -m venv --clear $(MUTANTS)
+	$(MUTANTS)/bin/python -m pip install --quiet --disable-pip-version-check $(MUTATOR)
 	@touch $@

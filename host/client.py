@@ -22,16 +22,18 @@ from typing import TYPE_CHECKING, Any, Self
 
 from host.conversation import Conversation, Samples
 from host.errors import KickctlError, NoLink, RefusedByRobot
-from host.links import SIM, Link, LinkLost, make_link
+from host.links import SIM, make_link
 from host.origin import origin
 from host.subscription import Subscription
+from host.transport import Link, LinkLost
 from robot.record import Record
 from robot.token import TokenError, default_path, load
 
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from host.log import Log, Tap
+    from host.log import Log
+    from host.stream import Tap
 
 # The robot counts a silent host as lost after half a second by default.
 HEARTBEAT_S = 0.1

@@ -1,7 +1,7 @@
 """Logs as tables, for spreadsheets and numpy: one row a tick, in the columns of COLUMNS.
 
 Channels have the names, units and meaning of robot.record.CHANNELS, with names for state and kick; to these comes
-left_omega_rad_s, right_omega_rad_s: Log.omega. Floats are written so that they read back bit for bit.
+left_omega_rad_s, right_omega_rad_s, as Log.omega has them. Floats are written so that they read back bit for bit.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import csv
 import json
 from typing import IO, Any, TextIO
 
-from host.log import Log
+from host.stream import Event
 from robot.kicks import WHEELS
 from robot.record import KICK_NAMES, STATES
 
@@ -19,27 +19,23 @@ _WHEEL = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct", "omega_rad_s")
 COLUMNS = ("tick", "t_s", "dt_s") + tuple(f"{side}_{name}" for side in WHEELS for name in _WHEEL) + ("kick", "state", "late_s", "missed")
 
 
-def columns(log: Log) -> dict[str, Any]:
-    """numpy arrays by the names and in the order of COLUMNS; kick (its mode, or empty) and state as text."""
+def columns(arrays: dict[str, Any]) -> dict[str, Any]:
+    """A log's arrays in the order of COLUMNS, with kick (its mode, or empty) and state as text."""
     import numpy as np
 
-    table = log.arrays()
-    table["kick"] = np.array(KICK_NAMES)[table["kick"]]
-    table["state"] = np.array(STATES)[table["state"]]
-    for side in WHEELS:
-        table[f"{side}_omega_rad_s"] = log.omega(side)
-    return {name: table[name] for name in COLUMNS}
+    named = {"kick": np.array(KICK_NAMES)[arrays["kick"]], "state": np.array(STATES)[arrays["state"]]}
+    return {name: named.get(name, arrays.get(name)) for name in COLUMNS}
 
 
-def write_csv(log: Log, out: TextIO) -> None:
+def write_csv(arrays: dict[str, Any], out: TextIO) -> None:
     """Write the table as comma-separated values under a line of names."""
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)
-    writer.writerows(zip(*(column.tolist() for column in columns(log).values()), strict=True))
+    writer.writerows(zip(*(column.tolist() for column in columns(arrays).values()), strict=True))
 
 
-def write_npz(log: Log, out: IO[bytes]) -> None:
+def write_npz(arrays: dict[str, Any], info: dict[str, Any], events: list[Event], out: IO[bytes]) -> None:
     """Write the columns as arrays of an .npz file, and `info` and `events` as JSON text."""
     import numpy as np
 
-    np.savez_compressed(out, **columns(log), info=json.dumps(log.info), events=json.dumps(log.events))
+    np.savez_compressed(out, **columns(arrays), info=json.dumps(info), events=json.dumps(events))

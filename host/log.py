@@ -5,29 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from robot.record import CHANNELS, NAMES
+from host.stream import Event, Tap
+from robot.kicks import WHEELS
+from robot.record import CHANNELS, NAMES, Record
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-    Record = Any  # the fields come from a table at run time, where no type checker can follow
-else:
-    from robot.record import Record
-
-Event = dict[str, Any]
-
-
-class Tap(Protocol):
-    """What a client feeds with the stream of a subscription, in the stream's order: an event stands before the record it concerns."""
-
-    def take_records(self, records: list[Record]) -> None:
-        """The next records, oldest first."""
-
-    def take_event(self, event: Event) -> None:
-        """The next event: `event` (its name), `tick`, and what belongs to it."""
 
 
 class Log:
@@ -87,8 +73,9 @@ class Log:
         return np.fromiter((record[index] for record in self.records), dtype, len(self.records))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """All columns by name."""
-        return {name: self.column(name) for name in NAMES}
+        """All columns by name, and left_omega_rad_s and right_omega_rad_s."""
+        speeds = {side + "_omega_rad_s": self.omega(side) for side in WHEELS}
+        return {**{name: self.column(name) for name in NAMES}, **speeds}
 
     def omega(self, side: str) -> NDArray[np.float64]:
         """Speed of the 'left' or 'right' wheel in rad/s, one value a tick: the turn since the record before over the time since it.
@@ -145,9 +132,13 @@ class Log:
     @classmethod
     def load(cls, path: str | Path) -> Log:
         """The log in an MCAP file, bit for bit. Raises LogError."""
-        from host.recording import read
+        from host.recording import play
 
-        return read(path)
+        log = cls()
+        log.info, whole = play(path, log)
+        if not whole:
+            log.info["truncated"] = True
+        return log
 
     def to_csv(self, path: str | Path) -> Path:
         """Write one row a tick, as host.export describes it, over whatever the file held."""
@@ -155,7 +146,7 @@ class Log:
 
         path = Path(path)
         with path.open("w", encoding="utf-8", newline="") as out:
-            write_csv(self, out)
+            write_csv(self.arrays(), out)
         return path
 
     def to_npz(self, path: str | Path) -> Path:
@@ -164,7 +155,7 @@ class Log:
 
         path = Path(path)
         with path.open("wb") as out:
-            write_npz(self, out)
+            write_npz(self.arrays(), self.info, self.events, out)
         return path
 
     def __len__(self) -> int:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import struct
 from datetime import datetime
+from math import inf
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -23,9 +24,9 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
 from host.errors import WrongUse
-from host.log import Event, Log, Record
+from host.stream import Event, Tap
 from robot import __version__
-from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES
+from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 
 METADATA = "kickctl"
 FORMAT = "1"
@@ -159,13 +160,15 @@ def _nanoseconds(seconds: float) -> int:
     return round(seconds * 1e9)
 
 
-def read(path: str | Path) -> Log:
-    """The log in a file. One that breaks off or is damaged gives what can be read up to there, with info["truncated"] = True.
+def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
+    """Feed a tap with the stream in a file. Returns the log's info, and whether the file is whole.
 
-    Raises LogError if the file cannot be opened, is no MCAP file, or is none of ours.
+    One that breaks off or is damaged gives what can be read up to there. Raises LogError if the file cannot be opened, is no MCAP file,
+    or is none of ours.
     """
     path = Path(path)
-    log: Log | None = None
+    info: dict[str, Any] | None = None
+    whole = True
     topics: dict[int, str] = {}
     try:
         with path.open("rb") as file:
@@ -175,19 +178,18 @@ def read(path: str | Path) -> Log:
             try:
                 for item in StreamReader(file, validate_crcs=True, record_size_limit=path.stat().st_size).records:
                     if isinstance(item, Metadata) and item.name == METADATA:
-                        log = Log(_info(path, item.metadata))
+                        info = _info(path, item.metadata)
                     elif isinstance(item, Channel):
                         topics[item.id] = item.topic
-                    elif isinstance(item, Message) and log is not None:
-                        _take(log, topics[item.channel_id], json.loads(item.data))
+                    elif isinstance(item, Message) and info is not None:
+                        _take(tap, topics[item.channel_id], json.loads(item.data))
             except _DAMAGE:
-                if log is not None:
-                    log.info["truncated"] = True
+                whole = False
     except OSError as error:
         raise LogError(f"{path} cannot be read: {error.strerror}", "'kickctl log list' shows the logs there are") from None
-    if log is None:
+    if info is None:
         raise LogError(f"{path} is an MCAP file, but holds no log of kickctl", _GIVE_OURS)
-    return log
+    return info, whole
 
 
 def _info(path: Path, metadata: dict[str, str]) -> dict[str, Any]:
@@ -196,13 +198,13 @@ def _info(path: Path, metadata: dict[str, str]) -> dict[str, Any]:
     return {name: _from_text(text) for name, text in metadata.items() if name != "format"}
 
 
-def _take(log: Log, topic: str, message: dict[str, Any]) -> None:
+def _take(tap: Tap, topic: str, message: dict[str, Any]) -> None:
     if topic == TICKS:
         for name, words in _NAMED.items():
             message[name] = words.index(message[name])
-        log.records.append(Record(*(message[name] for name in NAMES)))
+        tap.take_records([Record(*(message[name] for name in NAMES))])
     elif topic == EVENTS:
-        log.take_event(message)
+        tap.take_event(message)
 
 
 def new_path(kind: str) -> Path:
@@ -245,9 +247,28 @@ def _summarize(path: Path) -> Summary:
                 return Summary(path, ticks, seconds, info.get("brick", ""), info.get("started_utc", ""), "")
     except (OSError, *_DAMAGE):
         pass  # without its index, the file has to be read
+    extent = _Extent()
     try:
-        log = read(path)
+        brief, whole = play(path, extent)
     except LogError as error:
         return Summary(path, 0, 0.0, "", "", str(error))
-    note = "breaks off" if log.info.get("truncated") else ""
-    return Summary(path, len(log), log.seconds, str(log.info.get("brick", "")), str(log.info.get("started_utc", "")), note)
+    note = "" if whole else "breaks off"
+    return Summary(path, extent.ticks, extent.seconds, str(brief.get("brick", "")), str(brief.get("started_utc", "")), note)
+
+
+class _Extent:
+    """A tap that finds how long a stream is."""
+
+    def __init__(self) -> None:
+        self.ticks = 0
+        self.seconds = 0.0
+        self._latest_s = inf
+
+    def take_records(self, records: list[Record]) -> None:
+        for record in records:
+            self.seconds += max(0.0, record.t_s - self._latest_s)
+            self._latest_s = record.t_s
+        self.ticks += len(records)
+
+    def take_event(self, event: Event) -> None:
+        """A robot that begins anew counts its time anew; the step back is no time."""

@@ -12,10 +12,12 @@ from dataclasses import dataclass
 from struct import pack
 from typing import Any
 
-from host.log import Event, Log, Record
+from host.log import Log
+from host.stream import Event
 from robot.blackbox import Snapshot
 from robot.kicks import WHEELS, Kick
 from robot.params import Params
+from robot.record import Record
 from robot.safety import FAULT, RUNNING, limit_duty
 from robot.wheel import Wheel
 

@@ -6,7 +6,7 @@ import os
 import socket
 
 from host.errors import WrongUse
-from host.links import LinkLost
+from host.transport import LinkLost
 from robot.loop import Loop
 from robot.server import Server
 from robot.wire import TOKEN_BYTES

@@ -70,12 +70,22 @@ def run(options, motors, battery, clock, seed, panels=()):
         server.serve(timeout_s)
 
     try:
-        loop.run(serve)
+        _run(loop, server, serve)
     finally:
         server.close()
         for panel in panels:
             panel.close()
     return 0
+
+
+def _run(loop, server, serve):
+    """Run the loop. If it fails, hosts are told why they will hear no more."""
+    try:
+        loop.run(serve)
+    except Exception as error:
+        loop.fail("the robot's program failed ({!r}); start it anew".format(error))
+        server.serve(0.0)
+        raise
 
 
 def _give_up(message):

@@ -52,7 +52,7 @@ class Safety(object):
     def clear(self):
         """From fault to stopped. Raises Refused if there is none."""
         if self.state != FAULT:
-            raise Refused("state", "there is no fault to clear", "")
+            raise Refused("state", "there is no fault to clear")
         self._enter(STOPPED, "fault cleared")
 
     def _enter(self, state, reason):
@@ -64,9 +64,7 @@ class Lease(object):
     """Who may command the robot, and when that host was last heard (s of the robot's clock)."""
 
     def __init__(self):
-        self.holder = None
-        self.name = ""
-        self._heard = 0.0
+        self.holder = self.name = self._heard = None
 
     def take(self, holder, name, now):
         """Give the lease to `holder`, who may hold it already. Raises Refused while another has it."""

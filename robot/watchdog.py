@@ -109,6 +109,7 @@ class Watchdog(object):
         """End the watchdog, after the motors were stopped."""
         self._link.close()
         try:
+            os.kill(self.pid, signal.SIGCONT)  # or one that is frozen would not end, and this neither
             os.waitpid(self.pid, 0)
         except OSError:
             pass

@@ -75,7 +75,7 @@ def _export(options: argparse.Namespace) -> int:
     if log.info.get("truncated"):
         say(f"{options.log} breaks off; the table has what is there")
     if options.format == "csv" and options.out is None and not options.json:
-        write_csv(log, sys.stdout)
+        write_csv(log.arrays(), sys.stdout)
         return 0
     out = options.out or options.log.with_suffix("." + options.format)
     try:

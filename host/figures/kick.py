@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from host.log import Event, Log
+from host.log import Log
+from host.stream import Event
 from robot.kicks import WHEELS
 
 # What to show of one kick: two turns of the wheels before it, and long enough after it for them to settle.

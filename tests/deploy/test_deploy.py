@@ -55,7 +55,8 @@ def test_a_token_that_is_open_to_others_is_not_sent(brick, checkout):
 
 
 def test_a_second_deploy_of_the_same_keeps_the_release_and_starts_it_anew(brick, checkout):
-    checkout.deploy()
+    status, output = checkout.deploy()
+    assert status == 0, output
     first = brick.release(), brick.pid()
     status, output = checkout.deploy()
     assert status == 0, output

@@ -3,6 +3,7 @@
 import os
 import signal
 import socket
+import subprocess
 import threading
 from contextlib import contextmanager, suppress
 
@@ -174,8 +175,11 @@ def test_a_program_that_does_not_listen_to_sigterm_is_killed(brick, checkout):
 
 def test_a_process_that_only_has_the_old_number_is_left_alone(deployed, checkout):
     deployed.stop_program()
-    write(deployed.kickctl / "robot.pid", f"{os.getpid()}\n")
-    assert checkout.deploy()[0] == 0
+    with subprocess.Popen(["sleep", "1000"]) as stranger:
+        write(deployed.kickctl / "robot.pid", f"{stranger.pid}\n")
+        assert checkout.deploy()[0] == 0
+        assert stranger.poll() is None
+        stranger.kill()
     assert deployed.runs() == deployed.release()
 
 

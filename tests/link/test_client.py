@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from host.client import RECONNECT_S, Robot, connect
 from host.conversation import Conversation
 from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
-from host.links import LinkLost, TcpLink
 from host.log import Log
 from host.sim_link import SimLink
 from host.subscription import Subscription
+from host.transport import TcpLink
 from robot import wire
 from robot.blackbox import BlackBox
 from robot.loop import Loop

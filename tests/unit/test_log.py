@@ -30,12 +30,12 @@ def test_the_stream_comes_out_as_it_went_in():
     assert len(list(log.stream())) == len(log.records) + len(log.events)
 
 
-def test_columns_are_the_channels():
+def test_columns_are_the_channels_and_the_speeds():
     log = eventful().log()
     arrays = log.arrays()
-    assert tuple(arrays) == NAMES
-    for name, array in arrays.items():
-        assert array.tolist() == [getattr(record, name) for record in log.records]
+    assert tuple(arrays) == (*NAMES, "left_omega_rad_s", "right_omega_rad_s")
+    for name in NAMES:
+        assert arrays[name].tolist() == [getattr(record, name) for record in log.records]
     assert np.all(np.diff(arrays["tick"]) == 1)
     assert arrays["left_duty_pct"].min() < 0
     with pytest.raises(KeyError, match="left_x1"):

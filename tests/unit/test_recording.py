@@ -16,7 +16,7 @@ from mcap.writer import Writer
 
 from host import recording
 from host.log import Log
-from host.recording import LogError, McapTap, list_logs, new_path, read
+from host.recording import LogError, McapTap, list_logs, new_path
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, STRUCT, Record, unpack
 from tests.fakes import Rig, eventful
 
@@ -79,7 +79,7 @@ def records():
 def test_any_record_comes_back_bit_for_bit(tmp_path_factory, batch):
     log = Log()
     log.take_records(batch)
-    back = read(log.save(tmp_path_factory.mktemp("logs") / "log.mcap"))
+    back = Log.load(log.save(tmp_path_factory.mktemp("logs") / "log.mcap"))
     assert bits(back) == bits(log)
     assert back.info == {}
 
@@ -144,7 +144,7 @@ def test_a_restarted_robot_has_a_new_zero_of_time(tmp_path):
         times = [message.log_time / 1e9 - ZERO_S for _, _, message in make_reader(file).iter_messages(topics="/ticks")]
     assert times[:10] == pytest.approx([record.t_s for record in log.records[:10]], abs=1e-6)
     assert times[10:] == pytest.approx([1000 + record.t_s for record in log.records[10:]], abs=1e-6)
-    assert read(path).restarts() == [10]
+    assert Log.load(path).restarts() == [10]
 
 
 def test_a_file_that_nobody_closed_holds_all_but_the_last_second(tmp_path):
@@ -153,12 +153,12 @@ def test_a_file_that_nobody_closed_holds_all_but_the_last_second(tmp_path):
     for written, record in enumerate(log.records, 1):
         tap.take_records([record])
         if written % 20 == 0:
-            back = read(tap.path)
+            back = Log.load(tap.path)
             assert back.info == {**INFO, "truncated": True}
             assert bits(back) == bits(log)[: len(back)]
             assert record.t_s - (back.records[-1].t_s if back.records else 0.0) <= 1.2
     tap.close()
-    assert read(tap.path).info == INFO
+    assert Log.load(tap.path).info == INFO
 
 
 _KILLED = """
@@ -175,7 +175,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 def test_a_killed_process_leaves_a_file_that_reads(tmp_path):
     path = tmp_path / "log.mcap"
     assert subprocess.run([sys.executable, "-c", _KILLED, str(path)], cwd=ROOT, check=False).returncode == -signal.SIGKILL
-    log, back = running(100), read(path)
+    log, back = running(100), Log.load(path)
     assert back.info["truncated"] is True
     assert len(back) > 60
     assert bits(back) == bits(log)[: len(back)]
@@ -190,7 +190,7 @@ def test_wherever_a_file_breaks_off_the_rest_is_right(tmp_path):
     for size in [*range(0, len(whole), 53), *range(len(whole) - 40, len(whole))]:
         path.write_bytes(whole[:size])
         try:
-            back = read(path)
+            back = Log.load(path)
         except LogError:
             assert not begun
             continue
@@ -213,7 +213,7 @@ def test_damage_never_becomes_data(tmp_path):
         damaged[dice.randrange(len(whole))] ^= 1 << dice.randrange(8)
         path.write_bytes(damaged)
         try:
-            back = read(path)
+            back = Log.load(path)
         except LogError:
             continue
         assert bits(back) == bits(log)[: len(back)]
@@ -226,7 +226,7 @@ def test_a_chunk_that_is_skipped_for_damage_does_not_go_unnoticed(tmp_path):
         begin = make_reader(file).get_summary().chunk_indexes[-1].chunk_start_offset
         file.seek(begin)
         file.write(b"\x7f")  # a kind of record that no reader knows yet
-    back = read(path)
+    back = Log.load(path)
     assert len(back) < 75
     assert back.info["truncated"] is True
 
@@ -262,7 +262,7 @@ def test_what_is_no_log_is_refused_in_words(tmp_path, make, complaint):
     path = tmp_path / "some.mcap"
     make(path)
     with pytest.raises(LogError, match=complaint) as refusal:
-        read(path)
+        Log.load(path)
     assert str(path) in refusal.value.message
     assert refusal.value.hint
 
@@ -316,5 +316,5 @@ def test_the_list_of_logs_tells_whole_broken_and_foreign_files_apart(tmp_path):
 
 def test_a_finished_log_is_listed_without_being_read(tmp_path, monkeypatch):
     running(100).save(tmp_path / "a.mcap")
-    monkeypatch.setattr(recording, "read", None)
+    monkeypatch.setattr(recording, "play", None)
     assert list_logs(tmp_path)[0].ticks == 100

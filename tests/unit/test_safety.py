@@ -129,3 +129,49 @@ def test_a_released_lease_does_not_expire():
     lease.take("a", "Ann", 0.0)
     lease.release("a")
     assert not lease.expire(100.0, 0.5)
+
+
+def refusal(attempt, *arguments):
+    with pytest.raises(Refused) as refused:
+        attempt(*arguments)
+    return refused.value.as_dict()
+
+
+def test_the_words_of_every_refusal():
+    safety, lease = Safety(), Lease()
+    nothing = {"code": "state", "message": "there is no fault to clear", "hint": ""}
+    assert refusal(safety.clear) == nothing
+    safety.start()
+    runs = {"code": "state", "message": "the robot runs already", "hint": "stop it first to start anew"}
+    assert refusal(safety.start) == runs
+    safety.hold("away")
+    assert refusal(safety.start) == runs
+    safety.fault("its cable came off")
+    fault = {"code": "fault", "message": "the robot is in fault: its cable came off", "hint": "mend the cause, then clear the fault"}
+    assert refusal(safety.start) == fault
+    assert refusal(lease.require, "a") == {"code": "lease", "message": "you do not control the robot", "hint": "take the lease first"}
+    lease.take("a", "Ann", 0.0)
+    other = {"code": "lease", "message": "'Ann' controls the robot", "hint": "wait until it lets go; anyone may stop the robot"}
+    assert refusal(lease.take, "b", "Bob", 0.0) == other
+
+
+def test_the_reason_of_every_state():
+    safety = Safety()
+    reasons = [safety.reason]
+    for step, *why in (["start"], ["hold", "away"], ["resume", "back"], ["stop", "enough"], ["fault", "broken"], ["stop", "no"], ["clear"]):
+        getattr(safety, step)(*why)
+        reasons.append(safety.reason)
+    assert reasons == ["not started yet", "started", "away", "back", "enough", "broken", "broken", "fault cleared"]
+
+
+def test_the_lease_knows_its_holder_and_forgets_it():
+    lease = Lease()
+    assert lease.holder is None
+    lease.take("a", "Ann", 0.0)
+    assert (lease.holder, lease.name) == ("a", "Ann")
+    assert not lease.expire(0.5, 0.5)
+    assert lease.expire(0.75, 0.5)
+    assert lease.holder is None
+    lease.take("b", "Bob", 0.0)
+    lease.release("b")
+    assert lease.holder is None

@@ -1,0 +1,142 @@
+"""What a way to a robot is, bytes out and bytes in, and the two plain ones: a TCP connection and a serial line."""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from typing import Protocol
+
+from host.errors import NoLink
+
+CONNECT_TIMEOUT_S = 5.0
+_READ_BYTES = 65536
+
+
+class LinkLost(Exception):
+    """The other end is gone; `open` may find it again."""
+
+
+class Link(Protocol):
+    """A way to a robot. `virtual` links carry their own robot and their own time."""
+
+    uri: str
+    virtual: bool
+
+    def open(self) -> None:
+        """Open, or open anew. Raises NoLink."""
+
+    def send(self, data: bytes) -> None:
+        """Send all of it. Raises LinkLost."""
+
+    def receive(self, timeout_s: float) -> bytes:
+        """What has arrived, waiting up to timeout_s for the first byte; empty if nothing came. Raises LinkLost."""
+
+    def now(self) -> float:
+        """Seconds on the clock in which timeouts are counted."""
+
+    def close(self) -> None:
+        """Close; safe to call twice."""
+
+
+class TcpLink:
+    """A TCP connection."""
+
+    virtual = False
+
+    def __init__(self, uri: str, host: str, port: int) -> None:
+        self.uri = uri
+        self._address = (host, port)
+        self._socket: socket.socket | None = None
+
+    def open(self) -> None:
+        """Connect anew. Raises NoLink."""
+        self.close()
+        try:
+            self._socket = socket.create_connection(self._address, timeout=CONNECT_TIMEOUT_S)
+        except OSError as error:
+            raise NoLink(
+                f"no robot answers at {self.uri}: {error.strerror or error}",
+                "is it switched on and its program running? `kickctl doctor` looks closer",
+            ) from error
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def send(self, data: bytes) -> None:
+        """Send all of it. Raises LinkLost."""
+        if self._socket is None:
+            raise LinkLost("the connection is closed")
+        try:
+            self._socket.sendall(data)
+        except OSError as error:
+            raise LinkLost(str(error)) from error
+
+    def receive(self, timeout_s: float) -> bytes:
+        """What has arrived within timeout_s. Raises LinkLost."""
+        if self._socket is None:
+            raise LinkLost("the connection is closed")
+        try:
+            if not select.select([self._socket], (), (), max(0.0, timeout_s))[0]:
+                return b""
+            data = self._socket.recv(_READ_BYTES)
+        except (OSError, ValueError) as error:
+            raise LinkLost(str(error)) from error
+        if not data:
+            raise LinkLost("the robot closed the connection")
+        return data
+
+    def now(self) -> float:
+        """Monotonic seconds."""
+        return time.monotonic()
+
+    def close(self) -> None:
+        """Close the connection."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+
+class SerialLink:
+    """A serial line, by pyserial."""
+
+    virtual = False
+
+    def __init__(self, uri: str, device: str, baud: int) -> None:
+        import serial
+
+        self.uri = uri
+        self._serial = serial.Serial(baudrate=baud, write_timeout=CONNECT_TIMEOUT_S)
+        self._serial.port = device
+
+    def open(self) -> None:
+        """Open the line anew. Raises NoLink."""
+        self.close()
+        try:
+            self._serial.open()
+        except (OSError, ValueError) as error:
+            raise NoLink(
+                f"the serial line {self.uri} cannot be opened: {error}", "is the cable in, and are you in group dialout?"
+            ) from error
+
+    def send(self, data: bytes) -> None:
+        """Send all of it. Raises LinkLost."""
+        try:
+            self._serial.write(data)
+        except OSError as error:
+            raise LinkLost(str(error)) from error
+
+    def receive(self, timeout_s: float) -> bytes:
+        """What has arrived within timeout_s. Raises LinkLost."""
+        try:
+            self._serial.timeout = max(0.0, timeout_s)
+            data = bytes(self._serial.read(1))
+            return data + bytes(self._serial.read(self._serial.in_waiting)) if data else b""
+        except (OSError, TypeError) as error:
+            raise LinkLost(str(error)) from error
+
+    def now(self) -> float:
+        """Monotonic seconds."""
+        return time.monotonic()
+
+    def close(self) -> None:
+        """Close the line."""
+        self._serial.close()
