@@ -1,6 +1,7 @@
 # GNU make. `make` alone lists the targets; each sets up what it needs, in .venv.
 
 PYTHON ?= python3
+PYTHON35 ?= python3.5
 BIN := .venv/bin
 STAMP := .venv/.complete
 # The locker itself is no dependency of the project: it lives in a venv of its own.
@@ -11,10 +12,10 @@ MUTANTS := build/mutants
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test lint bench faults soak mutants lock clean
+.PHONY: help setup demo test test-py35 lint bench bench-arm faults soak mutants lock clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
+	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 11
 	@echo 'PYTHON=... chooses the interpreter that .venv is made with (now: $(PYTHON); 3.11 or newer).'
 
 setup: $(STAMP) ## make .venv with the locked dependencies and kickctl in it
@@ -24,6 +25,15 @@ demo: $(STAMP) ## watch the simulated robot being kicked
 
 test: $(STAMP) ## run the tests
 	$(BIN)/python -m pytest tests --ignore=tests/lint
+
+# Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
+test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 or newer
+	@$(PYTHON35) -c 'import sys; sys.exit(sys.version_info < (3, 5))' 2>/dev/null || { echo "make test-py35: '$(PYTHON35)' is no Python\
+	 3.5 or newer. Name one: make test-py35 PYTHON35=/path/to/python3.5" >&2; exit 1; }
+	@$(PYTHON35) -c 'import hypothesis, pytest' 2>/dev/null || { echo "make test-py35: '$(PYTHON35)' has no pytest or no hypothesis.\
+	 The last for 3.5: $(PYTHON35) -m pip install pytest==6.1.2 hypothesis==5.33.2" >&2; exit 1; }
+	$(PYTHON35) -m pytest -c /dev/null --rootdir=. --import-mode=importlib -p no:cacheprovider -W error -q \
+		$$($(BIN)/python -m tests.lint.sources)
 
 lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the house
 	$(BIN)/ruff check .
@@ -36,6 +46,9 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 
 bench: $(STAMP) ## measure the speed of what has to be fast
 	$(BIN)/python -m tests.bench
+
+bench-arm: $(STAMP) ## count what a tick costs on an emulated ARM926 (needs qemu-user and, the first time, root and debootstrap)
+	$(BIN)/python -m tests.bench_arm
 
 faults: $(STAMP) ## try every fault twenty times on live motors, and print how long they ran on
 	$(BIN)/python -m tests.faults

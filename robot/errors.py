@@ -1,6 +1,5 @@
 """The one way in which the robot says no."""
 
-
 LONGEST_MESSAGE = 200  # characters, of which JSON may need twelve bytes each: what is refused may be long, its refusal fits into a frame
 
 

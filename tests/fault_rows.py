@@ -160,16 +160,19 @@ with connect(sys.argv[1], name="killed host") as robot:
 
 
 def _loses_host(live, chance):
+    live.run(chance)
     live.robot.release()
-    with subprocess.Popen([sys.executable, "-c", _HOLDER, live.address], cwd=ROOT, stdout=subprocess.PIPE) as host:
-        host.stdout.readline()
-        with live.watch() as watch:
+    first = len(live.log.events)
+    with subprocess.Popen([sys.executable, "-c", _HOLDER, live.address], cwd=ROOT, stdout=subprocess.PIPE) as host, live.watch() as watch:
+        try:
+            host.stdout.readline()
             time.sleep(chance.uniform(0.1, 0.4))
             assert watch.running() == len(PORTS)
+        finally:
             since = time.monotonic()
             host.kill()
-            seconds = watch.stopped_after(since)
-    told = live.told("link_loss")
+        seconds = watch.stopped_after(since)
+    told = live.told("link_loss", first)
     assert "killed host" in told
     return seconds, told
 

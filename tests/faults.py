@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 from random import Random
 from typing import NamedTuple
@@ -33,22 +34,22 @@ class Result(NamedTuple):
 def attempt(row, folder, scratch, tries, chance):
     """The Result of so many tries of a row on the mount at `folder`."""
     result = Result([], "", [])
-    live = None
     environment = row.environment(scratch)
-    for _ in range(tries):
-        try:
-            live = live or Live(folder, *row.arguments, program=row.program, environment=environment, relayed=row.relayed)
-            seconds, told = row.attempt(live, chance)
-            assert row.words in told, f"the host is told '{told}'"
-            result.seconds.append(seconds)
-            result = result._replace(told=result.told or told)
-        except (AssertionError, KickctlError, OSError, subprocess.SubprocessError) as error:
-            result.failures.append(f"{type(error).__name__}: {error}")
-        if live is not None and (not row.lasting or result.failures):
-            live.close()
-            live = None
-    if live is not None:
-        live.close()
+    done = 0
+    while done < tries:
+        # A robot on which a try has failed serves no more.
+        with Live(folder, *row.arguments, program=row.program, environment=environment, relayed=row.relayed) as live:
+            well = True
+            while done < tries and well:
+                done += 1
+                try:
+                    seconds, told = row.attempt(live, chance)
+                    assert row.words in told, f"the host is told '{told}'"
+                    result.seconds.append(seconds)
+                    result = result._replace(told=result.told or told)
+                except (AssertionError, KickctlError, OSError, subprocess.SubprocessError) as error:
+                    result.failures.append(f"{type(error).__name__}: {error}")
+                well = row.lasting and not result.failures
     return result
 
 
@@ -96,12 +97,14 @@ def main():
             if row.lacks():
                 print(f"| {row.name} | | | | | | not tried: {row.lacks()} |", flush=True)
                 continue
+            began = time.monotonic()
             result = attempt(row, folder, Path(scratch), options.tries, chance)
             text, holds = line(row, result)
             all_hold = all_hold and holds
             print(text, flush=True)
             for failure in result.failures:
                 print(f"  {failure}", file=sys.stderr)
+            print(f"  {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
     return 0 if all_hold else 1
 
 

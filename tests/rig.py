@@ -1,14 +1,12 @@
-"""A robot on a rig: motors that do what the test says, time that passes when the test says, a link without a network."""
+"""A robot on a rig: motors that do what the test says, time that passes when the test says."""
 
 from collections import deque
 
-from host.conversation import Conversation
 from robot import motors, wire
 from robot.blackbox import BlackBox
 from robot.loop import Loop
 from robot.motors import MotorFault
 from robot.record import STRUCT, unpack
-from robot.session import Session
 
 TOKEN = bytes(range(wire.TOKEN_BYTES))
 
@@ -41,7 +39,7 @@ class Motor(motors.Motor):
     def _do(self, what):
         self.done.append(what)
         if what in self.fails:
-            raise MotorFault(f"cannot {what}")
+            raise MotorFault("cannot " + what)
 
     def angle_rad(self):
         self._do("read")
@@ -118,75 +116,11 @@ class Rig:
         }
 
 
-class Client:
-    """A host's conversation with one session of the robot, both without any I/O. `stream` collects what a subscription brought."""
-
-    def __init__(self, loop, token=TOKEN, name="tester", client=None):
-        self.session = Session(loop, TOKEN, "boot")
-        self.talk = Conversation(token, name, client or name)
-        self.stream = []
-        self.talk.begin()
-
-    def greet(self):
-        """Say hello, and prove the token if there is one. Returns self."""
-        self.give(self.talk.hello_frame())
-        if self.talk.token is not None:
-            self.give(self.talk.auth_frame())
-        return self
-
-    def give(self, data):
-        """Hand bytes to the robot, and its answers back."""
-        decoder = wire.Decoder()
-        decoder.feed(data)
-        while (frame := decoder.next()) is not None:
-            self._take(self.session.receive(*frame))
-
-    def ask(self, do, **arguments):
-        """The result of a request; raises what the robot refuses as KickctlError."""
-        return self._exchange(*self.talk.request(do, arguments, sealed=False))
-
-    def tell(self, do, **arguments):
-        """The result of a sealed command."""
-        return self._exchange(*self.talk.request(do, arguments, sealed=True))
-
-    def stop(self):
-        """The result of a stop frame."""
-        return self._exchange(*self.talk.stop_frame())
-
-    def flow(self, frames=1000000):
-        """Take so many frames of the subscription."""
-        for _ in range(frames):
-            frame = self.session.stream()
-            if frame is None:
-                break
-            self._take(frame)
-
-    @property
-    def records(self):
-        return [item for item in self.stream if not isinstance(item, dict)]
-
-    @property
-    def events(self):
-        return [item for item in self.stream if isinstance(item, dict)]
-
-    def _exchange(self, number, frame):
-        self.give(frame)
-        result = self.talk.answer(number)
-        assert result is not None, "no answer"
-        return result
-
-    def _take(self, data):
-        for item in self.talk.feed(data):
-            self.stream += [item] if isinstance(item, dict) else item.records
-
-
 def whole(data):
     """The frames in bytes that hold nothing else."""
     decoder = wire.Decoder()
     decoder.feed(data)
-    frames = []
-    while (frame := decoder.next()) is not None:
-        frames.append(frame)
+    frames = list(iter(decoder.next, None))
     assert decoder.discarded == 0
     return frames
 

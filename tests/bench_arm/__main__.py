@@ -26,6 +26,7 @@ def main() -> int:
         robot = ("-m", "robot", "--idle", "--host", "127.0.0.1", "--port", "0", "--token", f"{folder}/token", "--sysfs", str(tree))
         try:
             emulator = Emulator(Path(folder))
+            emulator.until_line(*robot)  # leaves .pyc files behind, as the deploy does
             bare, imported = (emulator.run("-c", f"{what}print(1)")[0] for what in ("", "import robot.__main__, robot.ev3\n"))
             ticks = emulator.run("-m", "tests.bench_arm.tick", str(tree))
             ready = emulator.until_line(*robot)

@@ -41,18 +41,17 @@ class Emulator:
             _fill_cache()
         self._plugin = folder / "count.so"
         subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-o", self._plugin, Path(__file__).with_name("count.c")], check=True)
-        # Copies, for .pyc files of their own; and of the library alone, since its neighbours in .venv are for another processor.
+        # Of the library alone, since its neighbours in .venv are for another processor.
         self._sources = folder / "sources"
         for source in (ROOT / "robot", ROOT / "tests" / "bench_arm", Path(ev3dev2.__file__).parent):
             goal = self._sources / (source.relative_to(ROOT) if source.is_relative_to(ROOT / "tests") else source.name)
             shutil.copytree(source, goal, ignore=shutil.ignore_patterns("__pycache__"))
-        self.run("-m", "compileall", "-q", str(self._sources))
 
     @contextmanager
     def start(self, *arguments: str):
         """A running program, as a Popen with pipes; it is terminated in the end."""
-        command = ["qemu-arm", "-cpu", "arm926", "-plugin", str(self._plugin), "-L", str(CACHE), str(CACHE / "usr/bin" / PYTHON), "-S"]
-        environment = {"PATH": os.defpath, "PYTHONPATH": str(self._sources), "PYTHONHASHSEED": "0"}
+        command = ["qemu-arm", "-cpu", "arm926", "-plugin", str(self._plugin), "-L", str(CACHE), str(CACHE / "usr/bin" / PYTHON)]
+        environment = {"PYTHONPATH": str(self._sources), "PYTHONPYCACHEPREFIX": str(self._plugin.with_name("pyc")), "PYTHONHASHSEED": "0"}
         with subprocess.Popen(
             [*command, *arguments], env=environment, cwd=self._sources, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         ) as process:
@@ -84,7 +83,9 @@ class Emulator:
 def _need(tools: dict[str, str], why: str) -> None:
     missing = [package for tool, package in tools.items() if not shutil.which(tool)]
     if missing:
-        raise Unavailable(f"needs {', '.join(missing)}{why}. Install it (Debian, Ubuntu: apt-get install {' '.join(missing)}) and try again")
+        raise Unavailable(
+            f"needs {', '.join(missing)}{why}. Install it (Debian, Ubuntu: apt-get install {' '.join(missing)}) and try again"
+        )
 
 
 def _fill_cache() -> None:

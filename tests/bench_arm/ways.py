@@ -22,17 +22,22 @@ ATTRIBUTES = {
     "ramp_up_sp": "0",
     "stop_action": "coast",
 }
+BATTERY = {"technology": "Li-ion", "voltage_now": "7500000"}
 
 
 def make_tree(root):
-    """Fill the folder `root` with a motor at each port. Plain files: nothing moves, and nothing is refused."""
+    """Fill the folder `root` with a motor at each port and a battery. Plain files: nothing moves, and nothing is refused."""
     for number, port in enumerate(PORTS):
-        folder = Path(root, "tacho-motor", f"motor{number}")
-        folder.mkdir(parents=True)
-        for name, value in (*ATTRIBUTES.items(), ("address", port)):
-            (folder / name).write_text(value + "\n", encoding="ascii")
-            # python-ev3dev2 opens an attribute as the group's permissions say.
-            (folder / name).chmod(0o664)
+        _write(Path(root, "tacho-motor", f"motor{number}"), dict(ATTRIBUTES, address=port))
+    _write(Path(root, "power_supply", "lego-ev3-battery"), BATTERY)
+
+
+def _write(folder, attributes):
+    folder.mkdir(parents=True)
+    for name, value in attributes.items():
+        (folder / name).write_text(value + "\n", encoding="ascii")
+        # python-ev3dev2 opens an attribute as the group's permissions say.
+        (folder / name).chmod(0o664)
 
 
 class LibraryMotor(Motor):

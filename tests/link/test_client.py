@@ -2,10 +2,10 @@
 
 import gc
 import json
-import os
 import socket
 import threading
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -13,19 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from host.client import RECONNECT_S, Robot, connect
-from host.conversation import Conversation
-from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
+from host.errors import NoLink, RefusedByRobot, WrongUse
 from host.log import Log
 from host.sim_link import SimLink
-from host.subscription import Subscription
 from host.transport import TcpLink
-from robot import wire
-from robot.blackbox import BlackBox
 from robot.loop import Loop
 from robot.motors import MonotonicClock
 from robot.record import unpack
 from robot.server import Server
-from tests.rig import TOKEN, Client, Clock, Motor, Rig, packed
+from tests.rig import TOKEN, Clock, Motor, packed
+from tests.talk import Client
 
 
 class RigLink(SimLink):
@@ -87,9 +84,9 @@ def robot(link):
         yield robot
 
 
-def once(events):
-    """The events of the robot's own in a log, which must be told once each."""
-    return [event for event in events if event["event"] not in ("snapshot", "lost", "restart")]
+def open_files():
+    """How many files this process has open."""
+    return len(list(Path("/proc/self/fd").iterdir()))
 
 
 # Cut links
@@ -115,7 +112,7 @@ def test_a_log_misses_nothing_and_hears_nothing_twice_wherever_the_link_is_cut(c
         robot.remove_tap(log)
     assert [record.tick for record in log.records] == list(range(first, first + len(log.records)))
     assert packed(log.records) == packed(link.records()[first : first + len(log.records)])
-    told = once(log.events)
+    told = [event for event in log.events if event["event"] not in ("snapshot", "lost")]
     noted = json.loads(json.dumps([event for event in link.events() if event["tick"] >= first]))
     assert told == noted[: len(told)]
     assert all(event["tick"] > log.records[-1].tick for event in noted[len(told) :])
@@ -274,18 +271,18 @@ def test_a_machine_without_the_token_may_look_and_stop(link):
 
 
 def test_a_wrong_token_is_refused_and_leaves_nothing_open(link):
-    files = len(os.listdir("/proc/self/fd"))  # noqa: PTH208
+    files = open_files()
     with pytest.raises(RefusedByRobot, match="token"):
         Robot(link, b"x" * 32)
     gc.collect()
-    assert len(os.listdir("/proc/self/fd")) == files  # noqa: PTH208
+    assert open_files() == files
 
 
 def test_a_session_leaves_nothing_open():
     with connect("sim://", seed=1) as robot:
         robot.wait(0.1)
-        files = len(os.listdir("/proc/self/fd"))  # noqa: PTH208
-    assert len(os.listdir("/proc/self/fd")) == files - 2  # noqa: PTH208
+        files = open_files()
+    assert open_files() == files - 2
 
 
 # Real links
@@ -351,109 +348,3 @@ def test_where_nobody_listens_is_told_in_words():
         port = unused.getsockname()[1]
         with pytest.raises(NoLink, match="no robot answers"):
             Robot(TcpLink(f"tcp://127.0.0.1:{port}", "127.0.0.1", port), None)
-
-
-# What comes from the robot
-
-scraps = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.text(max_size=8),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
-    max_leaves=6,
-)
-fields = st.sampled_from(
-    ("id", "result", "error", "event", "tick", "number", "from", "params", "kick", "nonce", "host_nonce", "boot", "proof", "code")
-)
-messages = st.dictionaries(fields, scraps | st.sampled_from(("snapshot", "lost", "params", "kick", "00" * 16)), max_size=6).map(wire.dump)
-
-
-@given(st.lists(st.tuples(st.sampled_from(wire.TYPES), st.binary(max_size=300) | messages), max_size=6), st.booleans())
-def test_no_frame_of_a_strange_robot_raises_anything_but_words(frames, greeted):
-    talk = Conversation(TOKEN, "n", "c")
-    place = Subscription()
-    talk.begin()
-    talk.hello_frame()
-    if greeted:
-        link = Client(Rig().loop)
-        link.talk = talk
-        link.greet()
-    for kind, payload in frames:
-        try:
-            for item in talk.feed(wire.encode(kind, payload)):
-                place.take_event(item) if isinstance(item, dict) else place.take_samples(item)
-            for number in (None, 1):
-                talk.answer(number)
-        except KickctlError as error:
-            assert error.message
-
-
-def test_answers_to_who_used_the_line_before_are_not_taken_for_ones_own():
-    """Over a serial line, what the robot still has to say to the one before comes first."""
-    rig = Rig()
-    before, after = Client(rig.loop).greet(), Conversation(TOKEN, "n", "c")
-    after.begin()
-    stale = before.session.receive(wire.ASK, wire.dump({"id": 1, "do": "status"}))
-    hello = before.session.receive(*_frame(before.talk.hello_frame()))
-    list(before.talk.feed(hello))
-    stale += hello + before.session.receive(*_frame(before.talk.auth_frame()))
-    hello = after.hello_frame()
-    list(after.feed(stale))
-    assert after.hello == {}
-    list(after.feed(before.session.receive(*_frame(hello))))
-    assert after.hello
-    number, _ = after.request("status", {}, sealed=False)
-    assert number == 1
-    assert after.answer(number) is None
-    list(after.feed(before.session.receive(*_frame(after.auth_frame()))))
-    assert after.trusted
-
-
-def _frame(data):
-    decoder = wire.Decoder()
-    decoder.feed(data)
-    return decoder.next()
-
-
-@settings(max_examples=60)
-@given(st.data())
-def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
-    """Any frame may get lost. The client notices from numbers alone, asks again, and everything passes once and in order."""
-    rig = Rig()
-    rig.loop.blackbox = BlackBox(rig.loop.params.values(), 40)
-    rig.loop.start()
-    client = Client(rig.loop, token=None).greet()
-    place, log = Subscription(), Log()
-
-    def arrive(frame):
-        for item in client.talk.feed(frame):
-            if isinstance(item, dict):
-                event = place.take_event(item)
-                if event is not None:
-                    log.take_event(event)
-            else:
-                log.take_records(place.take_samples(item))
-
-    place.begin(client.ask("subscribe")["tick"])
-    ticks_of_events = [0]
-    pauses = st.integers(0, 3) | st.just(60) if data.draw(st.booleans()) else st.integers(0, 3)
-    for number in range(data.draw(st.integers(5, 40))):
-        for _ in range(data.draw(st.integers(0, 3))):
-            ticks_of_events.append(rig.loop.set_params({"k": float(number % 90)}))
-        rig.run(data.draw(pauses))
-        while (frame := client.session.stream()) is not None:
-            if data.draw(st.integers(0, 3)):
-                arrive(frame)
-        if not place.following and data.draw(st.booleans()):
-            client.session.subscribe(place.next_tick)
-    for _ in range(2):
-        rig.run(1)
-        client.session.subscribe(place.next_tick)
-        while (frame := client.session.stream()) is not None:
-            arrive(frame)
-    missing = [(event["from"], event["tick"]) for event in log.events if event["event"] == "lost"]
-    told = {tick for first, end in missing for tick in range(first, end)}
-    ticks = [record.tick for record in log.records]
-    assert sorted({*ticks, *told}) == list(range(rig.loop.blackbox.next_tick))
-    assert len(ticks) + len(told) == rig.loop.blackbox.next_tick
-    numbers = [event["number"] for event in once(log.events)]
-    assert numbers == sorted(set(numbers))
-    assert {number for number, tick in enumerate(ticks_of_events) if tick not in told} <= set(numbers)

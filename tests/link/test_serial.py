@@ -106,7 +106,7 @@ def noisy(seed):
 
 @pytest.fixture
 def joined(tmp_path):
-    """(cable, machine, uri)"""
+    """A cable, a machine at its end, and the address of the other end."""
     cable = Cable(tmp_path, noisy(1))
     machine = Machine(cable.paths["robot"])
     yield cable, machine, f"serial://{cable.paths['host']}?baud=115200"
@@ -119,7 +119,7 @@ def test_a_whole_conversation_over_a_noisy_line(joined):
     with Robot(make_link(uri), TOKEN, "serial") as robot:
         log = Log(robot.info())
         robot.add_tap(log)
-        assert [row["name"] for row in robot.describe("channels")][0] == "tick"
+        assert robot.describe("channels")[0]["name"] == "tick"
         robot.set(k=6.0)
         applied = robot.kick("position", ticks=3)
         robot.wait(0.5)
@@ -169,14 +169,14 @@ def test_the_robot_ends_its_side_with_its_program(joined):
 
 @pytest.fixture
 def line():
-    """(rig, server, the file descriptor of the line's far end)"""
+    """A rig, its server, and the file descriptor of its serial line's far end."""
     rig = Rig()
     rig.loop.start()
     server = Server(rig.loop, TOKEN)
     master, slave = os.openpty()
     tty.setraw(slave)
     os.set_blocking(slave, False)
-    far = open(slave, "r+b", buffering=0)  # noqa: SIM115
+    far = os.fdopen(slave, "r+b", buffering=0)
     server.attach(lambda: far)
     yield rig, server, master
     server.close()

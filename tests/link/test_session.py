@@ -11,7 +11,8 @@ from host.errors import KickctlError, RefusedByRobot
 from robot import commands, wire
 from robot.params import TABLE
 from robot.session import Session
-from tests.rig import TOKEN, Client, Rig, whole
+from tests.rig import TOKEN, Rig, whole
+from tests.talk import Client
 
 SEALED = [row.name for row in commands.TABLE.values() if row.sealed]
 OPEN = [row.name for row in commands.TABLE.values() if not row.sealed]
@@ -367,9 +368,8 @@ def test_any_frame_gets_sound_frames_and_nothing_is_raised(sent, greeted):
     client = Client(rig.loop)
     if greeted:
         client.greet().tell("lease")
-    for counter, (kind, seal, payload) in enumerate(sent, 10):
-        if seal and greeted:
-            payload = wire.seal(client.talk._handshake.key, counter, payload)
+    for counter, (kind, seal, body) in enumerate(sent, 10):
+        payload = wire.seal(client.talk._handshake.key, counter, body) if seal and greeted else body
         if len(payload) <= wire.MAX_PAYLOAD:
             assert whole(client.session.receive(kind, payload))
             client.flow()
@@ -390,76 +390,3 @@ def test_no_depth_of_nesting_is_too_much(rig, pattern):
         ):
             if len(text) <= wire.MAX_PAYLOAD:
                 assert "error" in reply(client.session.receive(wire.ASK, text.encode()))
-
-
-# The stream
-
-
-def test_events_stand_before_the_record_they_concern(rig, client):
-    client.ask("subscribe", **{"from": 0})
-    rig.run(2)
-    client.tell("kick", kick={"id": "1", "mode": "membrane"})
-    client.tell("set", set={"k": 2.0})
-    rig.run(2)
-    client.flow()
-    shape = [item["event"] if isinstance(item, dict) else item.tick for item in client.stream]
-    assert shape == ["snapshot", "start", 0, 1, 2, 3, 4, "kick", "params", 5, 6]
-    assert client.events[0]["params"]["k"] == 8.0
-
-
-def test_a_subscription_from_now_begins_with_what_is_in_force(rig, client):
-    client.tell("set", set={"k": 2.0})
-    client.tell("kick", kick={"id": "1", "mode": "position"})
-    rig.run(1)
-    assert client.ask("subscribe") == {"tick": 4}
-    client.flow()
-    rig.run(1)
-    client.flow()
-    (snapshot,) = client.events
-    assert (snapshot["params"]["k"], snapshot["kick"]["id"], snapshot["tick"]) == (2.0, "1", 4)
-    assert [record.tick for record in client.records] == [4]
-
-
-def test_who_reads_too_slowly_is_told_exactly_what_is_lost(rig, client):
-    client.ask("subscribe", **{"from": 0})
-    client.flow(3)
-    assert [record.tick for record in client.records] == [0, 1, 2]
-    client.tell("set", set={"k": 2.0})
-    rig.run(250)
-    client.flow()
-    lost = [event for event in client.events if event["event"] == "lost"]
-    assert [(event["from"], event["tick"]) for event in lost] == [(3, 153)]
-    ticks = [record.tick for record in client.records]
-    assert ticks == [0, 1, 2, *range(153, 253)]
-    assert client.events[-1]["event"] == "snapshot"
-    assert client.events[-1]["params"]["k"] == 2.0
-
-
-def test_a_loss_that_was_not_told_yet_is_not_forgotten_when_more_is_lost(rig, client):
-    """The peer reads nothing between two losses: what it must be told is all that it has not."""
-    client.ask("subscribe", **{"from": 0})
-    rig.run(250)
-    client.ask("subscribe", **{"from": 3})
-    rig.run(250)
-    client.flow()
-    lost = [event for event in client.events if event["event"] == "lost"]
-    assert [(event["from"], event["tick"]) for event in lost] == [(3, 403)]
-    assert [record.tick for record in client.records] == list(range(403, 503))
-
-
-def test_unsubscribed_is_silent(rig, client):
-    client.ask("subscribe")
-    client.ask("unsubscribe")
-    rig.run(3)
-    client.flow()
-    assert client.stream == []
-
-
-def test_a_new_hello_ends_the_subscription_and_the_trust(rig, client):
-    client.ask("subscribe")
-    client.talk.token = None
-    client.greet()
-    rig.run(2)
-    client.flow()
-    assert client.stream == []
-    refused("token", client.ask, "lease")

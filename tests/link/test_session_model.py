@@ -10,7 +10,8 @@ from host.errors import KickctlError
 from robot import wire
 from robot.record import STATES
 from robot.session import Session
-from tests.rig import TOKEN, Client, Motor, Rig
+from tests.rig import TOKEN, Motor, Rig
+from tests.talk import Client
 
 NAMES = ("ann", "bob", "eve")
 TRUSTED = ("ann", "bob")
@@ -224,7 +225,7 @@ class SessionMachine(RuleBasedStateMachine):
 
     @invariant()
     def a_lost_host_is_noticed_within_two_ticks(self):
-        silence = self.rig.clock.time - self.rig.loop.lease._heard
+        silence = self.rig.clock.time - self.heard
         assert self.rig.loop.lease.holder is None or silence <= LINK_LOSS_S + 2 * self.rig.loop.params.tick_s
 
     @invariant()

@@ -24,15 +24,14 @@ def decode(chunks):
     taken = []
     for chunk in chunks:
         decoder.feed(chunk)
-        while (frame := decoder.next()) is not None:
-            taken.append(frame)
+        taken += iter(decoder.next, None)
     return taken, decoder
 
 
 def cut(data, places):
     """The bytes in pieces that end at the places."""
-    places = sorted(place % (len(data) + 1) for place in places)
-    return [data[first:end] for first, end in zip([0, *places], [*places, len(data)], strict=True)]
+    ends = [*sorted(place % (len(data) + 1) for place in places), len(data)]
+    return [data[begin:end] for begin, end in zip([0, *ends], ends)]  # noqa: B905 - zip(strict=) is of 3.10
 
 
 @given(st.lists(frames, max_size=6), st.lists(st.integers(0, 1 << 16), max_size=12))

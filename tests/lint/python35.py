@@ -132,7 +132,7 @@ def _type_unions(node: ast.AST) -> Iterator[Violation]:
 
 def _is_text(arguments: list[ast.expr]) -> bool:
     if arguments and isinstance(arguments[0], ast.Call) and isinstance(arguments[0].func, ast.Attribute):
-        return arguments[0].func.attr in ("decode", "read_text")
+        return arguments[0].func.attr in ("decode", "dumps", "read_text")
     return bool(arguments) and isinstance(arguments[0], ast.Constant) and isinstance(arguments[0].value, str)
 
 

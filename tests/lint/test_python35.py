@@ -3,7 +3,7 @@
 import pytest
 
 from tests.lint.python35 import violations
-from tests.lint.sources import ROOT, modules
+from tests.lint.sources import ROOT, modules, robot_tests
 
 LATER = {
     "f-string": "print(f'{1}')",
@@ -80,4 +80,9 @@ def test_a_violation_tells_its_line() -> None:
 
 @pytest.mark.parametrize("module", modules("robot"), ids=str)
 def test_the_robot_is_python_35(module: str) -> None:
+    assert violations((ROOT / module).read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("module", [*robot_tests(), "tests/conftest.py", "tests/rig.py"], ids=str)
+def test_the_robots_tests_are_python_35(module: str) -> None:
     assert violations((ROOT / module).read_text(encoding="utf-8")) == []

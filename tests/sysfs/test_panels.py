@@ -9,6 +9,8 @@ from robot.lights import LEFT_AND_RIGHT, Lights
 from robot.record import STATES
 from tests.rig import Rig
 
+LEDS = ("led0:red:brick-status", "led0:green:brick-status", "led1:red:brick-status", "led1:green:brick-status")
+
 
 @pytest.fixture
 def rig():
@@ -17,19 +19,14 @@ def rig():
 
 @pytest.fixture
 def sysfs(tmp_path):
-    for side in (0, 1):
-        for colour in ("red", "green"):
-            (tmp_path / "leds" / f"led{side}:{colour}:brick-status").mkdir(parents=True)
+    for name in LEDS:
+        (tmp_path / "leds" / name).mkdir(parents=True)
     return tmp_path
 
 
 def shown(sysfs):
     """Brightness of left red, left green, right red, right green."""
-    return [
-        int((sysfs / "leds" / f"led{side}:{colour}:brick-status" / "brightness").read_text(encoding="ascii"))
-        for side in (0, 1)
-        for colour in ("red", "green")
-    ]
+    return [int((sysfs / "leds" / name / "brightness").read_text(encoding="ascii")) for name in LEDS]
 
 
 def test_every_state_looks_different(rig, sysfs):

@@ -103,8 +103,8 @@ class BlackBoxMachine(RuleBasedStateMachine):
             assert (event["params"], event["kick"]) == state_before(self.journal, tick)
             assert (event["event"], event["tick"]) == ("snapshot", tick)
             rest = []
-            while (later := self.box.event(number)) is not None:
-                rest.append(later)
+            while self.box.event(number) is not None:
+                rest.append(self.box.event(number))
                 number += 1
             assert rest == [happened for happened in self.journal if happened["tick"] >= tick]
 

@@ -18,8 +18,8 @@ potentials = st.floats(-1.0, 1.0)
 steps = st.tuples(st.floats(0.003, 0.09), st.floats(0.5, 10.0), st.floats(0.1, 5.0), st.floats(0.0, 20.0), st.sampled_from((1, 2)))
 
 
-def close(one, other):
-    return isclose(one, other, rel_tol=1e-11, abs_tol=1e-11)
+def near(expected):
+    return pytest.approx(expected, rel=1e-11, abs=1e-11)
 
 
 def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
@@ -45,16 +45,16 @@ def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
     ],
 )
 def test_each_equation_gives_what_a_hand_computes(computed, expected):
-    assert all(close(one, other) for one, other in zip(computed, expected, strict=True))
+    assert computed == near(expected)
 
 
 def test_a_whole_tick_gives_what_a_hand_computes():
     # At phi = 0 both neurons are pulled by dt/tau = 1/4 of the way to (1, 0): x1 = 0.2 + 0.8/4 = 0.4, x2 = 0.4 - 0.4/4 = 0.3.
     # F_tan = -F_2 = -k (x_t2 - 0) with x_t2 = tanh(a x2 / 2) = tanh(0.3) = 0.29131261245159090 for a = 2.
     x1, x2, force, torque = step(0.2, 0.4, 0.0, dt_s=0.0625, a=2.0, k=2.0)
-    assert close(x1, 0.4)
-    assert close(x2, 0.3)
-    assert close(force, -0.58262522490318180)
+    assert x1 == near(0.4)
+    assert x2 == near(0.3)
+    assert force == near(-0.58262522490318180)
     # (e^2F - 1)/(e^2F + 1) with e^2F = e^-1.1652504498 = 0.3118447
     assert isclose(torque, -0.524571, abs_tol=1e-6)
 
@@ -62,9 +62,9 @@ def test_a_whole_tick_gives_what_a_hand_computes():
 def test_the_rods_act_on_the_new_potentials():
     """One step with dt = tau brings x1 from 0 to cos(phi); the old x1 would give a force of -k/2."""
     x1, _, force, _ = step(0.0, 0.0, pi / 4, dt_s=0.25, rods=1)
-    assert close(x1, sqrt(0.5))
+    assert x1 == near(sqrt(0.5))
     # tanh(2 sqrt(1/2)) = tanh(1.4142135623730951) = 0.88838556158566054
-    assert close(force, 8.0 * (0.88838556158566054 - sqrt(0.5)) * sqrt(0.5))
+    assert force == near(8.0 * (0.88838556158566054 - sqrt(0.5)) * sqrt(0.5))
 
 
 def test_what_the_neurons_see_does_not_reach_the_projection():
@@ -83,14 +83,14 @@ def test_a_quarter_turn_of_everything_changes_no_force_on_two_rods(x1, x2, phi, 
     dt_s, a, tau_s, k, _ = parameters
     x1_new, x2_new, force, torque = step(x1, x2, phi, dt_s, a, tau_s, k)
     turned = step(-x2, x1, phi + pi / 2, dt_s, a, tau_s, k)
-    assert all(close(one, other) for one, other in zip(turned, (-x2_new, x1_new, force, torque), strict=True))
+    assert turned == near((-x2_new, x1_new, force, torque))
 
 
 @given(potentials, potentials, angles, steps)
 def test_a_mirrored_wheel_is_driven_the_other_way(x1, x2, phi, parameters):
     x1_new, x2_new, force, torque = step(x1, x2, phi, *parameters)
     mirrored = step(x1, -x2, -phi, *parameters)
-    assert all(close(one, other) for one, other in zip(mirrored, (x1_new, -x2_new, -force, -torque), strict=True))
+    assert mirrored == near((x1_new, -x2_new, -force, -torque))
 
 
 @given(potentials, potentials, angles, steps)
@@ -100,7 +100,7 @@ def test_one_rod_is_the_first_of_the_two(x1, x2, phi, parameters):
     alone, both = step(x1, x2, phi, *first, 1), step(x1, x2, phi, *first, 2)
     assert alone[:2] == both[:2]
     # Where cos(phi) = 0 the second rod has no lever.
-    assert close(step(x1, x2, pi / 2, *first, 1)[2], step(x1, x2, pi / 2, *first, 2)[2])
+    assert step(x1, x2, pi / 2, *first, 1)[2] == near(step(x1, x2, pi / 2, *first, 2)[2])
     # The share of the second rod does not depend on x1.
     other_alone, other_both = step(-x1, x2, phi, *first, 1), step(-x1, x2, phi, *first, 2)
     assert isclose(both[2] - alone[2], other_both[2] - other_alone[2], abs_tol=1e-9)

@@ -35,10 +35,18 @@ def robot(ticks=True):
         server.close()
 
 
+def listening():
+    """A socket on this machine that takes connections."""
+    listener = socket.socket()
+    listener.bind(("127.0.0.1", 0))
+    listener.listen(1)
+    return listener
+
+
 @contextmanager
 def program(answers):
     """The port of a program that sends these bytes to whoever connects, and hangs up."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
+    with listening() as listener:
 
         def serve():
             link = listener.accept()[0]
@@ -105,12 +113,12 @@ def test_any_trouble_is_a_line_and_a_status(capsys, monkeypatch, tmp_path, answe
         monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")])
         assert main() == 1
     out = capsys.readouterr().out
-    assert out.startswith(f"the robot's program at port {port} is not well: ")
+    assert out.startswith("the robot's program at port " + str(port) + " is not well: ")
     assert out.count("\n") == 1
 
 
 def test_nobody_there(capsys, monkeypatch, tmp_path):
-    with socket.create_server(("127.0.0.1", 0)) as listener:
+    with listening() as listener:
         port = listener.getsockname()[1]
     monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "none")])
     assert main() == 1

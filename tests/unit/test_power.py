@@ -2,13 +2,11 @@
 
 import pytest
 
-from host.replay import replay
 from robot.loop import BATTERY_TICKS
 from robot.motors import Battery
 from robot.power import NOMINAL_V, Power
 from robot.record import STATES
 from robot.wheel import Wheel
-from tests.fakes import Rig as FakeRig
 from tests.rig import Rig
 
 
@@ -128,22 +126,3 @@ def test_duties_make_up_for_the_voltage_only_if_wanted_and_within_the_limit(monk
     assert duties("on", 0.5) == 30
     assert duties("on", 1.0) == 50
     assert duties("on", -1.0) == -50
-
-
-def test_the_scale_stands_in_the_log_so_that_it_replays():
-    class Sagging(Cells):
-        def voltage_v(self):
-            self.volts -= 0.2
-            return self.volts
-
-    rig = FakeRig()
-    rig.loop._power = Power(Sagging(8.5))
-    rig.loop.set_params({"battery_compensation": "on"})
-    rig.loop.start()
-    rig.run(3 * BATTERY_TICKS)
-    log = rig.log()
-    scales = [event["set"]["duty_scale"] for _, event in zip(log.places, log.events, strict=True) if "duty_scale" in event.get("set", {})]
-    assert len(set(scales)) == 3
-    result = replay(log)
-    assert result.exact
-    assert result.compared > 2 * BATTERY_TICKS

@@ -6,6 +6,9 @@ import pytest
 
 from host.log import Log
 from host.replay import replay
+from robot.loop import BATTERY_TICKS
+from robot.motors import Battery
+from robot.power import Power
 from robot.record import Record
 from tests.fakes import Rig, eventful
 
@@ -164,6 +167,27 @@ def test_a_robot_that_began_anew_begins_anew_in_the_replay():
     result = replay(log)
     assert result.exact
     assert (result.compared, result.not_comparable) == (60 + 29, 1)
+
+
+def test_what_the_robot_made_up_for_the_voltage_stands_in_the_log():
+    class Sagging(Battery):
+        volts = 8.5
+
+        def voltage_v(self):
+            self.volts -= 0.2
+            return self.volts
+
+    rig = Rig()
+    rig.loop._power = Power(Sagging())
+    rig.loop.set_params({"battery_compensation": "on"})
+    rig.loop.start()
+    rig.run(3 * BATTERY_TICKS)
+    log = rig.log()
+    scales = [event["set"]["duty_scale"] for event in log.events if "duty_scale" in event.get("set", {})]
+    assert len(set(scales)) == 3
+    result = replay(log)
+    assert result.exact
+    assert result.compared > 2 * BATTERY_TICKS
 
 
 def test_nothing_is_not_reproduced():

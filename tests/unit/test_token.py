@@ -2,7 +2,6 @@
 
 import os
 import stat
-from pathlib import Path
 
 import pytest
 
@@ -80,6 +79,6 @@ def test_where_the_token_is_kept(tmp_path, monkeypatch):
     assert default_path() == str(tmp_path / ".config" / "kickctl" / "token")
 
 
-def test_a_bare_file_name_is_in_the_working_folder():
+def test_a_bare_file_name_is_in_the_working_folder(tmp_path):
     secret, _ = load_or_make("token-here")
-    assert Path("token-here").read_text().strip() == secret.hex()
+    assert (tmp_path / "token-here").read_text().strip() == secret.hex()

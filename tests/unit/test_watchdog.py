@@ -7,14 +7,12 @@ import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
 from robot.motors import MotorFault
 from robot.watchdog import MOST_UNANSWERED, SILENCE_S, Watchdog, stop_all, watch
 
-ROOT = Path(__file__).resolve().parents[2]
 PATIENCE_S = 20.0
 
 
@@ -22,7 +20,7 @@ PATIENCE_S = 20.0
 def tree(tmp_path):
     """Two motors that run."""
     for number in range(2):
-        folder = tmp_path / "tacho-motor" / f"motor{number}"
+        folder = tmp_path / "tacho-motor" / ("motor" + str(number))
         folder.mkdir(parents=True)
         (folder / "command").write_text("")
         (folder / "duty_cycle_sp").write_text("9")
@@ -65,7 +63,9 @@ for beat in range(10**6):
 
 def loop_process(tree, end):
     """A process that feeds its watchdog until it comes to its end."""
-    return subprocess.Popen([sys.executable, "-c", _LOOP, str(tree), end], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    command = [sys.executable, "-c", _LOOP, str(tree), end]
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
 
 
 @pytest.mark.parametrize("end", ["segv", "raise", "hang"])
