@@ -123,12 +123,14 @@ deploy() {
     if [ -n "${KICK_ROBOT_ARGS+set}" ]; then
         printf '%s\n' "$KICK_ROBOT_ARGS" | on_brick "cat >kickctl/arguments.new"
     fi
+    [ -n "$service" ] || say "The wheels will turn as soon as the program is ready: hold the robot up, or deploy with KICK_ROBOT_ARGS=--idle."
     step "changing over to $id"
     on_brick -t "sh $files/robot/service/brick.sh activate $id $service"
     say
-    say "The robot's program runs on $brick. Kick it:"
+    say "The robot's program runs on $brick. Let it run, kick it, stop it:"
+    say "  kickctl --brick ssh://$brick start"
     say "  kickctl --brick ssh://$brick kick --mode phase --ticks 4"
-    say "If its wheels should rest: kickctl --brick ssh://$brick stop"
+    say "  kickctl --brick ssh://$brick stop"
 }
 
 verb=deploy service='' dry='' brick=robot@ev3dev.local named=''

@@ -65,7 +65,7 @@ def line(row, result):
         "goes on" if worst is None else f"{1000 * sum(times) / len(times):.0f}",
         "" if worst is None else f"{1000 * worst:.0f}",
         "" if row.limit_s is None else f"{1000 * row.limit_s:.0f}",
-        result.told,
+        result.told or "nothing",
         verdict,
     )
     return "| " + " | ".join(cells) + " |", verdict == "holds"

@@ -225,12 +225,12 @@ rollback() {
     activate "$before"
 }
 
-run() { # become the robot's program; robot.pid keeps its number
+run() { # run [ARGUMENT ...]: become the robot's program; robot.pid keeps its number
     cd "$ROOT/current"
     cd "$(pwd -P)" # the release that it began with, whatever becomes current
     echo $$ >"$ROOT/robot.pid"
     # shellcheck disable=SC2046 # one word each
-    exec python3 -m robot --token "$TOKEN" $(cat "$ROOT/arguments" 2>/dev/null) >>"$ROOT/robot.log" 2>&1
+    exec python3 -m robot --token "$TOKEN" $(cat "$ROOT/arguments" 2>/dev/null) "$@" >>"$ROOT/robot.log" 2>&1
 }
 
 status() {
