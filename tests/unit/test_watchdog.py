@@ -10,6 +10,7 @@ import time
 
 import pytest
 
+import robot
 from robot.motors import MotorFault
 from robot.watchdog import MOST_UNANSWERED, SILENCE_S, Watchdog, stop_all, watch
 
@@ -63,7 +64,7 @@ for beat in range(10**6):
 
 def loop_process(tree, end):
     """A process that feeds its watchdog until it comes to its end."""
-    environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
+    environment = dict(os.environ, PYTHONPATH=robot.__path__[0] + "/..")
     command = [sys.executable, "-c", _LOOP, str(tree), end]
     return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
 
