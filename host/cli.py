@@ -6,8 +6,11 @@ import argparse
 import importlib
 import json
 import os
+import signal
 import sys
+import threading
 from collections.abc import Sequence
+from contextlib import suppress
 
 from host.errors import KickctlError
 from host.options import common
@@ -47,21 +50,39 @@ def main(arguments: Sequence[str] | None = None) -> int:
         import argcomplete
 
         argcomplete.autocomplete(parser)
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _interrupt)  # a verb that moves the robot stops it then, and a log is closed
     options = parser.parse_args(_join_negative(sys.argv[1:] if arguments is None else list(arguments)))
     try:
-        return int(options.run(options))
+        status = int(options.run(options))
+        sys.stdout.flush()
+        return status
     except KickctlError as error:
         if options.json:
             print(json.dumps({"error": {"message": error.message, "hint": error.hint, "status": error.status}}))
         print(f"kickctl: {error.message}" + (f"\n  {error.hint}" if error.hint else ""), file=sys.stderr)
         return error.status
     except BrokenPipeError:
-        # Whoever read the output has gone; let the interpreter's last flush go nowhere.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
+        return 1
+    except OSError as error:
+        _drop_output()
+        place = f"{error.filename} " if error.filename else ""
+        print(f"kickctl: {place}cannot be written or read: {error.strerror or error}\n  is the disk full?", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("kickctl: interrupted", file=sys.stderr)
         return 130
+
+
+def _drop_output() -> None:
+    """Nobody takes the output any more; let the interpreter's last flush go nowhere."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _interrupt(number: int, frame: object) -> None:
+    raise KeyboardInterrupt
 
 
 def _join_negative(arguments: list[str]) -> list[str]:

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from host.conversation import Conversation, Samples
-from host.errors import KickctlError, NoLink, RefusedByRobot
+from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
 from host.links import SIM, make_link
 from host.origin import origin
 from host.subscription import Subscription
@@ -44,13 +44,16 @@ RESUBSCRIBE_S = 1.0
 _RECENT_RECORDS = 400
 
 
-def connect(uri: str | None = None, seed: int | None = None, token: str | None = None, name: str = "kickctl") -> Robot:
+def connect(
+    uri: str | None = None, seed: int | None = None, token: str | None = None, name: str = "kickctl", *, observe: bool = False
+) -> Robot:
     """The robot at `uri`: by default $KICK_BRICK, or the embedded simulated robot.
 
-    seed fixes all chances of the simulated robot; token is the path of the token file. Raises KickctlError.
+    seed fixes all chances of the simulated robot; token is the path of the token file. To observe, which needs no token, is to look,
+    and to stop the robot if need be. Raises KickctlError.
     """
     link = make_link(uri or os.environ.get("KICK_BRICK") or SIM, seed)
-    return Robot(link, find_token(link, token), name)
+    return Robot(link, None if observe else find_token(link, token), name)
 
 
 def find_token(link: Link, path: str | None = None) -> bytes | None:
@@ -84,6 +87,7 @@ class Robot:
         self._heartbeat_due = 0.0
         self._closed = threading.Event()
         self._broken: KickctlError | None = None
+        self.on_trouble: Callable[[str], None] = lambda words: None
         with self._lock:
             try:
                 self._open()
@@ -110,6 +114,7 @@ class Robot:
             with suppress(KickctlError):
                 self.release()
             self._closed.set()
+            self._broken = NoLink("this connection has been closed", "connect anew")
             self.link.close()
 
     @property
@@ -180,6 +185,8 @@ class Robot:
 
     def wait(self, seconds: float, until: Callable[[], bool] | None = None) -> bool:
         """Let `seconds` of the robot's time pass, as counted by its records, or until `until()` is true. Returns whether it was."""
+        if not seconds >= 0.0:
+            raise WrongUse(f"nobody can wait for {seconds!r} s", "give a number of seconds, 0 or more")
         self._subscribe()
         first = self.newest
         silent_since = self.link.now()
@@ -320,6 +327,9 @@ class Robot:
 
     def _reopen(self) -> None:
         """Find the robot again, to go on in its record where the link broke."""
+        if self._broken is not None:
+            raise self._broken
+        self.on_trouble(f"the link to {self.link.uri} broke; looking for the robot for {RECONNECT_S:g} s")
         until = self.link.now() + RECONNECT_S
         pause = 0.05
         while True:

@@ -73,7 +73,7 @@ class Conversation:
         try:
             body = wire.dump({"id": self._number, "do": command, **arguments})
         except ValueError as error:
-            raise WrongUse(f"'{command}' cannot be sent: {error}", "numbers must be finite") from error
+            raise WrongUse(f"'{command}' was given NaN or an infinity, which is no value for anything", "give finite numbers") from error
         if not sealed:
             return self._number, _bytes(wire.encode(wire.ASK, body))
         self._counter += 1

@@ -9,7 +9,7 @@ from host.client import Robot
 from host.errors import NotDone, RobotFault
 from host.log import Log
 from host.motion import WINDOW_S, heading, settled, settling_s
-from robot.kicks import DIRECTION_TICKS, PHASE, PULSED, WHEELS
+from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSED, WHEELS
 from robot.record import Record
 
 SETTLE_PATIENCE_S = 15.0
@@ -116,14 +116,31 @@ def title(outcome: Outcome) -> str:
     return f"{outcome.mode.capitalize()} kick of {length}: {'reversed' if outcome.reversed else 'not reversed'}{settling}"
 
 
+def advice(outcome: Outcome) -> str:
+    """What may help after a kick that did not reverse the robot; empty if nothing general does."""
+    kicked = WHEELS if outcome.wheel == "both" else (outcome.wheel,)
+    resting = [side for side in kicked if outcome.before[side] == STOPPED]
+    if resting:
+        return (
+            f": the {' and '.join(resting)} wheel rested before the kick, and there was nothing to reverse; `kickctl drive` sets it going"
+        )
+    if outcome.mode in (PHASE, POSITION) and not 3 <= outcome.ticks <= 5:
+        return f": {outcome.mode} kicks work best at 3 to 5 ticks"
+    return ""
+
+
+def _turn(before: str, after: str) -> str:
+    return f"stayed {before}" if before == after else f"went from {before} to {after}"
+
+
 def describe(outcome: Outcome) -> str:
     """The outcome as a sentence."""
     kicked = WHEELS if outcome.wheel == "both" else (outcome.wheel,)
-    turns = {side: (outcome.before[side], outcome.after[side]) for side in kicked}
-    if len(set(turns.values())) == 1:
-        motion = "{} went from {} to {}".format("both wheels" if len(kicked) > 1 else f"the {kicked[0]} wheel", *turns[kicked[0]])
+    turns = {side: _turn(outcome.before[side], outcome.after[side]) for side in kicked}
+    if len(kicked) > 1 and len(set(turns.values())) == 1:
+        motion = f"both wheels {turns[kicked[0]]}"
     else:
-        motion = " and ".join(f"the {side} wheel went from {old} to {new}" for side, (old, new) in turns.items())
+        motion = " and ".join(f"the {side} wheel {turn}" for side, turn in turns.items())
     verdict = "The kick reversed the robot" if outcome.reversed else "The kick did NOT reverse the robot"
     length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
     settling = "" if outcome.settling_s is None else f", settled after {outcome.settling_s:.2f} s"

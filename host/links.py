@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from urllib.parse import parse_qsl, urlsplit
 
 from host.errors import WrongUse
+from host.interrupts import uninterrupted
 from host.transport import Link, SerialLink, TcpLink
 from robot.program import BAUD, PORT
 
@@ -39,9 +40,12 @@ def make_link(uri: str, seed: int | None = None) -> Link:
     if parts.scheme != "sim" and seed is not None:
         raise WrongUse(f"--seed fixes the chances of {SIM} only", "a robot elsewhere has the seed that it was started with")
     if parts.scheme == "sim":
-        from host.sim_link import SimLink
+        if parts.host or parts.path:
+            raise WrongUse(f"'{uri}' is no address of a robot: the simulated one has no name", _FORMS)
+        with uninterrupted():
+            from host.sim_link import SimLink
 
-        return SimLink.from_options(uri, parts.options, seed)
+            return SimLink.from_options(uri, parts.options, seed)
     if parts.scheme == "tcp" and parts.host:
         return TcpLink(uri, parts.host, parts.port or PORT)
     if parts.scheme == "ssh" and parts.host:

@@ -91,12 +91,13 @@ class McapTap:
     def __init__(self, path: str | Path, info: dict[str, Any]) -> None:
         self.path = Path(path)
         try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("xb")
         except OSError as error:
             if self.path.exists():
                 raise LogError(f"{self.path} exists already, and logs are never overwritten", "choose another name") from None
-            raise LogError(f"{self.path} cannot be made: {error.strerror}", "choose a folder that you may write to") from None
+            raise LogError(
+                f"{self.path} cannot be made: {error.strerror}", "choose a folder that is there, and that you may write to"
+            ) from None
         self._zero_ns = _nanoseconds(info.get("clock_zero_s", 0.0))
         self._now_ns = self._chunk_ns = self._zero_ns
         self._waiting: list[Event] = []
@@ -202,19 +203,29 @@ def _take(tap: Tap, topic: str, message: dict[str, Any]) -> None:
     if topic == TICKS:
         for name, words in _NAMED.items():
             message[name] = words.index(message[name])
-        tap.take_records([Record(*(message[name] for name in NAMES))])
+        values = [message[name] for name in NAMES]
+        if not all(isinstance(value, (int, float)) for value in values):
+            raise ValueError("a value that is no number")
+        tap.take_records([Record(*values)])
     elif topic == EVENTS:
         tap.take_event(message)
 
 
 def new_path(kind: str) -> Path:
-    """A name in ./logs for a new log that begins now (local time), as logs/kick-20261122-153012.mcap; one that is not taken."""
+    """A name in ./logs for a new log that begins now (local time), as logs/kick-20261122-153012.mcap; one that is not taken.
+
+    Makes the folder if need be. Raises LogError if that cannot be done.
+    """
     stem = f"{kind}-{datetime.now().astimezone():%Y%m%d-%H%M%S}"
     path = LOG_FOLDER / f"{stem}.mcap"
     number = 1
     while path.exists():
         number += 1
         path = LOG_FOLDER / f"{stem}-{number}.mcap"
+    try:
+        LOG_FOLDER.mkdir(exist_ok=True)
+    except OSError as error:
+        raise LogError(f"the folder {LOG_FOLDER} cannot be made here: {error.strerror}", "go to a folder that you may write to") from None
     return path
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.client import Robot, connect
+from host.errors import KickctlError
 
 if TYPE_CHECKING:
     from host.log import Log
@@ -27,9 +28,10 @@ def show(result: object) -> None:
 
 
 @contextmanager
-def robot_of(options: argparse.Namespace, *, moves: bool = False) -> Iterator[Robot]:
+def robot_of(options: argparse.Namespace, *, moves: bool = False, observe: bool = False) -> Iterator[Robot]:
     """The robot that the options name; says so if it is the simulated one. If the verb `moves` it, ^C stops its motors."""
-    with connect(options.brick, options.seed, options.token) as robot:
+    with connect(options.brick, options.seed, options.token, observe=observe) as robot:
+        robot.on_trouble = say
         if robot.link.virtual:
             say(f"simulated robot, embedded ({robot.link.uri}, seed {robot.hello['seed']})")
         try:
@@ -62,6 +64,9 @@ def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
         robot.add_tap(log)
         try:
             yield log, path
+        except (KickctlError, OSError):
+            say(f"what was recorded until then is in {path}")
+            raise
         finally:
             robot.remove_tap(log)
             robot.remove_tap(file)

@@ -94,7 +94,8 @@ class Ev3Motor(Motor):
         except (OSError, ev3dev2.DeviceNotFound) as error:
             self._close()
             self._lost = self._missing(error)
-            raise MotorFault(self._lost) from error
+            # The library's frames hold the error whose trace holds them, and with them its files, until the garbage collector comes.
+            raise MotorFault(self._lost) from error.with_traceback(None)
 
     def _set_up(self):
         folder = os.path.join(self._root, "tacho-motor")

@@ -117,6 +117,8 @@ class Kick(object):
 
 def _number(request, name, limit):
     value = request.get(name)
+    if value is None:
+        raise Refused("usage", "{} is missing".format(name), "give a number from {:g} to {:g}".format(-limit, limit))
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= limit or not isfinite(value):
         raise Refused("range", "{} cannot be {!r}".format(name, value), "give a number from {:g} to {:g}".format(-limit, limit))
     return float(value)
@@ -124,6 +126,8 @@ def _number(request, name, limit):
 
 def _choice(request, name, choices, default):
     value = request.get(name, default)
+    if value is None:
+        raise Refused("usage", "{} is missing".format(name), "it is one of " + ", ".join(choices))
     if value not in choices:
         raise Refused("usage", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(choices))
     return value
@@ -181,6 +185,8 @@ def _reject_foreign(request, mode):
 
 def _parse_pulse(request, params):
     name = _choice(request, "param", tuple(sorted(PULSED)), None)
+    if request.get("value") is None:
+        raise Refused("usage", "value is missing", "give the value that {} takes at the pulse's height".format(name))
     if name in TABLE:
         value = check_value(name, request.get("value"))
         if name == "tau_s":

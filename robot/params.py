@@ -54,7 +54,9 @@ def check_value(name, value):
         raise Refused("range", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(str(choice) for choice in row.choices))
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not row.minimum <= value <= row.maximum or not isfinite(value):
         raise Refused(
-            "range", "{} cannot be {!r}".format(name, value), "it is a number from {} to {} {}".format(row.minimum, row.maximum, row.unit)
+            "range",
+            "{} cannot be {!r}".format(name, value),
+            "it is a number from {:g} to {:g} {}".format(row.minimum, row.maximum, row.unit.replace("1", "")).rstrip(),
         )
     return float(value)
 

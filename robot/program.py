@@ -52,7 +52,9 @@ def run(options, motors, battery, clock, seed, panels=()):
         port = server.listen(options.host, options.port)
     except (OSError, OverflowError) as error:
         return _give_up(
-            "cannot listen on {}:{}: {}. Is another robot running there? Try --port 0".format(options.host, options.port, error)
+            "cannot listen on {}:{}: {}. Is another robot running there? Ports are 0 (any that is free) to 65535".format(
+                options.host, options.port, error
+            )
         )
     if options.serial:
         server.attach(_line_opener(options.serial))

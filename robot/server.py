@@ -107,7 +107,7 @@ class Server(object):
         self._listener = socket.socket()
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self._listener.bind((host, port))
-        self._listener.listen(16)
+        self._listener.listen(128)
         self._listener.setblocking(False)
         return self._listener.getsockname()[1]
 

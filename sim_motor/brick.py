@@ -105,6 +105,9 @@ class SimMotor(Motor):
         self._duty = 0
         self._load = 0.0
         self._pending: deque[tuple[int, int]] = deque()  # (substep from which it acts, duty)
+        # No time passes in this; but compiled code is loaded here, where nobody waits for it, and not in the first tick.
+        advance_in_place(self.state, 0, 0, battery_v, 0.0, self._tables, self._scalars)
+        self.angle_rad()
 
     def angle_rad(self) -> float:
         self._catch_up()

@@ -12,6 +12,8 @@ import time
 from math import cos, exp, sin, tanh
 from pathlib import Path
 
+from tests.bench_io import reads_and_writes
+
 REAL_TIME_S = 30.0
 KICKS = 40
 
@@ -19,7 +21,7 @@ KICKS = 40
 def main() -> None:
     """Print everything."""
     print(f"Python {sys.version.split()[0]}, {os.cpu_count()} cores", flush=True)
-    for measure in (controller_tick, virtual_time, batch, real_time):
+    for measure in (reads_and_writes, controller_tick, virtual_time, batch, real_time):
         measure()
 
 

@@ -17,7 +17,7 @@ from host.log import Log
 from robot import wire
 from robot.params import TABLE
 from robot.watchdog import MOST_UNANSWERED
-from tests.live import PORTS, wait_until
+from tests.live import PORTS, open_files, wait_until
 from tests.sysfs.mount import ROOT
 
 LOOP_S = 0.25
@@ -208,6 +208,7 @@ def _cable_back(permissions_s):
 
     def attempt(live, chance):
         live.run(chance)
+        files = open_files(live.process.pid)
         port = chance.choice(PORTS)
         with live.watch() as watch:
             live.inject("unplug " + port)
@@ -224,6 +225,7 @@ def _cable_back(permissions_s):
         with live.watch() as watch:
             assert watch.running() == 0
         assert live.state() == "stopped"
+        assert open_files(live.process.pid) == files
         return seconds, refusals[-2]
 
     return attempt

@@ -38,6 +38,11 @@ def wait_until(condition, what):
         time.sleep(LOOK_S)
 
 
+def open_files(pid):
+    """How many files a process has open."""
+    return len(list(Path(f"/proc/{pid}/fd").iterdir()))
+
+
 class Watch:
     """The motors that are at some ports now, as the kernel's files show them."""
 

@@ -18,7 +18,7 @@ from host.errors import KickctlError
 from host.log import Log
 from host.recording import McapTap
 from robot.params import TABLE
-from tests.live import PORTS, Live, wait_until
+from tests.live import PORTS, Live, open_files, wait_until
 from tests.sysfs.mount import mounted, why_not
 
 HOUR_S = 3600.0
@@ -54,13 +54,12 @@ class Vitals:
     """Memory (kB) and open files of a process, over time."""
 
     def __init__(self, pid):
-        self._folder = Path("/proc") / str(pid)
+        self._pid = pid
         self.samples = []
 
     def look(self):
-        pages = int((self._folder / "statm").read_text(encoding="ascii").split()[1])
-        files = len(list((self._folder / "fd").iterdir()))
-        self.samples.append((time.monotonic(), pages * os.sysconf("SC_PAGE_SIZE") // 1024, files))
+        pages = int(Path(f"/proc/{self._pid}/statm").read_text(encoding="ascii").split()[1])
+        self.samples.append((time.monotonic(), pages * os.sysconf("SC_PAGE_SIZE") // 1024, open_files(self._pid)))
 
     @property
     def slope(self):

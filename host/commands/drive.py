@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
     if result["k"] != result["k_before"]:
         how += f", and k from {result['k_before']:g} to {result['k']:g}"
-    verdict = f"The robot is in {options.primitive}" if result["reached"] else f"The robot did NOT reach {options.primitive}"
+    verdict = f"The robot reached {options.primitive}" if result["reached"] else f"The robot did NOT reach {options.primitive}"
     sentence = f"{verdict}: left {result['after']['left']}, right {result['after']['right']}, by {how}."
     result["figure"] = str(draw(log, path.with_suffix(".png"), f"Driven to {options.primitive}: {how}"))
     if options.json:

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Kick, write log and figure, and answer; 1 if a kicked wheel did not reverse."""
     from host.figures.kick import KICK_WINDOW_S, draw
-    from host.kicking import describe, kick_and_watch, require_running, title, wait_settled
+    from host.kicking import advice, describe, kick_and_watch, require_running, title, wait_settled
 
     details = {name: getattr(options, name) for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")}
     _check(options.mode, options.wheel, details)
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         print(f"{sentence}\nlog {path}\nfigure {figure}")
     if not outcome.reversed:
-        say("the robot did not reverse; phase and position kicks work best at 3 to 5 ticks, and a membrane kick always")
+        say("the robot did not reverse" + advice(outcome))
     return 0 if outcome.reversed else 1
 
 

@@ -1,11 +1,17 @@
 """kickctl log list|pull|export|replay."""
 
+from __future__ import annotations
+
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from host.errors import WrongUse
 from host.options import common
 from host.terminal import answer, robot_of, say, show
+
+if TYPE_CHECKING:
+    from host.replay import ReplayResult
 
 HELP = "logs: list them, pull the robot's black box, export, replay"
 
@@ -90,21 +96,28 @@ def _replay(options: argparse.Namespace) -> int:
     from host.log import Log
     from host.replay import replay
 
-    result = replay(Log.load(options.log))
+    log = Log.load(options.log)
+    result = replay(log)
+    truncated = bool(log.info.get("truncated"))
+    missing = sum(end - first for first, end in log.missing())
     facts = {
         "reproduced": result.reproduced,
         "exact": result.exact,
         "compared": result.compared,
         "not_comparable": result.not_comparable,
+        "missing": missing,
+        "truncated": truncated,
         "worst": result.worst,
         "first_mismatch": None if result.first is None else str(result.first),
     }
-    verdict = (
-        "bit for bit the same"
-        if result.exact
-        else f"within {result.tolerance:g}"
-        if result.reproduced
-        else f"NOT the same: {result.beyond}"
-    )
-    answer(options, facts, f"{result.compared} ticks replayed: {verdict} ({result.not_comparable} not comparable)")
-    return 0 if result.reproduced else 1
+    sentence = f"{result.compared} ticks replayed: {_verdict(result)} ({result.not_comparable} not comparable, {missing} missing)"
+    answer(options, facts, sentence + ("; the file is damaged or breaks off after them" if truncated else ""))
+    return 0 if result.reproduced and not truncated else 1
+
+
+def _verdict(result: ReplayResult) -> str:
+    if not result.compared:
+        return "nothing to compare"
+    if result.exact:
+        return "bit for bit the same"
+    return f"within {result.tolerance:g}" if result.reproduced else f"NOT the same: {result.beyond}"

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from host.errors import WrongUse
+from host.errors import KickctlError, WrongUse
 from host.terminal import answer, robot_of, say
 from robot.record import Record
 
@@ -23,15 +23,18 @@ class Tally:
     def __init__(self) -> None:
         self.ticks = 0
         self.missing = 0
+        self.restarts = 0
 
     def take_records(self, records: list[Record]) -> None:
         """Count records."""
         self.ticks += len(records)
 
     def take_event(self, event: dict[str, Any]) -> None:
-        """Count what the robot says is lost."""
+        """Count what the robot says is lost, and its new beginnings."""
         if event["event"] == "lost":
             self.missing += event["tick"] - event["from"]
+        elif event["event"] == "restart":
+            self.restarts += 1
 
 
 def run(options: argparse.Namespace) -> int:
@@ -43,10 +46,10 @@ def run(options: argparse.Namespace) -> int:
         raise WrongUse(f"cannot record {options.seconds:g} s", "give a number of seconds above 0")
     path = options.out or new_path("record")
     tally = Tally()
-    with robot_of(options) as robot, McapTap(path, robot.info()) as tap:
-        robot.add_tap(tap)
-        robot.add_tap(tally)
-        try:
+    try:
+        with robot_of(options) as robot, McapTap(path, robot.info()) as tap:
+            robot.add_tap(tap)
+            robot.add_tap(tally)
             with progress("recording", options.seconds) as advance:
                 began = robot.newest
 
@@ -56,11 +59,13 @@ def run(options: argparse.Namespace) -> int:
                     return False
 
                 robot.wait(options.seconds, until=report)
-        except KeyboardInterrupt:
-            say("interrupted: the log holds what was recorded until now")
-    answer(
-        options,
-        {"log": str(path), "ticks": tally.ticks, "missing": tally.missing},
-        f"{tally.ticks} ticks in {path}, {tally.missing} missing",
-    )
+    except KeyboardInterrupt:
+        say("interrupted: the log holds what was recorded until now")
+    except (KickctlError, OSError):
+        if tally.ticks:
+            say(f"what was recorded until then, {tally.ticks} ticks, is in {path}")
+        raise
+    facts = {"log": str(path), "ticks": tally.ticks, "missing": tally.missing, "restarts": tally.restarts}
+    anew = f"; the robot's program began anew {tally.restarts} times, and what it had not sent by then is lost" if tally.restarts else ""
+    answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{anew}")
     return 0

@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Stop, whoever controls the robot."""
-    with robot_of(options) as robot:
+    with robot_of(options, observe=True) as robot:
         tick = robot.stop()
         state = robot.status()["state"]
         answer(options, {"state": state, "tick": tick}, f"motors stopped before tick {tick}; the robot is {state}")

@@ -8,6 +8,7 @@ from math import pi
 from typing import TYPE_CHECKING, Any
 
 from host.client import Robot
+from host.errors import WrongUse
 from host.terminal import robot_of
 from robot.kicks import WHEELS
 from robot.record import KICK_NAMES, STATES, Record
@@ -32,6 +33,8 @@ def run(options: argparse.Namespace) -> int:
 
     from host.terminal import show
 
+    if not options.seconds > 0.0:
+        raise WrongUse(f"cannot watch for {options.seconds:g} s", "give a number of seconds above 0")
     with robot_of(options) as robot:
         robot.wait(REFRESH_S)
         began = robot.recent()[0].t_s

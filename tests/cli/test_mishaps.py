@@ -1,0 +1,78 @@
+"""What goes wrong around kickctl: no room, no token, a robot that goes away, damaged logs. It is told in words, and nothing is lost."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from host.client import connect
+from host.errors import NoLink, WrongUse
+from host.log import Log
+from tests.cli.test_desk import desk_robot
+
+
+def test_stop_needs_no_token_however_bad_the_one_that_is_there(kickctl, tmp_path):
+    with desk_robot(tmp_path) as (uri, _):
+        wrong = tmp_path / "wrong"
+        wrong.write_text("11" * 32)
+        wrong.chmod(0o644)
+        assert kickctl("status", "--brick", uri, "--token", str(wrong))[0] == 4
+        assert kickctl("stop", "--brick", uri, "--token", str(wrong))[0] == 0
+        assert json.loads(kickctl("status", "--brick", uri, "--json")[1])["state"] == "stopped"
+
+
+def test_a_robot_that_begins_anew_while_it_is_recorded_is_told(kickctl, tmp_path):
+    with desk_robot(tmp_path) as (uri, process), connect(uri, token=str(tmp_path / "token")) as robot:
+        log = Log(robot.info())
+        robot.add_tap(log)
+        robot.wait(0.3)
+        process.kill()
+        process.wait()
+        with desk_robot(tmp_path, "--port", uri.rsplit(":", 1)[1]):
+            robot.wait(5.0, until=lambda: bool(log.restarts()))
+            robot.wait(0.3)
+    assert len(log.restarts()) == 1
+    assert log.records[log.restarts()[0]].tick < log.records[log.restarts()[0] - 1].tick
+
+
+def test_a_closed_robot_stays_closed():
+    robot = connect("sim://")
+    robot.close()
+    with pytest.raises(NoLink, match="closed"):
+        robot.kick("phase")
+
+
+@pytest.mark.parametrize("seconds", [float("nan"), -1.0])
+def test_nobody_records_for_no_number_of_seconds(seconds):
+    with connect("sim://") as robot, pytest.raises(WrongUse):
+        robot.record(seconds)
+
+
+def test_a_full_disk_is_told_in_words(kickctl):
+    if not Path("/dev/full").exists():
+        pytest.skip("needs /dev/full, which Linux has")
+    path = json.loads(kickctl("record", "1", "--seed", "1", "--json")[1])["log"]
+    status, _, err = kickctl("log", "export", path, "--out", "/dev/full")
+    assert status in (1, 2)
+    assert "No space left" in err
+    assert "Traceback" not in err
+
+
+def test_a_log_goes_only_where_a_folder_is(kickctl):
+    status, _, err = kickctl("record", "1", "--out", str(kickctl.folder / "nowhere" / "log.mcap"))
+    assert status == 2
+    assert "folder" in err
+    assert not (kickctl.folder / "nowhere").exists()
+
+
+def test_a_log_that_breaks_off_is_not_passed_by_replay(kickctl):
+    path = kickctl.folder / json.loads(kickctl("record", "5", "--seed", "1", "--json")[1])["log"]
+    cut = kickctl.folder / "cut.mcap"
+    shutil.copy(path, cut)
+    with cut.open("r+b") as file:
+        file.truncate(path.stat().st_size // 2)
+    status, out, _ = kickctl("log", "replay", str(cut), "--json")
+    assert status == 1
+    assert json.loads(out)["truncated"] is True
+    assert "breaks off" in kickctl("log", "replay", str(cut))[1]
