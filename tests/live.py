@@ -216,7 +216,8 @@ class Live:
         if self.state() != "running":
             self.robot.start()
         with self.watch() as watch:
-            wait_until(lambda: watch.running() == len(PORTS), "the motors run")
+            wait_until(lambda: watch.running() == len(PORTS) or self.state() == "fault", "the motors run")
+        assert self.state() == "running", f"it does not run: {self.reason()}"
         time.sleep(chance.uniform(0.1, 0.4))
 
     @contextmanager

@@ -11,15 +11,6 @@ from tests.sysfs.mount import mounted, needs_mount
 
 pytestmark = needs_mount
 
-# Known, and not mended yet: whoever mends it is told by the test that passes, and takes the row out of here.
-UNMENDED = {"disk of the host full": "kickctl shows a traceback: host/recording.py lets the error of a full disk through"}
-
-
-def rows():
-    for row in ROWS:
-        known = [pytest.mark.xfail(reason=UNMENDED[row.name], strict=True)] if row.name in UNMENDED else []
-        yield pytest.param(row, id=row.name, marks=known)
-
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -27,7 +18,7 @@ def folder(tmp_path_factory):
         yield mount
 
 
-@pytest.mark.parametrize("row", list(rows()))
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
 def test_the_motors_stop_and_the_host_is_told(folder, tmp_path, row):
     if row.lacks():
         pytest.skip(row.lacks())
