@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from host.conversation import Conversation, Samples
-from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
+from host.errors import KickctlError, LeaseLost, NoLink, RefusedByRobot, WrongUse
 from host.links import SIM, make_link
 from host.origin import origin
 from host.subscription import Subscription
@@ -122,8 +122,6 @@ class Robot:
         """Whether robot and host have shown each other the token."""
         return self._talk.trusted
 
-    # What the robot can be asked and told
-
     def status(self) -> dict[str, Any]:
         """State, parameters in force, battery, controller, and how punctual its ticks are."""
         status = self._request("status")
@@ -168,8 +166,6 @@ class Robot:
         kick = {"id": uuid.uuid4().hex, "mode": mode}
         kick.update((name, value) for name, value in details.items() if value is not None)
         return self._control("kick", kick=kick)
-
-    # What it sends
 
     def record(self, seconds: float) -> Log:
         """The log of the next `seconds` of the robot's time."""
@@ -256,8 +252,6 @@ class Robot:
                 self._take(item)
             return bool(data)
 
-    # Inner workings
-
     def _send_what_is_due(self, now: float) -> None:
         if self._leased and now >= self._heartbeat_due:
             self._heartbeat_due = now + HEARTBEAT_S
@@ -269,7 +263,12 @@ class Robot:
     def _control(self, command: str, **arguments: Any) -> int:
         if not self._leased:
             self.lease()
-        return int(self._request(command, arguments, sealed=True)["tick"])
+        try:
+            return int(self._request(command, arguments, sealed=True)["tick"])
+        except LeaseLost:
+            # The robot took this host for lost while the link was silent; what was refused has changed nothing.
+            self.lease()
+            return int(self._request(command, arguments, sealed=True)["tick"])
 
     def _request(self, command: str, arguments: dict[str, Any] | None = None, sealed: bool = False) -> dict[str, Any]:
         """The robot's answer. A request that a broken link swallowed is sent again over the new one."""

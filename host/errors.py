@@ -36,6 +36,10 @@ class RefusedByRobot(KickctlError):
     status = 4
 
 
+class LeaseLost(RefusedByRobot):
+    """The robot is not, or no longer, controlled by this host."""
+
+
 class RobotFault(KickctlError):
     """The robot is in fault."""
 
@@ -49,6 +53,7 @@ _STATUS_BY_CODE = {
     "state": NotDone,
     "busy": NotDone,
     "fault": RobotFault,
+    "lease": LeaseLost,
 }
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from host.client import connect
-from host.errors import NoLink, WrongUse
+from host.errors import NoLink, RefusedByRobot, WrongUse
 from host.log import Log
 from tests.cli.test_desk import desk_robot
 
@@ -76,3 +76,17 @@ def test_a_log_that_breaks_off_is_not_passed_by_replay(kickctl):
     assert status == 1
     assert json.loads(out)["truncated"] is True
     assert "breaks off" in kickctl("log", "replay", str(cut))[1]
+
+
+def test_a_host_that_was_taken_for_lost_takes_control_again_unless_another_has_it():
+    with connect("sim://", seed=1) as robot:
+        robot.lease()
+        robot.stop()
+        robot.link.loop.lease.release(robot.link.loop.lease.holder)  # as after a silence, over a link that stays
+        robot.start()
+        assert robot.status()["state"] == "running"
+        robot.link.loop.lease.release(robot.link.loop.lease.holder)
+        robot.link.loop.take_lease("another", "another host")
+        with pytest.raises(RefusedByRobot, match="another host"):
+            robot.set(k=2.0)
+        assert robot.status()["params"]["k"] == 8.0
