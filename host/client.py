@@ -76,7 +76,6 @@ class Robot:
 
     def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
         self.link = link
-        self.battery_v: float | None = None
         self._talk = Conversation(token, name, client=uuid.uuid4().hex)
         self._lock = threading.RLock()
         self._taps: list[Tap] = []
@@ -124,9 +123,7 @@ class Robot:
 
     def status(self) -> dict[str, Any]:
         """State, parameters in force, battery, controller, and how punctual its ticks are."""
-        status = self._request("status")
-        self.battery_v = status["battery_v"]
-        return status
+        return self._request("status")
 
     def describe(self, table: str) -> list[dict[str, Any]]:
         """The robot's own table of 'params', 'channels' or 'commands'."""

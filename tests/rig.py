@@ -128,3 +128,19 @@ def whole(data):
 def packed(records):
     """Records as bytes, for a comparison of every bit."""
     return b"".join(STRUCT.pack(*record) for record in records)
+
+
+PERIOD = 0.03  # of a rig whose tick_s nobody has changed
+
+
+def running(**parts):
+    """A rig whose loop runs."""
+    rig = Rig(**parts)
+    rig.loop.start()
+    return rig
+
+
+def kicked(rig, mode="position", **details):
+    """Kick a rig's loop, by an id of its own. Returns the tick."""
+    rig.number = getattr(rig, "number", 0) + 1
+    return rig.loop.kick(dict(details, id=str(rig.number), mode=mode))

@@ -12,21 +12,7 @@ from robot.errors import Refused
 from robot.loop import LATENESS_EDGES_S
 from robot.record import STATES
 from robot.safety import FAULT, IDLE, RUNNING, STOPPED
-from tests.rig import Motor, Rig
-
-PERIOD = 0.03
-
-
-def running(**parts):
-    rig = Rig(**parts)
-    rig.loop.start()
-    return rig
-
-
-def kicked(rig, mode="position", **details):
-    rig.number = getattr(rig, "number", 0) + 1
-    return rig.loop.kick(dict(details, id=str(rig.number), mode=mode))
-
+from tests.rig import PERIOD, Motor, Rig, kicked, running
 
 # The schedule
 

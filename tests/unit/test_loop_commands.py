@@ -7,21 +7,7 @@ import pytest
 from robot.errors import Refused
 from robot.loop import KICKS_REMEMBERED
 from robot.safety import FAULT, HELD, IDLE, RUNNING, STOPPED
-from tests.rig import Motor, Rig
-
-PERIOD = 0.03
-
-
-def running(**parts):
-    rig = Rig(**parts)
-    rig.loop.start()
-    return rig
-
-
-def kicked(rig, mode="position", **details):
-    rig.number = getattr(rig, "number", 0) + 1
-    return rig.loop.kick(dict(details, id=str(rig.number), mode=mode))
-
+from tests.rig import PERIOD, Motor, Rig, kicked, running
 
 # Kicks
 
