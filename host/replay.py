@@ -99,7 +99,8 @@ class _Controller:
         """The tick that a record tells of."""
         for wheel in self.wheels:
             if record.state == RUNNING:
-                wheel.step(record.tick, getattr(record, wheel.side + "_phi_rad"), record.dt_s, self.params, self._kick)
+                wheel.phi = getattr(record, wheel.side + "_phi_rad")
+                wheel.step(record.tick, record.dt_s, self.params, self._kick)
             else:
                 wheel.rest()
 

@@ -14,14 +14,12 @@ def actual_positions(phi):
     return cos(phi), sin(phi)
 
 
-def firing_rate(x, a):
-    """y(x) = 1 / (1 + exp(-a x)) in (0, 1): the rate of a neuron with membrane potential x and gain a. Eq. target_pos."""
-    return 1.0 / (1.0 + exp(-a * x))
-
-
 def target_position(x, a):
-    """x_t = 2 y(x) - 1 in (-1, 1): where the neuron wants its rod. Eq. target_pos."""
-    return 2.0 * firing_rate(x, a) - 1.0
+    """x_t = 2 y(x) - 1 in (-1, 1): where a neuron of potential x and gain a wants its rod; its rate is y = 1 / (1 + exp(-a x)).
+
+    Eq. target_pos.
+    """
+    return 2.0 / (1.0 + exp(-a * x)) - 1.0
 
 
 def rod_force(x_target, x_actual, k):
@@ -34,9 +32,12 @@ def membrane_rate(x, x_seen, tau_s):
     return (x_seen - x) / tau_s
 
 
-def tangential_force(force_1, force_2, phi):
-    """F_tan = F_1 sin phi - F_2 cos phi: what two perpendicular rods do together at the wheel's rim. Eq. F_tan."""
-    return force_1 * sin(phi) - force_2 * cos(phi)
+def tangential_force(force_1, force_2, actual_1, actual_2):
+    """F_tan = F_1 sin phi - F_2 cos phi: what two perpendicular rods do together at the wheel's rim. Eq. F_tan.
+
+    (actual_1, actual_2) = (cos phi, sin phi) are the rods' actual positions.
+    """
+    return force_1 * actual_2 - force_2 * actual_1
 
 
 def motor_torque(force):
@@ -44,7 +45,7 @@ def motor_torque(force):
     return tanh(force)
 
 
-def step_wheel(x1, x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, rods):
+def step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods):
     """One tick of one wheel: (x1, x2, force, torque) after an Euler step of dt_s.
 
     The neurons step first, on the positions they see (seen_1, seen_2; a kick may have altered these), and the rods act on the
@@ -52,8 +53,7 @@ def step_wheel(x1, x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, rods):
     """
     x1 += dt_s * membrane_rate(x1, seen_1, tau_s)
     x2 += dt_s * membrane_rate(x2, seen_2, tau_s)
-    actual_1, actual_2 = actual_positions(phi)
     force_1 = rod_force(target_position(x1, a), actual_1, k)
     force_2 = rod_force(target_position(x2, a), actual_2, k) if rods == 2 else 0.0
-    force = tangential_force(force_1, force_2, phi)
+    force = tangential_force(force_1, force_2, actual_1, actual_2)
     return x1, x2, force, motor_torque(force)

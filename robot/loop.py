@@ -1,7 +1,8 @@
 """The fixed tick. What runs in it, in order: read the angles, step the neurons under a kick, limit, write the duties, record."""
 
 import random
-from collections import deque
+from bisect import bisect_left
+from collections import deque, namedtuple
 from math import cos, pi, sin
 
 from robot.blackbox import BlackBox
@@ -18,6 +19,16 @@ SHORTEST_STEP_TICKS = 0.1
 LATENESS_EDGES_S = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05)
 BATTERY_TICKS = 300
 KICKS_REMEMBERED = 256
+
+
+class Side(namedtuple("Side", "wheel motor travel")):
+    """A wheel, its motor, and the angles (rad) that tell where it goes."""
+
+    __slots__ = ()
+
+    def direction(self):
+        """1 forward, -1 backward, 0 at rest."""
+        return direction(self.travel[-1] - self.travel[0]) if self.travel else 0
 
 
 class Loop(object):
@@ -37,11 +48,9 @@ class Loop(object):
         self.lateness = [0] * (len(LATENESS_EDGES_S) + 1)
         self.missed = self.overruns = self.clamped = 0
         self.done = False
-        self._motors = motors
         self._power = Power(battery)
         self._random = random.Random(seed)
-        self._wheels = [Wheel(side) for side in WHEELS]
-        self._travel = [deque(maxlen=DIRECTION_TICKS + 1) for _ in WHEELS]
+        self._sides = [Side(Wheel(name), motor, deque(maxlen=DIRECTION_TICKS + 1)) for name, motor in zip(WHEELS, motors)]
         self._kick = None
         self._kick_begins = {}
         self._kick_ids = deque()
@@ -83,41 +92,39 @@ class Loop(object):
             self.deadline += missed * period
             self.missed += missed
             late_s = now - self.deadline
-        index = 0
-        while index < len(LATENESS_EDGES_S) and late_s > LATENESS_EDGES_S[index]:
-            index += 1
-        self.lateness[index] += 1
-        return late_s, min(missed, 65535)
+        self.lateness[bisect_left(LATENESS_EDGES_S, late_s)] += 1
+        return late_s, missed if missed < 65535 else 65535
 
     def _measure(self, now):
         period = self.params.tick_s
         dt_s = now - self._before if self.blackbox.next_tick else period
         self._before = now
-        bounded = max(SHORTEST_STEP_TICKS * period, min(LONGEST_STEP_TICKS * period, dt_s))
-        if bounded != dt_s:
-            self.clamped += 1
-        return bounded
+        if SHORTEST_STEP_TICKS * period <= dt_s <= LONGEST_STEP_TICKS * period:
+            return dt_s
+        self.clamped += 1
+        return max(SHORTEST_STEP_TICKS * period, min(LONGEST_STEP_TICKS * period, dt_s))
 
     def _control(self, dt_s):
-        params = self.params
-        polarities = (params.polarity_left, params.polarity_right)
-        running = self.safety.state == RUNNING
-        tick = self.blackbox.next_tick
-        for wheel, motor, polarity, travel in zip(self._wheels, self._motors, polarities, self._travel):
-            phi = polarity * motor.angle_rad()
-            travel.append(phi)
-            if running:
-                wheel.step(tick, phi, dt_s, params, self._kick)
-            else:
-                wheel.rest()
-        if not running:
-            if self.safety.state == FAULT:
-                self._stop_motors()  # again, for one that did not obey
-            return (0, 0)
-        duties = [limit_duty(params.duty_scale * wheel.torque, params.max_duty_pct) for wheel in self._wheels]
-        for motor, polarity, duty in zip(self._motors, polarities, duties):
-            motor.write_duty(polarity * duty)
+        """Both wheels' duty cycles in %, as written. Raises MotorFault."""
+        left, right = self._sides
+        duties = self._drive(left, self.params.polarity_left, dt_s), self._drive(right, self.params.polarity_right, dt_s)
+        if self.safety.state == FAULT:
+            self._stop_motors()  # again, for one that did not obey
         return duties
+
+    def _drive(self, side, polarity, dt_s):
+        """One wheel's tick, from its angle to its duty cycle in %. Raises MotorFault."""
+        wheel, motor, travel = side
+        wheel.phi = phi = polarity * motor.angle_rad()
+        travel.append(phi)
+        if self.safety.state != RUNNING:
+            wheel.rest()
+            return 0
+        params = self.params
+        wheel.step(self.blackbox.next_tick, dt_s, params, self._kick)
+        duty = limit_duty(params.duty_scale * wheel.torque, params.max_duty_pct)
+        motor.write_duty(polarity * duty)
+        return duty
 
     def _record(self, now, dt_s, late_s, missed, duties):
         tick = self.blackbox.next_tick
@@ -127,12 +134,12 @@ class Loop(object):
             mode = 1 + MODES.index(kick.mode)
             if not kick.acts_at(tick + 1):
                 self._kick = None
-        left, right = self._wheels
-        left_phi, right_phi = (travel[-1] if travel else 0.0 for travel in self._travel)
+        (left, _, _), (right, _, _) = self._sides
+        left_duty, right_duty = duties
         self.blackbox.append(
             (now - self.epoch, dt_s, late_s, missed, self.safety.state, mode)
-            + (left_phi, left.x1, left.x2, left.force, left.torque, duties[0])
-            + (right_phi, right.x1, right.x2, right.force, right.torque, duties[1])
+            + (left.phi, left.x1, left.x2, left.force, left.torque, left_duty)
+            + (right.phi, right.x1, right.x2, right.force, right.torque, right_duty)
         )
         if tick % BATTERY_TICKS == 0:
             self._watch_power()
@@ -154,10 +161,11 @@ class Loop(object):
     def start(self):
         """Set the neurons to random potentials and run from the next tick on. Returns that tick. Raises Refused."""
         self.safety.start()
-        for wheel in self._wheels:
+        wheels = [side.wheel for side in self._sides]
+        for wheel in wheels:
             remembered = self._random.uniform(-pi, pi)
             wheel.x1, wheel.x2 = cos(remembered), sin(remembered)
-        return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in self._wheels])
+        return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in wheels])
 
     def stop(self, reason):
         """Stop the motors at once. Returns the next tick. A robot that is stopped already, or in fault, keeps its reason."""
@@ -175,9 +183,9 @@ class Loop(object):
     def clear(self):
         """Leave a fault for the stopped state, once every motor is there. Returns the tick. Raises Refused."""
         if self.safety.state == FAULT:
-            for motor in self._motors:
+            for side in self._sides:
                 try:
-                    motor.find()
+                    side.motor.find()
                 except MotorFault as fault:
                     raise Refused("fault", "the fault stays: {}".format(fault)) from None
         self.safety.clear()
@@ -189,7 +197,7 @@ class Loop(object):
         if begun is not None:
             return begun
         tick = self.blackbox.next_tick
-        directions = [direction(travel[-1] - travel[0]) if travel else 0 for travel in self._travel]
+        directions = [side.direction() for side in self._sides]
         kick = parse(request, directions, self.params, tick)
         if self.safety.state != RUNNING:
             raise Refused("state", "the robot does not run, so there is nothing to kick", "start it first")
@@ -242,9 +250,9 @@ class Loop(object):
     def _stop_motors(self):
         """Every motor is told to stop, whatever the others do."""
         self._kick = None
-        for wheel, motor in zip(self._wheels, self._motors):
-            wheel.rest()
+        for side in self._sides:
+            side.wheel.rest()
             try:
-                motor.stop()
+                side.motor.stop()
             except MotorFault as fault:
                 self._fail(str(fault))

@@ -1,6 +1,6 @@
 """What stands between the controller and the motors: the limiter, the robot's states, and the dead-man of the lease."""
 
-from math import floor, isnan
+from math import isnan
 
 from robot.errors import Refused
 from robot.record import STATES
@@ -10,10 +10,13 @@ IDLE, RUNNING, HELD, STOPPED, FAULT = range(len(STATES))
 
 def limit_duty(torque, max_duty_pct):
     """The duty cycle for a relative torque: a whole number of percent, never beyond +-max_duty_pct nor +-100; 0 for NaN."""
-    if isnan(torque):
+    bound = int(max_duty_pct) if max_duty_pct < 100.0 else 100
+    duty = max_duty_pct * torque
+    if -bound < duty < bound:
+        return round(duty)
+    if isnan(duty):
         return 0
-    bound = floor(min(max_duty_pct, 100.0))
-    return int(round(max(-bound, min(bound, max_duty_pct * torque))))
+    return bound if duty > 0.0 else -bound
 
 
 class Safety(object):

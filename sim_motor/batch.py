@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot import kicks
-from robot.controller import step_wheel
+from robot.controller import actual_positions, step_wheel
 from robot.kicks import DIRECTION_TICKS, JUMP, MEMBRANE, NO_PULSE, Kick
 from robot.loop import SHORTEST_STEP_TICKS
 from robot.params import LONGEST_STEP_TICKS, Params
@@ -20,7 +20,7 @@ from sim_motor.brick import lateness_s
 from sim_motor.compiled import assembled, assembled_parallel, compiled, prange
 from sim_motor.motor import ANGLE, LAST_ANGLE, SUBSTEP_S, Array, Constants, advance, encoder, load, substep_at, substep_from
 
-_step_wheel, _limit_duty = compiled(step_wheel), compiled(limit_duty)
+_actual_positions, _step_wheel, _limit_duty = compiled(actual_positions), compiled(step_wheel), compiled(limit_duty)
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 _invert_membrane, _jump = compiled(kicks.invert_membrane), compiled(kicks.jump)
 _seen_positions, _pulse_weight, _pulsed = compiled(kicks.seen_positions), compiled(kicks.pulse_weight), compiled(kicks.pulsed)
@@ -198,8 +198,9 @@ def _run_wheel(
         if tick == kick[1] and isnan(value):
             value = _reversing_shift(_direction(_travel(phis, tick - 1)))
         x1, x2, a, tau_s, k, beta, shift_rad = _under_kick(tick, x1, x2, a_set, tau_set, k_set, kick, value)
+        actual_1, actual_2 = _actual_positions(phi)
         seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
-        x1, x2, force, torque = _step_wheel(x1, x2, phi, seen_1, seen_2, dt_s, a, tau_s, k, rods)
+        x1, x2, force, torque = _step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods)
         next_duty = _limit_duty(torque, max_duty_pct)
         turn = substep_from(now + latency_s)
         if len(record):

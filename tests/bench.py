@@ -47,7 +47,8 @@ def controller_tick() -> None:
     def through_robot():
         for tick in range(count):
             for wheel in wheels:
-                wheel.step(tick, 0.1 * tick, 0.03, params, None)
+                wheel.phi = 0.1 * tick
+                wheel.step(tick, 0.03, params, None)
 
     def inline():
         a, tau, k, dt = 4.0, 0.25, 8.0, 0.03

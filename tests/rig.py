@@ -105,7 +105,7 @@ class Rig:
             "params": dict(loop.params.values()),
             "safety": (loop.safety.state, loop.safety.reason),
             "lease": (loop.lease.holder, loop.lease.name, loop.lease._heard),
-            "wheels": [(wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel in loop._wheels],
+            "wheels": [(wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel, _, _ in loop._sides],
             "kick": loop._kick and loop._kick.as_dict(),
             "kicks": (dict(loop._kick_begins), list(loop._kick_ids)),
             "motors": [(motor.duty, len(motor.done)) for motor in self.motors],

@@ -174,5 +174,5 @@ def test_duties_round_half_to_even_when_compiled():
 def test_compiling_leaves_the_robots_functions_alone():
     fast = compiled(controller.step_wheel)
     assert type(controller.step_wheel) is type(controller.motor_torque) is type(lambda: None)
-    arguments = (0.1, -0.2, 1.0, 0.5, 0.8, 0.031, 4.0, 0.25, 8.0, 2)
+    arguments = (0.1, -0.2, 0.54, 0.84, 0.5, 0.8, 0.031, 4.0, 0.25, 8.0, 2)
     assert fast(*arguments) == controller.step_wheel(*arguments)

@@ -24,7 +24,7 @@ def near(expected):
 
 def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
     """A tick of a wheel whose neurons see its true angle."""
-    return controller.step_wheel(x1, x2, phi, cos(phi), sin(phi), dt_s, a, tau_s, k, rods)
+    return controller.step_wheel(x1, x2, *2 * controller.actual_positions(phi), dt_s, a, tau_s, k, rods)
 
 
 @pytest.mark.parametrize(
@@ -32,15 +32,14 @@ def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
     [
         (controller.actual_positions(pi / 6), (sqrt(3) / 2, 0.5)),
         (controller.actual_positions(-pi / 2), (0.0, -1.0)),
-        ((controller.firing_rate(1.0, 4.0), controller.firing_rate(0.0, 9.0)), (RATE_AT_1, 0.5)),
-        ((controller.firing_rate(-1.0, 4.0),), (1 - RATE_AT_1,)),
-        # 2 y - 1 is the hyperbolic tangent of a x / 2.
+        # 2 y - 1, and the hyperbolic tangent of a x / 2.
+        ((controller.target_position(1.0, 4.0), controller.target_position(0.0, 9.0)), (2 * RATE_AT_1 - 1, 0.0)),
         ((controller.target_position(0.5, 4.0), controller.target_position(-0.25, 8.0)), (TANH_1, -TANH_1)),
         ((controller.rod_force(0.5, -0.25, 8.0),), (6.0,)),
         ((controller.membrane_rate(0.25, 0.75, 0.25), controller.membrane_rate(1.0, -1.0, 2.0)), (2.0, -1.0)),
         # At phi = 0 only the second rod turns the wheel, and a pull upwards turns it backward; at a quarter turn only the first.
-        ((controller.tangential_force(5.0, 3.0, 0.0), controller.tangential_force(5.0, 3.0, pi / 2)), (-3.0, 5.0)),
-        ((controller.tangential_force(2.0, -4.0, pi / 6),), (1.0 + 2.0 * sqrt(3),)),
+        ((controller.tangential_force(5.0, 3.0, 1.0, 0.0), controller.tangential_force(5.0, 3.0, 0.0, 1.0)), (-3.0, 5.0)),
+        ((controller.tangential_force(2.0, -4.0, sqrt(3) / 2, 0.5),), (1.0 + 2.0 * sqrt(3),)),
         ((controller.motor_torque(1.0), controller.motor_torque(0.0), controller.motor_torque(-1.0)), (TANH_1, 0.0, -TANH_1)),
     ],
 )
@@ -70,7 +69,7 @@ def test_the_rods_act_on_the_new_potentials():
 def test_what_the_neurons_see_does_not_reach_the_projection():
     """With dt -> 0 the neurons do not move, and then nothing they see may change the force."""
     forces = {
-        controller.step_wheel(0.3, -0.6, 0.7, seen_1, seen_2, 0.0, 4.0, 0.25, 8.0, 2)[2]
+        controller.step_wheel(0.3, -0.6, cos(0.7), sin(0.7), seen_1, seen_2, 0.0, 4.0, 0.25, 8.0, 2)[2]
         for seen_1 in (-1.0, 0.2, 1.0)
         for seen_2 in (-0.8, 0.9)
     }

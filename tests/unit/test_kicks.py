@@ -59,7 +59,8 @@ def test_any_request_is_refused_or_gives_a_kick_that_runs(request, directions, d
         wheel = Wheel(side)
         wheel.x1, wheel.x2 = 1.0, -1.0
         for tick in range(100):
-            torque = wheel.step(tick, 0.1 * tick, dt_s, params, kick)
+            wheel.phi = 0.1 * tick
+            torque = wheel.step(tick, dt_s, params, kick)
             assert isfinite(torque)
             assert max(abs(wheel.x1), abs(wheel.x2)) <= 3.0
 

@@ -18,21 +18,21 @@ def make(mode, directions=(1, 1), begin=5, **details):
     return parse(dict(details, id="k", mode=mode), directions, Params(), begin)
 
 
-def wheel(side="left", x1=0.4, x2=-0.3):
+def wheel(side="left", x1=0.4, x2=-0.3, phi=PHI):
     made = Wheel(side)
-    made.x1, made.x2 = x1, x2
+    made.x1, made.x2, made.phi = x1, x2, phi
     return made
 
 
 def stepped(kick, tick=5, side="left", phi=PHI, dt_s=DT):
     """(x1, x2, force, torque) of a tick from the same potentials every time."""
-    made = wheel(side)
-    made.step(tick, phi, dt_s, Params(), kick)
+    made = wheel(side, phi=phi)
+    made.step(tick, dt_s, Params(), kick)
     return made.x1, made.x2, made.force, made.torque
 
 
 def expected(x1=0.4, x2=-0.3, seen=PHI, sign=1.0, a=4.0, tau_s=0.25, k=8.0):
-    return step_wheel(x1, x2, PHI, sign * cos(seen), sign * sin(seen), DT, a, tau_s, k, 2)
+    return step_wheel(x1, x2, cos(PHI), sin(PHI), sign * cos(seen), sign * sin(seen), DT, a, tau_s, k, 2)
 
 
 def test_without_a_kick_the_neurons_see_the_wheel_as_it_is():
@@ -80,17 +80,17 @@ def test_a_kick_alters_what_neurons_see_and_never_the_projection(kick):
 def test_the_neurons_step_before_they_act():
     """The force belongs to the potentials of the same record: of x after the step, not before."""
     made = wheel()
-    made.step(0, PHI, DT, Params(), None)
-    after = step_wheel(made.x1, made.x2, PHI, 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
-    before = step_wheel(0.4, -0.3, PHI, 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
+    made.step(0, DT, Params(), None)
+    after = step_wheel(made.x1, made.x2, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
+    before = step_wheel(0.4, -0.3, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
     assert (made.force, made.torque) == after[2:]
     assert made.force != before[2]
 
 
 def test_a_membrane_kick_acts_before_the_step_of_its_tick():
     """A wheel at rest at its fixpoint: inverted first, then drawn back by dt/tau; inverted last it would be exactly opposite."""
-    made = wheel(x1=1.0, x2=0.0)
-    made.step(5, 0.0, DT, Params(), make("membrane"))
+    made = wheel(x1=1.0, x2=0.0, phi=0.0)
+    made.step(5, DT, Params(), make("membrane"))
     assert made.x1 == pytest.approx(-1.0 + 2.0 * DT / 0.25)
 
 
@@ -113,7 +113,7 @@ def test_after_a_quenched_kick_everything_is_as_before():
         kick = make(mode, ticks=ticks)
         made = wheel()
         for tick in range(12):
-            made.step(tick, PHI, DT, params, kick)
+            made.step(tick, DT, params, kick)
     assert dict(params.values()) == before
 
 
@@ -122,13 +122,13 @@ def test_jumps_cannot_carry_a_potential_out_of_the_range_of_the_exponential():
     params = Params()
     params.apply({"a": 50.0, "tau_s": 10.0})
     for tick in range(200):
-        made.step(tick, PHI, DT, params, Kick("k", "jump", ("left",), 1, variable="x1", delta=-2.0, begin=tick))
+        made.step(tick, DT, params, Kick("k", "jump", ("left",), 1, variable="x1", delta=-2.0, begin=tick))
     assert -10.0 <= made.x1 <= -9.0
 
 
 def test_a_resting_wheel_keeps_its_potentials():
     made = wheel()
-    made.step(0, PHI, DT, Params(), None)
+    made.step(0, DT, Params(), None)
     potentials = made.x1, made.x2
     made.rest()
     assert (made.x1, made.x2, made.force, made.torque) == (*potentials, 0.0, 0.0)
