@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from math import inf
 from pathlib import Path
@@ -85,7 +87,8 @@ class McapTap:
     """A Tap that writes a new file while the stream arrives; a context manager. `path` is where.
 
     info: see Log; its clock_zero_s, or that of a `restart` event for what follows, turns the robot's clock into UTC.
-    Raises LogError if the file exists already or cannot be made: a log is never overwritten. OSError if the disk fails later.
+    Raises LogError if the file exists already or cannot be made: a log is never overwritten. OSError, with the
+    file's name, if the disk fails later.
     """
 
     def __init__(self, path: str | Path, info: dict[str, Any]) -> None:
@@ -114,16 +117,17 @@ class McapTap:
 
     def take_records(self, records: list[Record]) -> None:
         """Write records, and the events that waited for the first of them."""
-        for record in records:
-            self._now_ns = self._zero_ns + _nanoseconds(record.t_s)
-            self._write_events()
-            message = record._asdict()
-            for name, words in _NAMED.items():
-                message[name] = words[message[name]]
-            self._write(self._ticks, message, record.tick)
-            if abs(self._now_ns - self._chunk_ns) >= CHUNK_S * 1e9:
-                self._writer.flush()
-                self._chunk_ns = self._now_ns
+        with _named(self.path):
+            for record in records:
+                self._now_ns = self._zero_ns + _nanoseconds(record.t_s)
+                self._write_events()
+                message = record._asdict()
+                for name, words in _NAMED.items():
+                    message[name] = words[message[name]]
+                self._write(self._ticks, message, record.tick)
+                if abs(self._now_ns - self._chunk_ns) >= CHUNK_S * 1e9:
+                    self._writer.flush()
+                    self._chunk_ns = self._now_ns
 
     def take_event(self, event: Event) -> None:
         """Keep an event until the record it concerns tells the time."""
@@ -144,17 +148,25 @@ class McapTap:
         """Write what waits and the file's index. Once is enough, more does no harm."""
         if self._file.closed:
             return
-        try:
+        with _named(self.path), self._file:
             self._write_events()
             self._writer.finish()
-        finally:
-            self._file.close()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
+
+
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """Have the OSError of a disk that is full or fails tell which file it was."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = str(path)
+        raise
 
 
 def _nanoseconds(seconds: float) -> int:

@@ -54,6 +54,11 @@ class TcpLink:
         self.close()
         try:
             self._socket = socket.create_connection(self._address, timeout=CONNECT_TIMEOUT_S)
+        except ConnectionRefusedError as error:
+            raise NoLink(
+                f"no robot's program runs at {self.uri}: the machine is there and refuses the connection",
+                "start the program; if it died, its watchdog has stopped the motors, and its log says why (of a brick: ./deploy.sh --logs)",
+            ) from error
         except OSError as error:
             raise NoLink(
                 f"no robot answers at {self.uri}: {error.strerror or error}",

@@ -1,7 +1,8 @@
 """A process of its own that stops the motors when the loop dies or hangs: a motor under run-direct turns on without its program.
 
-Loop and watchdog share a pair of sockets. After each tick a byte goes out, which the watchdog sends back. Silence, or the end of the
-loop's process, makes the watchdog stop every motor of the file tree and end; its own end, or its silence, makes the loop stop.
+Loop and watchdog share a pair of sockets. After each tick a byte goes out, which the watchdog sends back. Silence makes the watchdog
+stop every motor of the file tree, and tell the loop so, should it wake; the end of the loop's process makes it do so and end. Its own
+end, or its silence, makes the loop stop.
 """
 
 import glob
@@ -17,6 +18,9 @@ from robot.motors import MotorFault
 SILENCE_S = 0.2
 # The loop does not wait for echoes; it gives the watchdog this many ticks before it takes it for dead.
 MOST_UNANSWERED = 40
+
+# What goes over the link: that the loop lives, and back; from the watchdog, that it has stopped the motors; from the loop, that it ends.
+_ALIVE, _STOPPED, _FAREWELL = b".", b"!", b"q"
 
 
 def stop_all(root):
@@ -36,27 +40,28 @@ def stop_all(root):
 
 
 def watch(link, stop, silence_s=SILENCE_S):
-    """Echo what comes over `link` until it ends or falls silent for silence_s, then call stop(). Returns why it ended.
+    """Echo what comes over `link` until it ends, and call stop(reason) then and whenever it falls silent for silence_s.
 
-    Before the first byte it may be silent for as long as it likes: a program takes seconds to start on the brick.
+    The reason is in words, empty if the loop has said that it ends. Before the first byte, and after a silence until the next, it may be
+    silent for as long as it likes: a program takes seconds to start on the brick.
     """
-    reason = "the loop has ended"
     patience_s = None
-    while True:
-        if not select.select([link], (), (), patience_s)[0]:
-            reason = "the loop hangs"
-            break
-        try:
-            beat = link.recv(64)
-            if not beat:
-                break
-            link.send(beat)
-            patience_s = silence_s
-        except OSError:
-            break
-    stop()
+    try:
+        while True:
+            if select.select([link], (), (), patience_s)[0]:
+                beat = link.recv(64)
+                if not beat or _FAREWELL in beat:
+                    break
+                link.send(beat)
+                patience_s = silence_s
+            else:
+                stop("the loop was silent for {:g} s".format(silence_s))
+                link.send(_STOPPED)
+                patience_s = None
+    except OSError:
+        beat = b""
+    stop("" if beat else "the loop's process has died")
     link.close()
-    return reason
 
 
 class Watchdog(object):
@@ -84,15 +89,18 @@ class Watchdog(object):
                 loop.fail(str(fault))
 
     def feed(self):
-        """Tell that the loop lives. Raises MotorFault if the watchdog does not."""
+        """Tell that the loop lives. Raises MotorFault if the watchdog does not, or has stopped the motors meanwhile."""
         try:
-            self._link.send(b".")
-            self._unanswered += 1 - len(self._echoes())
+            echoes = self._echoes()
+            self._link.send(_ALIVE)
         except OSError as error:
+            raise MotorFault("the watchdog has ended ({}); start the robot's program anew".format(error.strerror)) from error
+        self._unanswered += 1 - echoes.count(_ALIVE)
+        if _STOPPED in echoes:
             raise MotorFault(
-                "the watchdog has ended ({}): it was killed, or the loop was silent and it has stopped the motors; "
-                "start the robot's program anew".format(error.strerror)
-            ) from error
+                "the loop was silent for {:g} s or longer, so the watchdog has stopped the motors: "
+                "was the machine busy with something else? Clear the fault to go on".format(SILENCE_S)
+            )
         if self._unanswered > MOST_UNANSWERED:
             raise MotorFault("the watchdog does not answer; start the robot's program anew")
 
@@ -107,6 +115,10 @@ class Watchdog(object):
 
     def close(self):
         """End the watchdog, after the motors were stopped."""
+        try:
+            self._link.send(_FAREWELL)
+        except OSError:
+            pass  # it has ended already
         self._link.close()
         try:
             os.kill(self.pid, signal.SIGCONT)  # or one that is frozen would not end, and this neither
@@ -119,13 +131,17 @@ def _be_watchdog(link, root):
     """What the forked process does, until it ends."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)  # these are meant for the loop, whose end is what counts
+
+    def stop(reason):
+        failed = stop_all(root)
+        if reason:
+            sys.stderr.write("watchdog: {}; {}\n".format(reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped"))
+            sys.stderr.flush()
+
     status = 0
     try:
         os.setsid()
-        reason = watch(link, lambda: stop_all(root))
-        if reason != "the loop has ended":
-            sys.stderr.write("watchdog: {}; motors stopped\n".format(reason))
-            sys.stderr.flush()
+        watch(link, stop)
     except BaseException:  # noqa: BLE001 - whatever it is, the motors come first
         status = 1
         stop_all(root)

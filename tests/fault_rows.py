@@ -67,7 +67,7 @@ def _dies(number):
 
 
 def _silent(number, wakes):
-    """The loop is silent, and finds itself stopped when it goes on."""
+    """The loop is silent, and finds itself stopped when it goes on; once that is cleared, all is as before."""
 
     def attempt(live, chance):
         live.run(chance)
@@ -80,6 +80,8 @@ def _silent(number, wakes):
                 live.process.send_signal(signal.SIGCONT)
             told = live.told("fault")
             assert watch.running() == 0
+        live.robot.clear()
+        live.run(chance)
         return seconds, told
 
     return attempt
@@ -335,10 +337,10 @@ def _no_compiler():
 
 
 ROWS = (
-    Row("SIGKILL of the loop", LOOP_S, "no robot answers", _dies(signal.SIGKILL)),
-    Row("SIGSEGV of the loop", LOOP_S, "no robot answers", _dies(signal.SIGSEGV)),
-    Row("SIGSTOP of the loop", LOOP_S, "the watchdog has ended", _silent(signal.SIGSTOP, wakes=True)),
-    Row("hang in the loop", LOOP_S, "the watchdog has ended", _silent(signal.SIGUSR1, wakes=False), program="tests.faulty"),
+    Row("SIGKILL of the loop", LOOP_S, "no robot's program runs", _dies(signal.SIGKILL)),
+    Row("SIGSEGV of the loop", LOOP_S, "no robot's program runs", _dies(signal.SIGSEGV)),
+    Row("SIGSTOP of the loop", LOOP_S, "the loop was silent", _silent(signal.SIGSTOP, wakes=True)),
+    Row("hang in the loop", LOOP_S, "the loop was silent", _silent(signal.SIGUSR1, wakes=False), program="tests.faulty"),
     Row("crash in Python", LOOP_S, "ZeroDivisionError", _crashes, program="tests.faulty"),
     Row("watchdog killed", LOOP_S, "the watchdog has ended", _loses_watchdog),
     Row("watchdog frozen", UNANSWERED_S + LOOP_S, "the watchdog does not answer", _freezes_watchdog),
@@ -353,6 +355,6 @@ ROWS = (
     Row("EIO once", LOOP_S, "EIO", _eio(1), lasting=True),
     Row("EIO six times", LOOP_S, "EIO", _eio(6), lasting=True),
     Row("battery empty", BATTERY_S + LOOP_S, "the battery is empty", _battery_empties, arguments=("--tick", str(FAST_TICK_S))),
-    Row("disk of the host full", None, "No space left", _disk_full, lasting=True, lacks=_no_mounts),
+    Row("disk of the host full", None, "log.mcap cannot be written or read: No space left", _disk_full, lasting=True, lacks=_no_mounts),
     Row("clock jump", None, "", _clock_jumps, lasting=True, lacks=_no_compiler, environment=jumping_clock),
 )

@@ -1,6 +1,7 @@
 """What goes wrong around kickctl: no room, no token, a robot that goes away, damaged logs. It is told in words, and nothing is lost."""
 
 import json
+import resource
 import shutil
 from pathlib import Path
 
@@ -57,6 +58,19 @@ def test_a_full_disk_is_told_in_words(kickctl):
     assert status in (1, 2)
     assert "No space left" in err
     assert "Traceback" not in err
+
+
+def test_a_recording_that_finds_no_more_room_names_its_file_and_keeps_what_it_has(kickctl):
+    """A limit on the size of a process's files stands in for a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (60000, before[1]))
+    try:
+        status, _, err = kickctl("record", "60", "--seed", "1", "--out", "log.mcap")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert status == 1
+    assert "log.mcap cannot be written" in err
+    assert len(Log.load("log.mcap")) > 100
 
 
 def test_a_log_goes_only_where_a_folder_is(kickctl):

@@ -346,5 +346,5 @@ def test_where_nobody_listens_is_told_in_words():
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))
         port = unused.getsockname()[1]
-        with pytest.raises(NoLink, match="no robot answers"):
+        with pytest.raises(NoLink, match="no robot's program runs"):
             Robot(TcpLink(f"tcp://127.0.0.1:{port}", "127.0.0.1", port), None)

@@ -21,10 +21,8 @@ PATIENCE_S = 20.0
 def tree(tmp_path):
     """Two motors that run."""
     for number in range(2):
-        folder = tmp_path / "tacho-motor" / ("motor" + str(number))
-        folder.mkdir(parents=True)
-        (folder / "command").write_text("")
-        (folder / "duty_cycle_sp").write_text("9")
+        (tmp_path / "tacho-motor" / ("motor" + str(number))).mkdir(parents=True)
+    run(tmp_path)
     return tmp_path
 
 
@@ -32,6 +30,25 @@ def stopped(tree):
     """Whether every motor has been told to stop, with a stored duty of 0."""
     motors = list((tree / "tacho-motor").iterdir())
     return all((motor / "command").read_text() == "stop" and (motor / "duty_cycle_sp").read_text() == "0" for motor in motors)
+
+
+def run(tree):
+    """The motors run again."""
+    for motor in (tree / "tacho-motor").iterdir():
+        (motor / "command").write_text("")
+        (motor / "duty_cycle_sp").write_text("9")
+
+
+def fault(dog):
+    """Feed the watchdog until that tells of a fault. Returns its words."""
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        try:
+            dog.feed()
+        except MotorFault as told:
+            return str(told)
+        time.sleep(0.001)
+    return "nothing"
 
 
 def eventually(condition):
@@ -56,6 +73,9 @@ for beat in range(10**6):
     if beat == 20 and end != "live":
         if end == "segv":
             os.kill(os.getpid(), signal.SIGSEGV)
+        if end == "leave":
+            dog.close()
+            sys.exit()
         if end == "raise":
             raise RuntimeError("the loop failed")
         time.sleep(3600)
@@ -66,7 +86,7 @@ def loop_process(tree, end):
     """A process that feeds its watchdog until it comes to its end."""
     environment = dict(os.environ, PYTHONPATH=robot.__path__[0] + "/..")
     command = [sys.executable, "-c", _LOOP, str(tree), end]
-    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 @pytest.mark.parametrize("end", ["segv", "raise", "hang"])
@@ -107,13 +127,16 @@ def test_a_watchdog_that_was_frozen_is_noticed_by_the_loop(tree):
     dog.close()
 
 
-def test_a_loop_that_froze_and_came_back_finds_itself_stopped(tree):
+def test_a_loop_that_froze_and_came_back_finds_itself_stopped_and_can_go_on(tree):
     dog = Watchdog(str(tree))
-    dog.feed()
-    assert eventually(lambda: stopped(tree))  # nobody feeds it any more
-    with pytest.raises(MotorFault):
-        for _ in range(MOST_UNANSWERED + 1):
+    for _ in range(3):
+        run(tree)
+        dog.feed()
+        assert eventually(lambda: stopped(tree))  # nobody feeds it any more
+        assert "was silent for 0.2 s" in fault(dog)
+        for _ in range(2 * MOST_UNANSWERED):
             dog.feed()
+            time.sleep(0.001)
     dog.close()
 
 
@@ -130,7 +153,7 @@ def test_a_program_that_takes_long_to_start_is_not_taken_for_dead(tree):
 def test_the_watchdog_leaves_motors_alone_while_it_is_fed(tree):
     one, other = socket.socketpair()
     stops = []
-    watching = threading.Thread(target=lambda: watch(other, lambda: stops.append("stop"), silence_s=PATIENCE_S))
+    watching = threading.Thread(target=lambda: watch(other, stops.append, silence_s=PATIENCE_S))
     watching.start()
     for _ in range(100):
         one.send(b".")
@@ -138,7 +161,15 @@ def test_the_watchdog_leaves_motors_alone_while_it_is_fed(tree):
     assert stops == []
     one.close()
     watching.join(PATIENCE_S)
-    assert stops == ["stop"]
+    assert stops == ["the loop's process has died"]
+
+
+@pytest.mark.parametrize(("end", "words"), [("segv", "the loop's process has died; motors stopped"), ("leave", "")])
+def test_the_watchdog_says_why_it_stopped_the_motors_unless_the_loop_took_leave(tree, end, words):
+    with loop_process(tree, end) as process:
+        said = process.communicate()[1].decode()
+    assert stopped(tree)
+    assert ("watchdog: " + words in said) if words else said == ""
 
 
 def test_a_motor_that_cannot_be_stopped_does_not_spare_the_others(tree):
