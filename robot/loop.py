@@ -218,6 +218,9 @@ class Loop(object):
         if "tick_s" in checked and self._kick is not None:
             raise Refused("busy", "tick_s cannot change while a kick of so many ticks acts", "set it when the kick is over")
         self.params.apply(checked)
+        for side in self._sides:
+            if "polarity_" + side.wheel.side in checked:
+                side.travel.clear()  # angles before and after do not make a direction together
         return self.blackbox.note("params", set=dict(checked))
 
     def take_lease(self, holder, name):
