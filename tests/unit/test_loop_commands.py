@@ -114,7 +114,7 @@ def test_the_sign_of_a_phase_kick_is_the_wheels_direction_even_in_the_first_tick
 
 
 def test_a_wheel_that_was_turned_around_has_no_direction_from_before():
-    rig = Rig(left=Motor(5.0, 0.3), right=Motor(5.0, 0.3))
+    rig = Rig(left=Motor(5.0, 0.3), right=Motor(-50.0, 0.3))
     rig.run(20)
     rig.loop.set_params({"polarity_right": -1})
     rig.loop.start()
