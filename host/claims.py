@@ -18,17 +18,41 @@ WHEEL_RADIUS_M = 0.028
 
 @dataclass(frozen=True)
 class Claim:
-    """One row of a report. `measured` and `target` are words with units; `holds` is the verdict."""
+    """One row of a report: what the paper says (a range is the target), and the number that was measured, with its unit.
+
+    interval: where the number lies with a confidence of 95 %, None where there is no chance in it. note: what the number leaves out;
+    why, if the claim does not hold.
+    """
 
     id: str
     claim: str
-    target: str
-    measured: str
+    paper: str
+    measured: float
+    unit: str
+    interval: tuple[float, float] | None
     holds: bool
+    note: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data."""
         return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Claim:
+        """The claim as plain data."""
+        return cls(**{**data, "interval": tuple(data["interval"]) if data["interval"] else None})
+
+    def number(self) -> str:
+        """What was measured, with unit and interval."""
+        unit = "" if self.unit == "1" else " " + self.unit
+        interval = f" ({self.interval[0]:.3g} to {self.interval[1]:.3g})" if self.interval else ""
+        return f"{self.measured:.3g}{unit}{interval}"
+
+    def sentence(self) -> str:
+        """All of it, in a line."""
+        verdict = "holds" if self.holds else "DOES NOT HOLD"
+        note = f"; {self.note}" if self.note else ""
+        return f"{self.id} {verdict}: {self.claim}: {self.number()}{note} (paper: {self.paper})"
 
 
 @dataclass(frozen=True)
@@ -44,34 +68,41 @@ def starts(log: Log, spans: Sequence[Span]) -> Claim:
     speeds = np.array([log.omega(side)[span.first : span.end].mean() for span in spans for side in WHEELS])
     forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
     both = len(forward) > 0 and len(backward) > 0
-    asymmetry = abs(forward.mean() / backward.mean() - 1.0) if both else float("nan")
+    asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
     return Claim(
         "R1",
         "forward and backward locomotion coexist",
         "both from random starts, speeds equal within 3 %",
-        f"{len(spans)} starts of two wheels: {len(forward)} forward, {len(backward)} backward, speeds differ by {100 * asymmetry:.1f} %",
+        asymmetry,
+        "1",
+        None,
         both and bool(asymmetry <= 0.03),
+        f"difference of the speeds; {len(spans)} starts of two wheels: {len(forward)} forward, {len(backward)} backward",
     )
 
 
 def locomotion(log: Log, span: Span) -> list[Claim]:
     """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque in steady motion."""
     rows = slice(span.first, span.end)
-    hertz = float(np.mean([abs(log.omega(side)[rows].mean()) for side in WHEELS])) / (2 * pi)
-    speed = 2 * pi * hertz * WHEEL_RADIUS_M
+    turns = [abs(log.omega(side)[rows].mean()) / (2 * pi) for side in WHEELS]
     duty = float(np.mean([np.abs(log.column(side + "_duty_pct")[rows]).mean() for side in WHEELS]))
     torques = [log.column(side + "_torque")[rows] for side in WHEELS]
     ripple = max(float(torque.std() / np.abs(torque).mean()) for torque in torques)
+    hertz = float(np.mean(turns))
+    speed = 2 * pi * hertz * WHEEL_RADIUS_M
     return [
-        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", f"{hertz:.2f} Hz", 1.8 <= hertz <= 2.3),
+        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", hertz, "Hz", None, 1.8 <= hertz <= 2.3),
         Claim(
             "R3",
             "speed, and share of the motor's power, at k = 8",
-            "0.32 to 0.39 m/s, 80 to 90 %",
-            f"{speed:.3f} m/s, {duty:.0f} %",
+            "0.32 to 0.39 m/s, duty 80 to 90 %",
+            speed,
+            "m/s",
+            None,
             0.32 <= speed <= 0.39 and 80.0 <= duty <= 90.0,
+            f"at a duty cycle of {duty:.0f} %",
         ),
-        Claim("R4", "the torque M is quasi-stationary", "std(M) / mean(|M|) < 0.1", f"{ripple:.4f}", ripple < 0.1),
+        Claim("R4", "the torque M is quasi-stationary", "std(M) / mean(|M|) < 0.1", ripple, "1", None, ripple < 0.1),
     ]
 
 
@@ -86,13 +117,16 @@ def break_away(log: Log, span: Span) -> Claim:
         steps = np.flatnonzero(np.diff(torque[:first]) > _LEAST_STEP) + 1
         last_step = int(steps[-1]) if len(steps) else first
         stalls.append(float(torque[:last_step].max(initial=0.0)))
-        moves.append(float(torque[:first].max(initial=0.0)) if len(moved) else float("inf"))
+        moves.append(float(torque[:first].max(initial=0.0)) if len(moved) else 1.0)
     return Claim(
         "R5",
         "the motor stalls for |M| <= 0.1",
         "no motion from rest below, motion above",
-        "; ".join(f"{side}: rests at M = {low:.3f}, moves at {high:.3f}" for side, low, high in zip(WHEELS, stalls, moves, strict=True)),
+        float(np.mean(moves)),
+        "1",
+        None,
         all(0.09 <= low <= 0.102 and 0.1 <= high <= 0.11 for low, high in zip(stalls, moves, strict=True)),
+        "; ".join(f"{side}: rests at M = {low:.3f}, moves at {high:.3f}" for side, low, high in zip(WHEELS, stalls, moves, strict=True)),
     )
 
 
@@ -102,6 +136,6 @@ _LEAST_STEP = 1e-3
 
 def inversions(reversals: Sequence[bool]) -> Claim:
     """R8: inverting the membrane potentials always reverses the robot."""
-    done = sum(reversals)
-    target = f"{len(reversals)} of {len(reversals)}"
-    return Claim("R8", "membrane inversion is 100 % reliable", target, f"{done} of {len(reversals)}", 0 < len(reversals) == done)
+    done, tried = sum(reversals), len(reversals)
+    share = done / tried if tried else 0.0
+    return Claim("R8", "membrane inversion is 100 % reliable", "always", share, "1", None, 0 < tried == done, f"{done} of {tried}")

@@ -16,7 +16,22 @@ from host.errors import KickctlError
 from host.options import common
 from robot import __version__
 
-VERBS = ("demo", "kick", "drive", "start", "stop", "clear", "status", "params", "record", "watch", "log", "doctor", "discover")
+VERBS = (
+    "demo",
+    "kick",
+    "drive",
+    "start",
+    "stop",
+    "clear",
+    "status",
+    "params",
+    "record",
+    "watch",
+    "log",
+    "doctor",
+    "discover",
+    "experiment",
+)
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.

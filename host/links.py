@@ -34,6 +34,12 @@ def _split(uri: str) -> _Parts:
 _FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
 
 
+def sim_options(uri: str) -> dict[str, str] | None:
+    """The options of a simulated robot's URI, None for a real one's. Raises WrongUse if it is no URI."""
+    parts = _split(uri)
+    return parts.options if parts.scheme == "sim" else None
+
+
 def make_link(uri: str, seed: int | None = None) -> Link:
     """The Link for a URI, not opened yet. `seed` is for sim:// and overrides the URI's. Raises WrongUse."""
     parts = _split(uri)

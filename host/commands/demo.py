@@ -56,6 +56,6 @@ def run(options: argparse.Namespace) -> int:
         )
     else:
         for claim in report:
-            print(f"{claim.id} {'holds' if claim.holds else 'DOES NOT HOLD'}: {claim.claim}: {claim.measured} (paper: {claim.target})")
+            print(claim.sentence())
         print(f"{describe(outcome)}\nlog {path}\nfigure {figure}")
     return 0 if holds else 1

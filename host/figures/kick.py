@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from host.figures.style import SIZE, styled
 from host.log import Log
 from host.stream import Event
 from robot.kicks import WHEELS
@@ -26,7 +26,6 @@ _WHEEL = {"left": "black", "right": "grey"}
 _WIDTH = {"left": 4.2, "right": 2.0}  # so that both show where they agree
 _KICK = "crimson"
 _PLATE: Any = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1}
-_STYLE: Any = {"font.size": 13, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.8, "legend.frameon": False}
 
 
 class Span(NamedTuple):
@@ -78,8 +77,8 @@ def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | N
         first_s, last_s = max(first_s, window[0]), min(last_s, window[1])
     inside = [Span(span.begin_s - zero_s, span.end_s - zero_s, span.label) for span in kicks]
     inside = [span for span in inside if span.begin_s <= last_s and span.end_s >= first_s]
-    with rc_context(_STYLE):
-        figure = Figure(figsize=(10.0, 6.4), dpi=160, layout="constrained")
+    with styled():
+        figure = Figure(**SIZE)
         neurons, speeds = figure.subplots(2, 1, sharex=True, height_ratios=(5, 2))
         figure.suptitle(title, fontsize=16)
         _draw_neurons(neurons, log, begin, zero_s)

@@ -1,0 +1,70 @@
+"""What an experiment is: a module with these functions, and host.figures.NAME with draw(rows, findings), which returns a Figure.
+
+Its work is a list of cells, each of which can be done by itself.
+
+A cell is plain data that says what to do, a row plain data that came of it; both survive JSON unchanged, and what is unknown is None.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from host.claims import Claim
+from host.client import Robot
+from host.log import Log
+
+Cell = dict[str, Any]
+Row = dict[str, Any]
+Options = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What all cells of a run share; plain data, which can go to another process.
+
+    motor, battery_v: of the simulated brick, as in sim://?motor=NAME&battery=V.
+    """
+
+    seed: int
+    options: Options
+    motor: str = "pybricks"
+    battery_v: float | None = None
+
+    def seed_of(self, cell: Cell) -> int:
+        """A cell's own seed: the same whatever else is done before it, or by whom."""
+        text = json.dumps([self.seed, cell], sort_keys=True)
+        return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], "big")
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What an experiment found: the paper's claims it speaks to, other numbers worth telling, and texts to keep as files by name."""
+
+    claims: list[Claim]
+    numbers: dict[str, Any]
+    files: dict[str, str] = field(default_factory=dict)
+
+
+class Experiment(Protocol):
+    """The module host.experiments.NAME.
+
+    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too.
+    """
+
+    simulate: Callable[[Cell, Setting], list[Row]] | None
+
+    def cells(self, options: Options, *, batch: bool) -> list[Cell]:
+        """The work in pieces, in the order of the table. batch: for `simulate`, whose pieces may be larger than a robot's."""
+
+    def world(self, cell: Cell) -> dict[str, str]:
+        """What a simulated brick needs for this cell: options of sim://. What a person has to see to on a real one."""
+
+    def trial(self, cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
+        """Do one cell on a robot that runs; `log` taps it meanwhile. Raises KickctlError."""
+
+    def report(self, rows: list[Row], setting: Setting) -> Findings:
+        """What the rows, each with its cell's fields, come to."""

@@ -1,0 +1,165 @@
+"""How surely a kick reverses a wheel, against its length: position and phase kicks of both signs, membrane beside them (R8 to R11).
+
+A trial is one wheel that has settled, at whatever phase the kick meets it. Phase kicks of both signs are given to wheels of both
+directions: of the sign that the paper names for a direction, and of the other one, of which it says nothing.
+"""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import Any
+
+import numpy as np
+
+from host.claims import Claim
+from host.client import Robot
+from host.experiments.experiment import Cell, Findings, Options, Row, Setting
+from host.experiments.statistics import spread, wilson
+from host.kicking import BACKWARD, FORWARD, kick_and_watch, wait_settled
+from host.log import Log
+from host.motion import settling_s
+from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, POSITION, WHEELS, parse
+from robot.params import Params
+from sim_motor.batch import run
+from sim_motor.motor import load
+
+LENGTHS = tuple(range(1, 11))
+DIRECTIONS = {FORWARD: 1, BACKWARD: -1}
+TURN_S = 0.5
+RELIABLE, FAILS = 0.95, 0.1
+SURE_LENGTHS = (3, 4, 5)
+_SETTLE_TICKS, _WATCH_TICKS = 170, 130
+
+
+def cells(options: Options, *, batch: bool) -> list[Cell]:
+    """A cell is a kick for all trials of the batch, or for one trial on a robot; there they go round after round, as its battery fades."""
+    kicks: list[Cell] = [{"mode": MEMBRANE, "ticks": 1, "sign": 0}]
+    kicks += [{"mode": POSITION, "ticks": ticks, "sign": 0} for ticks in LENGTHS]
+    kicks += [{"mode": PHASE, "ticks": ticks, "sign": sign} for sign in (1, -1) for ticks in LENGTHS]
+    return kicks if batch else [{**kick, "trial": trial} for trial in range(options["trials"]) for kick in kicks]
+
+
+def world(cell: Cell) -> dict[str, str]:
+    """The robot alone on the floor."""
+    return {}
+
+
+def _details(cell: Cell) -> dict[str, Any]:
+    if cell["mode"] == MEMBRANE:
+        return {}
+    shift = {"shift": cell["sign"] * DEFAULT_SHIFT_RAD} if cell["mode"] == PHASE else {}
+    return {"ticks": cell["ticks"], **shift}
+
+
+def simulate(cell: Cell, setting: Setting) -> list[Row]:
+    """As many wheels as it takes until so many ran in each direction."""
+    rng = np.random.default_rng(setting.seed_of(cell))
+    kick = parse({"id": "reliability", "mode": cell["mode"], **_details(cell)}, (0, 0), Params(), _SETTLE_TICKS)
+    published, trials = load(setting.motor), setting.options["trials"]
+    rows: dict[int, list[Row]] = {1: [], -1: []}
+    while min(map(len, rows.values())) < trials:
+        bounds = 1 - published.spread, 1 + published.spread
+        motors = tuple(published.varied(*pair) for pair in rng.uniform(*bounds, (3 * trials, 2)).tolist())
+        ticks = _SETTLE_TICKS + kick.ticks + _WATCH_TICKS
+        result = run(len(motors), ticks, int(rng.integers(2**32)), kick=kick, motors=motors, battery_v=setting.battery_v)
+        for before, reverses, settled in zip(result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True):
+            if before:
+                rows[before].append({"before": before, "reversed": reverses, "settling_s": None if isnan(settled) else settled})
+    return rows[1][:trials] + rows[-1][:trials]
+
+
+def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
+    """Both wheels of a robot that has settled, at a random phase."""
+    wait_settled(robot)
+    robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
+    outcome = kick_and_watch(robot, log, cell["mode"], **_details(cell))
+    return [
+        {
+            "before": DIRECTIONS[outcome.before[side]],
+            "reversed": outcome.after[side] in DIRECTIONS and outcome.after[side] != outcome.before[side],
+            "settling_s": settling_s(log, side, outcome.applied_tick),
+        }
+        for side in WHEELS
+        if outcome.before[side] in DIRECTIONS
+    ]
+
+
+def rate(rows: list[Row]) -> tuple[int, int]:
+    """(reversals, trials)."""
+    return sum(row["reversed"] for row in rows), len(rows)
+
+
+def points(rows: list[Row], mode: str, ticks: int, named: bool | None = None) -> list[Row]:
+    """The trials of a point. named: only phase kicks of the sign that the paper names for the wheel's direction, or only the others."""
+    return [
+        row for row in rows if (row["mode"], row["ticks"]) == (mode, ticks) and (named is None or (row["sign"] == row["before"]) is named)
+    ]
+
+
+def report(rows: list[Row], setting: Setting) -> Findings:
+    """R8 to R11."""
+    claims = [_membrane(rows), _quenched("R9", rows, POSITION, None), _quenched("R10", rows, PHASE, named=True), _settling(rows)]
+    rates = {
+        name: [[*rate(points(rows, mode, ticks, named))] for ticks in LENGTHS]
+        for name, mode, named in (("position", POSITION, None), ("phase", PHASE, True), ("phase, other sign", PHASE, False))
+    }
+    return Findings(claims, {"lengths": list(LENGTHS), "reversals_of_trials": rates})
+
+
+def _membrane(rows: list[Row]) -> Claim:
+    done, tried = rate(points(rows, MEMBRANE, 1))
+    return Claim(
+        "R8",
+        "membrane inversion is 100 % reliable",
+        "50 of 50",
+        done / tried,
+        "1",
+        wilson(done, tried),
+        0 < tried == done,
+        f"{done} of {tried}",
+    )
+
+
+def _quenched(number: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
+    """Reliable somewhere in 3 to 5 ticks for each direction, failing at 1 tick and, for R9, again when long."""
+
+    def of(ticks: int, before: int) -> tuple[int, int]:
+        return rate([row for row in points(rows, mode, ticks, named) if row["before"] == before])
+
+    def share(ticks: int, before: int) -> float:
+        done, tried = of(ticks, before)
+        return done / tried if tried else 0.0
+
+    best = max(SURE_LENGTHS, key=lambda ticks: min(share(ticks, 1), share(ticks, -1)))
+    worst = min((1, -1), key=lambda before: share(best, before))
+    short = max(share(1, 1), share(1, -1))
+    long = min(max(share(ticks, 1), share(ticks, -1)) for ticks in LENGTHS if ticks > max(SURE_LENGTHS))
+    return Claim(
+        number,
+        "inverted positions are reliable for 3 to 5 ticks"
+        if mode == POSITION
+        else "a phase shift of the named sign is reliable for 3 to 5 ticks",
+        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
+        share(best, worst),
+        "1",
+        wilson(*of(best, worst)),
+        share(best, worst) >= RELIABLE and short <= FAILS and long <= FAILS,
+        f"at {best} ticks, in the worse direction; at 1 tick {short:.0%}; of 6 to 10 ticks the least sure reverses {long:.0%}",
+    )
+
+
+def _settling(rows: list[Row]) -> Claim:
+    times = [row["settling_s"] for row in rows if row["reversed"] and row["settling_s"] is not None]
+    median = float(np.median(times)) if times else 0.0
+    longest = max(times, default=0.0)
+    low, high = np.quantile(times or [0.0], (0.05, 0.95))
+    return Claim(
+        "R11",
+        "settling into the reversed cycle outlasts the kick (half a second or more is seen)",
+        "distribution of settling times",
+        median,
+        "s",
+        spread(times, np.median),
+        longest >= 0.5,
+        f"median of {len(times)} reversals; 5 to 95 %: {low:.2f} to {high:.2f} s",
+    )

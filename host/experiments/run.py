@@ -1,0 +1,199 @@
+"""Runs an experiment: cell after cell on the robot that is there, or in the compiled batch for a simulated one; then what came of it."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import json
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlencode
+
+from host.client import Robot, connect
+from host.errors import KickctlError, NoLink, NotDone, RobotFault, WrongUse
+from host.experiments.experiment import Cell, Experiment, Row, Setting
+from host.experiments.study import Study
+from host.experiments.table import checked, load
+from host.links import SIM, sim_options
+from host.log import Log
+from host.progress import progress
+from host.recording import McapTap
+from robot import __version__
+
+RESULTS = Path("results")
+DEFAULT_SEED = 1
+# A robot's cell is tried again when something else came between, a fault or a link that broke.
+TRIES = 3
+PAUSE_S = 1.0
+
+Outcome = tuple[list[Row], list[str]]  # and why earlier tries did not count
+Result = tuple[Cell, list[Row], list[str]]
+Work = Callable[[Cell], Outcome]
+
+
+def perform(
+    name: str,
+    uri: str | None = None,
+    seed: int | None = None,
+    *,
+    token: str | None = None,
+    out: str | Path | None = None,
+    scheduler: str | None = None,
+    say: Callable[[str], None] = lambda words: None,
+    **arguments: float,
+) -> dict[str, Any]:
+    """Run an experiment, or the rest of one that was cut short, and return its summary, which also stands in its folder.
+
+    uri, token: as `connect` takes them; seed: of all chances, also those of a simulated robot. out: the folder; by default one below
+    ./results that belongs to exactly these arguments. scheduler: address of a Dask scheduler for the compiled batch. arguments: the
+    experiment's own options. Raises KickctlError; what was measured until then is kept.
+    """
+    options = checked(name, arguments)
+    experiment = load(name)
+    uri = uri or SIM
+    seed = DEFAULT_SEED if seed is None else seed
+    simulated = sim_options(uri)
+    batch = simulated is not None and experiment.simulate is not None
+    if scheduler and not batch:
+        raise WrongUse("--scheduler spreads simulations, and this experiment runs on a robot's loop", "leave it out")
+    setting = Setting(seed, options)
+    if simulated is not None:
+        battery_v = float(simulated["battery"]) if "battery" in simulated else None
+        setting = Setting(seed, options, simulated.get("motor", setting.motor), battery_v)
+    settings = {"experiment": name, "brick": uri, "seed": seed, "options": options, "version": __version__}
+    study = Study(Path(out) if out else RESULTS / f"{name}-{_digest(settings)}", settings)
+    cells = experiment.cells(options, batch=batch)
+    say(f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in {study.folder}")
+    try:
+        if batch:
+            _simulate(experiment, cells, setting, study, scheduler)
+        elif any(cell not in study for cell in cells):
+            with _robots(experiment, uri, setting, token, study.folder / "logs", say) as work:
+                _do(cells, study, work, name)
+        return _summary(name, experiment, cells, setting, study, settings)
+    except (KickctlError, KeyboardInterrupt):
+        say(f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes on from there")
+        raise
+    finally:
+        study.close()
+
+
+def _digest(settings: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()[:8]
+
+
+def _do(cells: list[Cell], study: Study, work: Work, name: str) -> None:
+    missing = [cell for cell in cells if cell not in study]
+    _keep(((cell, *work(cell)) for cell in missing), len(cells) - len(missing), len(cells), study, name)
+
+
+def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:
+    with progress(name, total) as advance:
+        advance(done)
+        for cell, rows, spoiled in results:
+            study.keep(cell, rows, spoiled)
+            done += 1
+            advance(done)
+
+
+def _simulate(experiment: Experiment, cells: list[Cell], setting: Setting, study: Study, scheduler: str | None) -> None:
+    simulate = experiment.simulate
+    assert simulate is not None
+    name = simulate.__module__.rpartition(".")[2]
+    if scheduler is None:
+        _do(cells, study, lambda cell: (simulate(cell, setting), []), name)
+        return
+    from host.experiments.cluster import spread
+
+    missing = [cell for cell in cells if cell not in study]
+    results: Iterator[Result] = ((cell, rows, []) for cell, rows in spread(scheduler, simulate, missing, setting))
+    _keep(results, len(cells) - len(missing), len(cells), study, name)
+
+
+@contextmanager
+def _robots(
+    experiment: Experiment, uri: str, setting: Setting, token: str | None, logs: Path, say: Callable[[str], None]
+) -> Iterator[Work]:
+    """Yields what does a cell on a robot: a simulated one of its own for each, or the one that there is, which is stopped in the end."""
+    logs.mkdir(exist_ok=True)
+    if sim_options(uri) is None:
+        with connect(uri, token=token) as robot:
+            robot.on_trouble = say
+            try:
+                yield lambda cell: _patient(experiment, cell, robot, setting, logs, say)
+            finally:
+                robot.stop()
+        return
+
+    def alone(cell: Cell) -> Outcome:
+        with connect(_in_world(uri, experiment.world(cell)), setting.seed_of(cell)) as robot:
+            return _trial(experiment, cell, robot, setting, logs), []
+
+    yield alone
+
+
+def _in_world(uri: str, world: dict[str, str]) -> str:
+    options = {**(sim_options(uri) or {}), **world}
+    return SIM + ("?" + urlencode(options) if options else "")
+
+
+def _trial(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path) -> list[Row]:
+    """One try of a cell, with its raw log, which a cell's next try replaces."""
+    path = logs / f"{_digest(cell)}.mcap"
+    path.unlink(missing_ok=True)
+    if robot.status()["state"] != "running":
+        robot.start()
+    info = {**robot.info(), "cell": cell}
+    log = Log(info)
+    with McapTap(path, info) as file:
+        robot.add_tap(file)
+        robot.add_tap(log)
+        try:
+            return experiment.trial(cell, robot, log, setting)
+        finally:
+            robot.remove_tap(log)
+            robot.remove_tap(file)
+
+
+def _patient(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path, say: Callable[[str], None]) -> Outcome:
+    """A cell on a real robot. A try into which a fault, a stop or a broken link came does not count; its reason is kept."""
+    spoiled: list[str] = []
+    while True:
+        try:
+            return _trial(experiment, cell, robot, setting, logs), spoiled
+        except (RobotFault, NotDone) as error:
+            spoiled.append(error.message)
+            if len(spoiled) >= TRIES:
+                raise
+            say(f"this try does not count: {error.message}; trying again")
+            robot.wait(PAUSE_S)
+            if robot.status()["state"] == "fault":
+                robot.clear()
+        except NoLink as error:
+            raise NoLink(error.message, error.hint or "mend the link, and run the same command again") from error
+
+
+def _summary(
+    name: str, experiment: Experiment, cells: list[Cell], setting: Setting, study: Study, settings: dict[str, Any]
+) -> dict[str, Any]:
+    rows = study.rows(cells)
+    findings = experiment.report(rows, setting)
+    draw = importlib.import_module("host.figures." + name.replace("-", "_")).draw
+    figures = study.write_figure(name, draw(rows, findings))
+    logs = study.folder / "logs"
+    summary = {
+        **settings,
+        "claims": [claim.as_dict() for claim in findings.claims],
+        "numbers": findings.numbers,
+        "trials": len(rows),
+        "spoiled": study.spoiled(),
+        "folder": str(study.folder),
+        "table": str(study.write_table(name, rows)),
+        "figures": [str(path) for path in figures],
+        "files": [str(study.write(file, text)) for file, text in findings.files.items()],
+        "logs": str(logs) if logs.exists() else None,
+    }
+    study.write("summary.json", json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    return summary

@@ -1,0 +1,62 @@
+"""Reliability of kicks against their length, with Wilson intervals, and how long the reversed wheels took to settle."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from host.experiments.experiment import Findings, Row
+from host.experiments.reliability import LENGTHS, points, rate
+from host.experiments.statistics import wilson
+from host.figures.style import COLOURS, SIZE, styled
+from robot.kicks import MEMBRANE, PHASE, POSITION
+
+_CURVES: tuple[tuple[str, str, bool | None], ...] = (
+    ("position inverted", POSITION, None),
+    ("phase shift of the named sign", PHASE, True),
+    ("phase shift of the other sign", PHASE, False),
+)
+_MARKERS = "os^"
+
+
+def draw(rows: list[Row], findings: Findings) -> Figure:
+    """The figure of the experiment's rows."""
+    with styled():
+        figure = Figure(**SIZE)
+        rates, times = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        for index, (label, mode, named) in enumerate(_CURVES):
+            _draw_rate(rates, rows, index, label, mode, named)
+        done, tried = rate(points(rows, MEMBRANE, 1))
+        rates.axhline(100 * done / tried, color="black", linestyle=":", label="membrane inverted (one tick)")
+        rates.set_ylabel("reversed (%)")
+        rates.set_ylim(-4, 104)
+        rates.legend(loc="center", fontsize=11)
+        for index, (_, mode, named) in enumerate(_CURVES):
+            _draw_times(times, rows, index, mode, named)
+        times.set_ylabel("settling time (s)\nof the reversed")
+        times.set_xlabel("length of the kick (ticks)")
+        times.set_xticks(LENGTHS)
+        times.set_ylim(bottom=0)
+        trials = max(len(points(rows, mode, ticks, named)) for _, mode, named in _CURVES for ticks in LENGTHS)
+        figure.suptitle(f"Which kicks reverse a wheel: {trials} trials a point, with 95 % intervals", fontsize=16)
+    return figure
+
+
+def _draw_rate(axes: Axes, rows: list[Row], index: int, label: str, mode: str, named: bool | None) -> None:
+    counts = [rate(points(rows, mode, ticks, named)) for ticks in LENGTHS]
+    shares = np.array([100 * done / tried if tried else np.nan for done, tried in counts])
+    low, high = (np.array(bounds) * 100 for bounds in zip(*(wilson(*count) for count in counts), strict=True))
+    errors = np.abs([shares - low, high - shares])
+    place = np.array(LENGTHS) + 0.08 * (index - 1)
+    axes.errorbar(place, shares, errors, color=COLOURS[index], marker=_MARKERS[index], capsize=4, label=label)
+
+
+def _draw_times(axes: Axes, rows: list[Row], index: int, mode: str, named: bool | None) -> None:
+    """Median and quartiles."""
+    for ticks in LENGTHS:
+        times = [row["settling_s"] for row in points(rows, mode, ticks, named) if row["reversed"] and row["settling_s"] is not None]
+        if times:
+            low, median, high = np.quantile(times, (0.25, 0.5, 0.75))
+            bars = [[median - low], [high - median]]
+            axes.errorbar(ticks + 0.08 * (index - 1), median, bars, color=COLOURS[index], marker=_MARKERS[index], capsize=4)
