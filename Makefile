@@ -12,7 +12,7 @@ MUTANTS := build/mutants
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-py35 lint bench bench-arm faults soak mutants lock clean
+.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm faults soak mutants lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 11
@@ -22,6 +22,9 @@ setup: $(STAMP) ## make .venv with the locked dependencies and kickctl in it
 
 demo: $(STAMP) ## watch the simulated robot being kicked
 	$(BIN)/kickctl demo
+
+reproduce: $(STAMP) ## measure all of the paper's claims about the robot on the simulated one, and write a report
+	$(BIN)/kickctl reproduce
 
 test: $(STAMP) ## run the tests
 	$(BIN)/python -m pytest tests --ignore=tests/lint

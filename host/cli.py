@@ -31,6 +31,7 @@ VERBS = (
     "doctor",
     "discover",
     "experiment",
+    "reproduce",
 )
 
 _EPILOG = """\

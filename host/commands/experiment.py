@@ -1,7 +1,6 @@
 """kickctl experiment."""
 
 import argparse
-from pathlib import Path
 
 from host.experiments.table import TABLE
 from host.options import common
@@ -18,7 +17,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         for option in entry.options:
             flag = "--" + option.name.replace("_", "-")
             own.add_argument(flag, type=type(option.default), default=option.default, help=f"{option.doc} (default %(default)s)")
-        own.add_argument("--out", type=Path, metavar="FOLDER", help="where results go; the same command goes on where it was cut short")
+        own.add_argument(
+            "--out",
+            default="results",
+            metavar="FOLDER",
+            help="where results go; the same command goes on where it was cut short (default %(default)s)",
+        )
         own.add_argument("--scheduler", metavar="ADDRESS", help="spread the simulations over this Dask cluster, as tcp://host:8786")
 
 

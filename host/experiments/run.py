@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import json
+import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,9 +14,9 @@ from urllib.parse import urlencode
 from host.client import Robot, connect
 from host.errors import KickctlError, NoLink, NotDone, RobotFault, WrongUse
 from host.experiments.experiment import Cell, Experiment, Row, Setting
-from host.experiments.study import Study
+from host.experiments.study import Study, digest
 from host.experiments.table import checked, load
-from host.links import SIM, sim_options
+from host.links import SIM, make_link, sim_options
 from host.log import Log
 from host.progress import progress
 from host.recording import McapTap
@@ -39,20 +39,21 @@ def perform(
     seed: int | None = None,
     *,
     token: str | None = None,
-    out: str | Path | None = None,
+    out: str | Path = RESULTS,
     scheduler: str | None = None,
     say: Callable[[str], None] = lambda words: None,
     **arguments: float,
 ) -> dict[str, Any]:
     """Run an experiment, or the rest of one that was cut short, and return its summary, which also stands in its folder.
 
-    uri, token: as `connect` takes them; seed: of all chances, also those of a simulated robot. out: the folder; by default one below
-    ./results that belongs to exactly these arguments. scheduler: address of a Dask scheduler for the compiled batch. arguments: the
+    uri, token: as `connect` takes them; seed: of all chances, also those of a simulated robot. out: below which folder; what belongs to
+    exactly these arguments has one of its own there. scheduler: address of a Dask scheduler for the compiled batch. arguments: the
     experiment's own options. Raises KickctlError; what was measured until then is kept.
     """
     options = checked(name, arguments)
     experiment = load(name)
-    uri = uri or SIM
+    uri = uri or os.environ.get("KICK_BRICK") or SIM
+    make_link(uri)  # raises, in words, if that is no robot's address
     seed = DEFAULT_SEED if seed is None else seed
     simulated = sim_options(uri)
     batch = simulated is not None and experiment.simulate is not None
@@ -63,7 +64,7 @@ def perform(
         battery_v = float(simulated["battery"]) if "battery" in simulated else None
         setting = Setting(seed, options, simulated.get("motor", setting.motor), battery_v)
     settings = {"experiment": name, "brick": uri, "seed": seed, "options": options, "version": __version__}
-    study = Study(Path(out) if out else RESULTS / f"{name}-{_digest(settings)}", settings)
+    study = Study(Path(out), settings)
     cells = experiment.cells(options, batch=batch)
     say(f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in {study.folder}")
     try:
@@ -78,10 +79,6 @@ def perform(
         raise
     finally:
         study.close()
-
-
-def _digest(settings: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()[:8]
 
 
 def _do(cells: list[Cell], study: Study, work: Work, name: str) -> None:
@@ -141,7 +138,7 @@ def _in_world(uri: str, world: dict[str, str]) -> str:
 
 def _trial(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path) -> list[Row]:
     """One try of a cell, with its raw log, which a cell's next try replaces."""
-    path = logs / f"{_digest(cell)}.mcap"
+    path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
     if robot.status()["state"] != "running":
         robot.start()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import fcntl
+import hashlib
 import json
 import os
 from pathlib import Path
@@ -14,7 +16,7 @@ from host.experiments.experiment import Cell, Row
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_SETTINGS, _CELLS = "settings.json", "cells.jsonl"
+_CELLS = "cells.jsonl"
 
 
 class Done(NamedTuple):
@@ -25,34 +27,43 @@ class Done(NamedTuple):
 
 
 class Study:
-    """The folder of one run, made if it is not there.
+    """A run's folder below `results`, made if it is not there. Its name has a digest of all settings, which are plain data.
 
-    settings: plain data; a folder with other settings is another run's. Raises WrongUse then.
+    Raises WrongUse if the folder cannot be used.
     """
 
-    def __init__(self, folder: Path, settings: dict[str, Any]) -> None:
-        self.folder = folder
+    def __init__(self, results: Path, settings: dict[str, Any]) -> None:
+        self.folder = folder = results / f"{settings['experiment']}-{digest(settings)}"
         self._done: dict[str, Done] = {}
-        folder.mkdir(parents=True, exist_ok=True)
-        own = folder / _SETTINGS
-        if not own.exists():
-            own.write_text(json.dumps(settings, indent=1) + "\n", encoding="utf-8")
-        elif json.loads(own.read_text(encoding="utf-8")) != settings:
-            raise WrongUse(f"{folder} holds the results of another run (see {own})", "name another folder with --out")
-        self._read()
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._journal = (folder / _CELLS).open("a+b")
+        except OSError as error:
+            raise WrongUse(f"{folder} cannot hold results: {error.strerror}", "name a folder with --out that you may write to") from error
+        try:
+            fcntl.flock(self._journal, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self.write("settings.json", json.dumps(settings, indent=1) + "\n")
+            self._read()
+        except BlockingIOError:
+            self.close()
+            raise WrongUse(f"another run works in {folder} at this moment", "wait for it, or name another folder with --out") from None
+        except WrongUse:
+            self.close()
+            raise
 
     def _read(self) -> None:
         """Take in what was kept; a last line that was cut short was not."""
-        journal = self.folder / _CELLS
+        self._journal.seek(0)
         whole = 0
-        if journal.exists():
-            for line in journal.read_bytes().splitlines(keepends=True):
-                if not line.endswith(b"\n"):
-                    break
+        for line in self._journal:
+            if not line.endswith(b"\n"):
+                break
+            try:
                 entry = json.loads(line)
                 self._done[_key(entry["cell"])] = Done(entry["rows"], entry["spoiled"])
-                whole += len(line)
-        self._journal = journal.open("ab")
+            except (ValueError, KeyError, TypeError) as error:
+                raise WrongUse(f"{self.folder / _CELLS} is damaged", "name another folder with --out, or delete this one") from error
+            whole += len(line)
         self._journal.truncate(whole)
 
     def __contains__(self, cell: Cell) -> bool:
@@ -103,6 +114,11 @@ class Study:
         path = self.folder / name
         path.write_text(text, encoding="utf-8")
         return path
+
+
+def digest(data: dict[str, Any]) -> str:
+    """A short name for plain data: eight letters, other ones for other data."""
+    return hashlib.sha256(_key(data).encode()).hexdigest()[:8]
 
 
 def _key(cell: Cell) -> str:

@@ -22,24 +22,28 @@ class Option(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """An experiment, for people."""
+    """An experiment, for people. claims: ids of the paper's claims that are settled here (others may be touched)."""
 
     help: str
     options: tuple[Option, ...]
+    claims: tuple[str, ...] = ()
 
 
 TABLE = {
     "primitives": Entry(
         "all motion primitives from each other by kicks, stopped and back: success rates and times, speed, duty, torque",
         (Option("trials", 10, 1, 1000, "tries of each transition"),),
+        ("R1", "R2", "R3", "R4", "R7"),
     ),
     "timeline": Entry(
         "the three kicks one after the other: potentials, torque, settling, and the phase slip between the wheels",
         (Option("trials", 20, 1, 10000, "rounds of the three kicks"),),
+        ("R11", "R12"),
     ),
     "reliability": Entry(
         "how surely kicks of 1 to 10 ticks reverse a wheel: position and phase, both signs, and membrane",
         (Option("trials", 50, 1, 100000, "kicks at each point"),),
+        ("R8", "R9", "R10"),
     ),
     "kick-map": Entry(
         "success against the kick's length and the wheel's phase when it comes: where the basin lies",
@@ -48,14 +52,17 @@ TABLE = {
     "bifurcation": Entry(
         "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable branch between",
         (Option("points", 33, 5, 1000, "values of k in each sweep"),),
+        ("R5", "R6"),
     ),
     "wall": Entry(
         "a robot between two walls at k = 2, which reverses by itself; grip, wall stiffness and k varied",
         (Option("bounces", 50, 1, 10000, "bounces to count"),),
+        ("R13",),
     ),
     "chaos": Entry(
         "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and where motor latency and inertia make it chaotic",
         (Option("minutes", 10.0, 0.5, 600.0, "length of the series"),),
+        ("R14",),
     ),
     "calibrate": Entry(
         "identifies this robot's motor from logs and writes it for sim://?motor=mine",

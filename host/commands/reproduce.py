@@ -1,0 +1,43 @@
+"""kickctl reproduce."""
+
+import argparse
+from typing import TYPE_CHECKING
+
+from host.terminal import say, show
+
+if TYPE_CHECKING:
+    from host.claims import Claim
+
+HELP = "all of the paper's claims about the robot, measured: a table and a report with figures"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Which claims, and where to."""
+    parser.add_argument("--only", metavar="IDS", help="only these claims, as R5,R6")
+    parser.add_argument("--out", default="results", metavar="FOLDER", help="where results go (default %(default)s)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure and report; whether the claims hold is what the report says, not the exit status."""
+    from host.experiments.reproduce import reproduce
+
+    only = [number.strip().upper() for number in options.only.split(",")] if options.only else []
+    done = reproduce(options.brick, options.seed, only, token=options.token, out=options.out, say=say)
+    if options.json:
+        show([claim.as_dict() for claim in done.claims])
+    else:
+        _print(done.claims, done.skipped)
+        print(f"report {done.page}")
+    return 0
+
+
+def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("", "claim", "paper", "measured", "", "note", show_lines=True)
+    for claim in claims:
+        table.add_row(claim.id, claim.claim, claim.paper, claim.number(), "holds" if claim.holds else "DOES NOT HOLD", claim.note)
+    for number, reason in skipped.items():
+        table.add_row(number, "", "", "", "not tried", reason)
+    Console().print(table)

@@ -1,0 +1,75 @@
+"""The report of a reproduction: one HTML file with the table of claims and, inside it, every experiment's figure."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from host.claims import Claim
+
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+table { border-collapse: collapse; width: 100%; }
+th, td { text-align: left; vertical-align: top; padding: 0.4rem 0.8rem 0.4rem 0; border-bottom: 1px solid #ccc; }
+.holds { color: #00694d; font-weight: bold; }
+.fails { color: #b04000; font-weight: bold; }
+img { max-width: 100%; }
+dt { font-weight: bold; }
+"""
+
+
+def write(path: Path, claims: Sequence[Claim], summaries: Sequence[dict[str, Any]], skipped: dict[str, str]) -> Path:
+    """Write the file. summaries: of the experiments, as host.experiments.run.perform returns them; skipped: why a claim was not tried."""
+    first = summaries[0] if summaries else {"brick": "none", "seed": "none", "version": ""}
+    facts = {"robot": first["brick"], "seed": first["seed"], "kickctl": first["version"]}
+    body = "".join(f"<dt>{escape(name)}</dt><dd>{escape(str(value))}</dd>" for name, value in facts.items())
+    parts = [
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Kick control: the paper\'s claims, measured</title>\n',
+        f"<style>{_STYLE}</style>\n</head>\n<body>\n<h1>Kick control: the paper's claims, measured</h1>\n",
+        "<p>Claims of S&aacute;ndor et al., <i>Kick control: using the attracting states arising within the sensorimotor loop of",
+        " self-organized robots as motor primitives</i>, Front. Neurorobot. 12:40 (2018).",
+        " Intervals hold with a confidence of 95&nbsp;%.</p>\n",
+        f"<dl>{body}</dl>\n{_table(claims, skipped)}",
+        *(_experiment(summary) for summary in summaries),
+        "</body>\n</html>\n",
+    ]
+    path.write_text("".join(parts), encoding="utf-8")
+    return path
+
+
+def _table(claims: Sequence[Claim], skipped: dict[str, str]) -> str:
+    rows = [
+        _row(
+            claim.id,
+            claim.claim,
+            claim.paper,
+            claim.number(),
+            '<span class="holds">holds</span>' if claim.holds else '<span class="fails">does not hold</span>',
+            claim.note,
+        )
+        for claim in claims
+    ]
+    rows += [_row(number, "", "", "", "not tried", reason) for number, reason in skipped.items()]
+    head = "".join(f"<th>{name}</th>" for name in ("", "claim", "paper", "measured", "", "note"))
+    return f"<table>\n<tr>{head}</tr>\n{''.join(rows)}</table>\n"
+
+
+def _row(number: str, claim: str, paper: str, measured: str, verdict: str, note: str) -> str:
+    """verdict is HTML, all else text."""
+    cells = [escape(number), escape(claim), escape(paper), escape(measured), verdict, escape(note)]
+    return "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>\n"
+
+
+def _experiment(summary: dict[str, Any]) -> str:
+    figure = base64.b64encode(Path(summary["figures"][0]).read_bytes()).decode()
+    name = escape(summary["experiment"])
+    options = ", ".join(f"{key} {value}" for key, value in summary["options"].items())
+    spoiled = f"; {len(summary['spoiled'])} tries did not count" if summary["spoiled"] else ""
+    return (
+        f"<h2>{name}</h2>\n<p>{summary['trials']} rows ({escape(options)}){spoiled}; table, logs and summary in"
+        f" <code>{escape(summary['folder'])}</code></p>\n"
+        f'<img alt="figure of the experiment {name}" src="data:image/png;base64,{figure}">\n'
+    )

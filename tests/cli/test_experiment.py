@@ -1,0 +1,208 @@
+"""Experiments run, resumed and broken off: with a small one of their own on real robots, and with `reliability` on the simulated one."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import types
+from pathlib import Path
+
+import pytest
+
+from host.claims import Claim
+from host.errors import NoLink, RobotFault
+from host.experiments import run, table
+from host.experiments.experiment import Findings
+from host.experiments.run import perform
+from tests.cli.test_desk import desk_robot
+
+ROOT = Path(__file__).resolve().parents[2]
+COUNT = 6
+
+
+class Toy:
+    """An experiment whose cells are numbers; `trouble` comes before a cell, once for each entry."""
+
+    simulate = None
+
+    def __init__(self):
+        self.trouble = {}
+        self.done = []
+
+    def cells(self, options, *, batch):
+        return [{"number": number} for number in range(options["cells"])]
+
+    def world(self, cell):
+        return {}
+
+    def trial(self, cell, robot, log, setting):
+        if self.trouble.get(cell["number"]):
+            raise self.trouble[cell["number"]].pop(0)
+        robot.wait(0.1)
+        self.done.append(cell["number"])
+        return [{"chance": setting.seed_of(cell), "ticks": len(log) > 0, "state": log.records[-1].state}]
+
+    def report(self, rows, setting):
+        claim = Claim("R1", "rows come", "all", len(rows), "1", None, len(rows) == setting.options["cells"])
+        return Findings([claim], {"sum": sum(row["chance"] for row in rows)}, {"note.txt": "kept"})
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    from matplotlib.figure import Figure
+
+    made = Toy()
+    monkeypatch.setitem(table.TABLE, "toy", table.Entry("a toy", (table.Option("cells", COUNT, 1, 100, "how many"),), ("R1",)))
+    monkeypatch.setattr(run, "load", lambda name: made)
+    monkeypatch.setattr(run, "PAUSE_S", 0.1)
+    monkeypatch.setitem(sys.modules, "host.figures.toy", types.SimpleNamespace(draw=lambda rows, findings: Figure()))
+    return made
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """The URI and the process of a robot on the desk, whose token this host has."""
+    monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "token"))
+    with desk_robot(tmp_path) as (uri, process):
+        yield uri, process
+
+
+def results(folder):
+    """What every file holds that a run leaves behind, its raw logs apart."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.suffix != ".svg"}
+
+
+@pytest.mark.parametrize("cut", range(COUNT))
+def test_a_run_that_was_interrupted_anywhere_comes_to_the_same(toy, tmp_path, cut):
+    whole = perform("toy", "sim://", out=tmp_path / "whole")
+    toy.trouble = {cut: [KeyboardInterrupt()]}
+    said = []
+    with pytest.raises(KeyboardInterrupt):
+        perform("toy", "sim://", out=tmp_path / "cut", say=said.append)
+    assert f"{cut} of {COUNT} pieces are kept" in said[-1]
+    toy.done.clear()
+    resumed = perform("toy", "sim://", out=tmp_path / "cut")
+    assert toy.done == list(range(cut, COUNT))
+    assert resumed["numbers"] == whole["numbers"]
+    one, other = (results(Path(summary["folder"])) for summary in (whole, resumed))
+    del one["summary.json"], other["summary.json"]  # they name their folders
+    assert one == other
+
+
+def test_a_killed_process_goes_on_where_it_was(tmp_path):
+    """Killed in the middle of its work, the result is that of a run that was not."""
+    command = [sys.executable, "-m", "host", "--json", "experiment", "reliability", "--trials", "3"]
+    folder = tmp_path / "killed"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen([*command, "--out", str(folder)], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL) as process:
+        while process.poll() is None and not size(folder):
+            time.sleep(0.001)
+        process.send_signal(signal.SIGKILL)
+    assert process.returncode == -signal.SIGKILL
+    outcomes = []
+    for out in (folder, tmp_path / "whole"):
+        done = subprocess.run([*command, "--out", str(out)], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode in (0, 1), done.stderr
+        outcomes.append(json.loads(done.stdout))
+    assert outcomes[0]["numbers"] == outcomes[1]["numbers"]
+    assert Path(outcomes[0]["table"]).read_bytes() == Path(outcomes[1]["table"]).read_bytes()
+
+
+def size(folder):
+    return sum(path.stat().st_size for path in folder.glob("*/cells.jsonl"))
+
+
+def test_reliability_ends_with_its_claims_and_files(kickctl):
+    status, out, err = kickctl("experiment", "reliability", "--trials", "20", "--json")
+    summary = json.loads(out)
+    assert status == 0, err
+    assert [claim["id"] for claim in summary["claims"]] == ["R8", "R9", "R10", "R11"]
+    assert all(claim["holds"] for claim in summary["claims"])
+    assert summary["seed"] == 1
+    rows = Path(summary["table"]).read_text().splitlines()
+    assert len(rows) == 1 + summary["trials"] == 1 + 31 * 2 * 20
+    assert all(Path(figure).stat().st_size > 10000 for figure in summary["figures"])
+    assert json.loads((Path(summary["folder"]) / "summary.json").read_text()) == summary
+    status, out, err = kickctl("experiment", "reliability", "--trials", "20")
+    assert "31 of 31 pieces are done" in err
+    assert "R9 holds" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (("experiment", "reliability", "--trials", "0"), 2, "trials cannot be 0"),
+        (("experiment", "reliability", "--trials", "many"), 2, "invalid int"),
+        (("experiment", "reliabilty"), 2, "invalid choice"),
+        (("experiment", "reliability", "--brick", "ftp://x"), 2, "no address of a robot"),
+        (("experiment", "reliability", "--brick", "sim://?motor=none"), 2, "none"),
+        (("experiment", "reliability", "--brick", "sim://?battery=much"), 2, "cannot be simulated"),
+        (("experiment", "reliability", "--brick", "tcp://127.0.0.1:1"), 3, "no robot's program runs"),
+        (("experiment", "reliability", "--brick", "tcp://127.0.0.1:1", "--scheduler", "tcp://127.0.0.1:2"), 2, "--scheduler"),
+        (("reproduce", "--only", "R99"), 2, "there is no claim R99"),
+    ],
+)
+def test_wrong_use_is_told_in_words(kickctl, arguments, status, words):
+    done, _, err = kickctl(*arguments)
+    assert done == status
+    assert words in err
+    assert "Traceback" not in err
+
+
+def test_on_a_robot_a_try_into_which_a_fault_came_is_repeated_and_counted_apart(toy, desk, tmp_path):
+    toy.trouble = {2: [RobotFault("its cable came off"), RobotFault("its cable came off")]}
+    summary = perform("toy", desk[0], out=tmp_path)
+    assert summary["spoiled"] == ["its cable came off"] * 2
+    assert summary["trials"] == COUNT
+    assert toy.done == list(range(COUNT))
+    assert len(list(Path(summary["logs"]).glob("*.mcap"))) == COUNT
+
+
+def test_a_robot_that_stays_in_fault_ends_the_run_and_keeps_what_was_measured(toy, desk, tmp_path):
+    toy.trouble = {2: [RobotFault("its cable came off")] * run.TRIES}
+    said = []
+    with pytest.raises(RobotFault):
+        perform("toy", desk[0], out=tmp_path, say=said.append)
+    assert f"2 of {COUNT} pieces are kept" in said[-1]
+    assert perform("toy", desk[0], out=tmp_path)["trials"] == COUNT
+
+
+def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(toy, desk, tmp_path, monkeypatch):
+    monkeypatch.setattr("host.client.RECONNECT_S", 0.5)
+    uri, process = desk
+    real = toy.trial
+
+    def trial(cell, robot, log, setting):
+        if cell["number"] == 3:
+            process.kill()
+            process.wait()
+        return real(cell, robot, log, setting)
+
+    toy.trial = trial
+    said = []
+    with pytest.raises(NoLink, match="did not come back"):
+        perform("toy", uri, out=tmp_path, say=said.append)
+    assert f"3 of {COUNT} pieces are kept" in said[-1]
+
+
+def test_after_an_experiment_the_robot_stands_still(toy, desk, tmp_path):
+    from host.client import connect
+
+    perform("toy", desk[0], out=tmp_path)
+    with connect(desk[0]) as robot:
+        assert robot.status()["state"] == "stopped"
+
+
+def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
+    status, out, _ = kickctl("reproduce", "--only", "r8,R10", "--json")
+    claims = json.loads(out)
+    assert status == 0
+    assert [claim["id"] for claim in claims] == ["R8", "R10"]
+    assert set(claims[0]) == {"id", "claim", "paper", "measured", "unit", "interval", "holds", "note"}
+    page = Path("results/report.html").read_text()
+    assert page.count("<img") == page.count("data:image/png;base64,") == 1
+    assert "http" not in page
+    for claim in claims:
+        assert f"<td>{claim['id']}</td>" in page
