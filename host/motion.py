@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -11,15 +11,12 @@ from numpy.typing import NDArray
 
 from host.log import Log
 from robot.kicks import DIRECTION_TICKS, direction
+from sim_motor.settling import BAND, COUNT_RAD, ROUNDING, WINDOW_S
+from sim_motor.settling import settling_s as rule
 
 HEADINGS = {1: "forward", -1: "backward", 0: "stopped"}
 
-WINDOW_S = 0.5
-BAND = 0.1
 PAUSE = 0.5
-COUNT_RAD = pi / 180  # one step of the encoder
-_HALF_SPAN = 2  # a speed is measured over the two ticks before and the two after
-_ROUNDING = 1e-9
 
 
 def heading_of(phi: Sequence[float]) -> str:
@@ -63,22 +60,22 @@ def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
     or hurry for a quarter of the time, so that its travel there differs from the mean by more than PAUSE of it.
     """
     times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
-    if len(times) < 2 or times[-1] - times[0] < 2 * WINDOW_S - _ROUNDING:
+    if len(times) < 2 or times[-1] - times[0] < 2 * WINDOW_S - ROUNDING:
         return False
     begin = times[-1] - 2 * WINDOW_S
     start, middle, end = np.interp([begin, begin + WINDOW_S, times[-1]], times, angles)
     inner = np.concatenate([[start], angles[times > begin]])
-    if np.ptp(inner) <= COUNT_RAD + _ROUNDING:
+    if np.ptp(inner) <= COUNT_RAD + ROUNDING:
         return True
     before, last = middle - start, end - middle
     turned_back = (np.abs(np.diff(inner)).sum() - abs(end - start)) / 2
-    if before * last <= 0 or turned_back > COUNT_RAD + _ROUNDING:
+    if before * last <= 0 or turned_back > COUNT_RAD + ROUNDING:
         return False
     quarters = np.diff(np.interp(np.linspace(begin, times[-1], 5), times, angles))
     if np.abs(quarters - quarters.mean()).max() > PAUSE * abs(quarters.mean()) + COUNT_RAD:
         return False
     allowed = max(BAND * max(abs(before), abs(last)), 2 * COUNT_RAD)
-    return bool(abs(last - before) <= allowed + _ROUNDING)
+    return bool(abs(last - before) <= allowed + ROUNDING)
 
 
 def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
@@ -88,24 +85,9 @@ def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
 
 
 def settling_of(phi: Sequence[float] | NDArray[Any], t: Sequence[float] | NDArray[Any], begin_s: float) -> float | None:
-    """How long after begin_s, when a kick began, a wheel had settled: a time in s, or None if it has not by the end of the data.
+    """How long after begin_s (s) a wheel with the angles phi (rad) at the times t (s) had settled, by the rule of sim_motor.settling.
 
-    phi (rad), t (s): one value a tick, some of them from before the kick. The final speed is the mean over the last WINDOW_S. The
-    wheel has settled at the first tick from which on its speed, measured over five ticks around each, stays within BAND of the
-    final speed (or within what one count of the encoder makes over five ticks) until the end, which must be WINDOW_S away.
+    None if it has not by the end of the data.
     """
-    times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
-    if len(times) <= 2 * _HALF_SPAN or times[-1] - begin_s < WINDOW_S:
-        return None
-    final = (angles[-1] - np.interp(times[-1] - WINDOW_S, times, angles)) / WINDOW_S
-    span = times[2 * _HALF_SPAN :] - times[: -2 * _HALF_SPAN]
-    speed = (angles[2 * _HALF_SPAN :] - angles[: -2 * _HALF_SPAN]) / span
-    when = times[_HALF_SPAN:-_HALF_SPAN]
-    outside = np.abs(speed - final) > np.maximum(BAND * abs(final), COUNT_RAD / span) + _ROUNDING
-    late = np.flatnonzero(outside & (when >= begin_s))
-    if not len(late):
-        return 0.0
-    settled_at = int(late[-1]) + 1
-    if settled_at >= len(when) or times[-1] - when[settled_at] < WINDOW_S:
-        return None
-    return float(when[settled_at] - begin_s)
+    found = rule(np.asarray(phi, dtype=float).tolist(), np.asarray(t, dtype=float).tolist(), begin_s)
+    return None if isnan(found) else found

@@ -19,16 +19,16 @@ from robot.safety import limit_duty
 from sim_motor.brick import lateness_s
 from sim_motor.compiled import assembled, assembled_parallel, compiled, prange
 from sim_motor.motor import ANGLE, LAST_ANGLE, SUBSTEP_S, Array, Constants, advance, encoder, load, substep_at, substep_from
+from sim_motor.settling import settling_s
 
 _actual_positions, _step_wheel, _limit_duty = compiled(actual_positions), compiled(step_wheel), compiled(limit_duty)
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
+_settling_s = compiled(settling_s)
 _invert_membrane, _jump = compiled(kicks.invert_membrane), compiled(kicks.jump)
 _seen_positions, _pulse_weight, _pulsed = compiled(kicks.seen_positions), compiled(kicks.pulse_weight), compiled(kicks.pulsed)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
 NO_KICK, FROZEN_MEMBRANE, FROZEN_JUMP_1, FROZEN_JUMP_2, QUENCHED = range(5)
-# A wheel has settled when its speed, over DIRECTION_TICKS ticks, stays within this part of what it is in the end.
-SETTLED_WITHIN = 0.1
 ParamNumbers = tuple[float, float, float, int, float, float]
 KickNumbers = tuple[int, int, int, int, bool, float]
 PHASE_SHIFT = nan  # a kick's value that stands for: the shift that turns this wheel around
@@ -46,9 +46,9 @@ class Start:
 class Result:
     """What became of the wheels.
 
-    before, after: each wheel's direction when the kick began, and in the end. settled_s: from the kick's first tick until the
-    wheel's speed has settled, NaN if it has not. times: when ticks began, (1 or wheels, ticks). records: CHANNELS of each tick of
-    the wheels that were recorded, (wheels, ticks, channels).
+    before, after: each wheel's direction when the kick began, and in the end. settled_s: how long after the kick's first tick the
+    wheel had settled, as sim_motor.settling has it, NaN if it has not. times: when ticks began, (1 or wheels, ticks). records: CHANNELS
+    of each tick of the wheels that were recorded, (wheels, ticks, channels).
     """
 
     before: NDArray[np.int64]
@@ -215,22 +215,6 @@ def _travel(phis: Array, tick: int) -> float:
     return travel
 
 
-@assembled
-def _settling_s(phis: Array, times: Array, begin: int) -> float:
-    """Time (s) from tick `begin` on after which the speed over any DIRECTION_TICKS ticks is within SETTLED_WITHIN of the last."""
-    last = len(times) - 1
-    final = _travel(phis, last) / (times[last] - times[last - DIRECTION_TICKS])
-    tick = last
-    while tick - DIRECTION_TICKS >= begin:
-        speed = _travel(phis, tick) / (times[tick] - times[tick - DIRECTION_TICKS])
-        if abs(speed - final) > SETTLED_WITHIN * abs(final):
-            break
-        tick -= 1
-    first = tick + 1 - DIRECTION_TICKS
-    settling_s: float = times[first] - times[begin] if last - first >= 2 * DIRECTION_TICKS else nan
-    return settling_s
-
-
 @assembled_parallel
 def _run_all(
     states: Array,
@@ -258,4 +242,4 @@ def _run_all(
         after[wheel] = _direction(_travel(phis, ticks - 1))
         if begin:
             before[wheel] = _direction(_travel(phis, begin - 1))
-            settled_s[wheel] = _settling_s(phis, when, begin)
+            settled_s[wheel] = _settling_s(phis, when, when[begin])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from host.motion import settling_of
 from robot import controller, kicks
 from robot.kicks import DIRECTION_TICKS, JUMP, MEMBRANE, PHASE, POSITION, PULSE_BETA, PULSE_SHIFT, WHEELS, Kick
 from robot.loop import Loop
@@ -103,9 +104,7 @@ def test_directions_and_settling_are_those_of_the_record():
         phi = result.records[wheel, :, 0]
         assert result.before[wheel] == kicks.direction(phi[149] - phi[149 - DIRECTION_TICKS])
         assert result.after[wheel] == kicks.direction(phi[-1] - phi[-1 - DIRECTION_TICKS])
-        speeds = (phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]) / (times[wheel, DIRECTION_TICKS:] - times[wheel, :-DIRECTION_TICKS])
-        unsettled = np.flatnonzero(np.abs(speeds - speeds[-1]) > batch.SETTLED_WITHIN * abs(speeds[-1]))
-        assert result.settled_s[wheel] == times[wheel, unsettled[-1] + 1] - times[wheel, 150]
+        assert result.settled_s[wheel] == settling_of(phi, times[wheel], times[wheel, 150])
         assert 0.1 < result.settled_s[wheel] < 2
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from host.log import Log
-from host.motion import COUNT_RAD, heading, heading_of, settled, settling_of, settling_s
+from host.motion import heading, heading_of, settled, settling_of, settling_s
 from robot.kicks import WHEELS
+from sim_motor.settling import COUNT_RAD
 from tests.fakes import Rig
 
 TICK_S = 0.03
