@@ -317,7 +317,10 @@ class Robot:
         until = self.link.now() + float(getattr(self.link, "answer_s", ANSWER_S))
         while not arrived():
             if self.link.now() > until:
-                raise NoLink(f"nothing that speaks this protocol answers at {self.link.uri}", "is it the robot's port?")
+                raise NoLink(
+                    f"nothing that speaks this protocol answers at {self.link.uri}",
+                    "is it the robot's port? If so, its program hangs, and its watchdog has stopped the motors",
+                )
             self._talk.feed(self.link.receive(HEARTBEAT_S))
             self._talk.raise_refusal()
 

@@ -1,6 +1,7 @@
 """The robot's program on the brick: python3 -m robot."""
 
 import os
+import socket
 import sys
 
 from robot.button import BackButton
@@ -14,17 +15,38 @@ from robot.watchdog import Watchdog
 EVERYWHERE = "0.0.0.0"  # noqa: S104
 
 
+PORTS = ("outA", "outB", "outC", "outD")
+
+
+def _claim(root):
+    """A socket whose name only one process at a time can have for the motors under `root`; None if another has it."""
+    claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        claim.bind("\0kickctl " + os.path.realpath(root)[-90:])
+    except OSError:
+        claim.close()
+        return None
+    return claim
+
+
 def main():
     """Run until interrupted. Returns the exit status."""
     arguments = parser("The robot's program on the brick.", host=EVERYWHERE)
-    arguments.add_argument("--left", default="outB", metavar="PORT", help="port of the left motor (default %(default)s)")
-    arguments.add_argument("--right", default="outC", metavar="PORT", help="port of the right motor (default %(default)s)")
+    arguments.add_argument("--left", default="outB", choices=PORTS, help="port of the left motor (default %(default)s)")
+    arguments.add_argument("--right", default="outC", choices=PORTS, help="port of the right motor (default %(default)s)")
     arguments.add_argument("--sysfs", default="/sys/class", metavar="FOLDER", help="where the kernel's devices are (default %(default)s)")
     options = arguments.parse_args()
+    if options.left == options.right:
+        arguments.error("both motors cannot be at {}".format(options.left))
     try:
         from robot.ev3 import Ev3Battery, Ev3Motor
     except ImportError as error:
         print("{}: the robot runs on ev3dev, which has python3-ev3dev2; elsewhere try python -m sim_motor".format(error), file=sys.stderr)
+        return 2
+    # Before anything of the motors is touched; the watchdog, a fork of this process, holds it for as long as it may have to stop them.
+    alone = _claim(options.sysfs)
+    if alone is None:
+        print("another robot's program drives the motors under {}: end that one first".format(options.sysfs), file=sys.stderr)
         return 2
     watchdog = Watchdog(options.sysfs)
     motors = (Ev3Motor("left", options.left, options.sysfs), Ev3Motor("right", options.right, options.sysfs))
@@ -40,7 +62,10 @@ def main():
         print("the battery cannot be watched: {}".format(error), file=sys.stderr)
         battery = None
     panels = (watchdog, Lights(options.sysfs), BackButton(), Notify(os.environ))
-    return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
+    try:
+        return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
+    finally:
+        alone.close()
 
 
 if __name__ == "__main__":

@@ -28,6 +28,10 @@ class Lights(object):
             self._state = state
             self._show(LEFT_AND_RIGHT[STATES[state]])
 
+    def alarm(self):
+        """Red, whatever was shown: the program is dead or hangs, and the watchdog has stopped the motors."""
+        self._show((RED, RED))
+
     def close(self):
         """Out: no program runs."""
         self._show((DARK, DARK))

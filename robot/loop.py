@@ -48,6 +48,7 @@ class Loop(object):
         self.lateness = [0] * (len(LATENESS_EDGES_S) + 1)
         self.missed = self.overruns = self.clamped = 0
         self.done = False
+        self.incurable = ""  # why no fault can be cleared while this program runs, if that is so
         self._power = Power(battery)
         self._random = random.Random(seed)
         self._sides = [Side(Wheel(name), motor, deque(maxlen=DIRECTION_TICKS + 1)) for name, motor in zip(WHEELS, motors)]
@@ -160,6 +161,10 @@ class Loop(object):
 
     def start(self):
         """Set the neurons to random potentials and run from the next tick on. Returns that tick. Raises Refused."""
+        self._power.read()
+        exhaustion = self._power.exhaustion()
+        if exhaustion:
+            raise Refused("state", exhaustion, "it would stop at once")
         self.safety.start()
         wheels = [side.wheel for side in self._sides]
         for wheel in wheels:
@@ -183,6 +188,8 @@ class Loop(object):
     def clear(self):
         """Leave a fault for the stopped state, once every motor is there. Returns the tick. Raises Refused."""
         if self.safety.state == FAULT:
+            if self.incurable:
+                raise Refused("fault", "the fault stays: " + self.incurable, "start the robot's program anew: it cannot mend this itself")
             for side in self._sides:
                 try:
                     side.motor.find()

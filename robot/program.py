@@ -23,6 +23,7 @@ def parser(description, host):
     made.add_argument("--token", default=token.default_path(), help="token file, made if there is none (default %(default)s)")
     made.add_argument("--seed", type=int, help="fixes the neurons' start values; random by default")
     made.add_argument("--idle", action="store_true", help="leave the motors off until told to start")
+    made.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a parameter to begin with; may be repeated")
     made.add_argument("--tick", type=float, metavar="S", help="control period in s")
     return made
 
@@ -39,31 +40,68 @@ def run(options, motors, battery, clock, seed, panels=()):
     """
     try:
         secret, new = token.load_or_make(options.token)
+        loop = Loop(motors, battery, clock, seed)
+        settings = _settings(options)
+        if settings:
+            loop.set_params(settings)
+        server = Server(loop, secret)
+        port = _listen(server, options)
+        if new:
+            print("made a new token: {}".format(options.token), file=sys.stderr)
+        try:
+            _serve(options, loop, server, port, panels)
+        finally:
+            server.close()
     except token.TokenError as error:
         return _give_up(str(error))
-    loop = Loop(motors, battery, clock, seed)
-    if options.tick is not None:
+    except Refused as refusal:
+        return _give_up("{}; {}".format(refusal.message, refusal.hint))
+    finally:
+        for panel in panels:
+            panel.close()
+    return 0
+
+
+def _settings(options):
+    """The parameters to begin with, by name. Raises Refused."""
+    settings = {}
+    for text in options.set:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise Refused("usage", "--set {} sets nothing".format(text), "it is --set NAME=VALUE, as --set polarity_left=-1")
         try:
-            loop.set_params({"tick_s": options.tick})
-        except Refused as refusal:
-            return _give_up("{}; {}".format(refusal.message, refusal.hint))
-    server = Server(loop, secret)
+            settings[name] = float(value)
+        except ValueError:
+            settings[name] = value
+    if options.tick is not None:
+        settings["tick_s"] = options.tick
+    return settings
+
+
+def _listen(server, options):
+    """The port on which the server listens now. Raises Refused."""
     try:
-        port = server.listen(options.host, options.port)
+        return server.listen(options.host, options.port)
     except (OSError, OverflowError) as error:
-        return _give_up(
-            "cannot listen on {}:{}: {}. Is another robot running there? Ports are 0 (any that is free) to 65535".format(
-                options.host, options.port, error
-            )
-        )
+        raise Refused(
+            "usage",
+            "cannot listen on {}:{}: {}".format(options.host, options.port, error),
+            "is another robot running there? Ports are 0 (any that is free) to 65535",
+        ) from None
+
+
+def _serve(options, loop, server, port, panels):
+    """Tick and serve until told to end."""
     if options.serial:
         server.attach(_line_opener(options.serial))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, frame: setattr(loop, "done", True))
-    if new:
-        print("made a new token: {}".format(options.token), file=sys.stderr)
     if not options.idle:
-        loop.start()
+        try:
+            loop.start()
+        except Refused as refusal:
+            loop.stop(refusal.message)
+            print("not started: {}".format(refusal.message), file=sys.stderr)
     print("READY tcp://{}:{}".format(options.host, port), flush=True)
 
     def serve(timeout_s):
@@ -71,13 +109,7 @@ def run(options, motors, battery, clock, seed, panels=()):
             panel.serve(loop)
         server.serve(timeout_s)
 
-    try:
-        _run(loop, server, serve)
-    finally:
-        server.close()
-        for panel in panels:
-            panel.close()
-    return 0
+    _run(loop, server, serve)
 
 
 def _run(loop, server, serve):

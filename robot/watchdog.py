@@ -5,43 +5,72 @@ stop every motor of the file tree, and tell the loop so, should it wake; the end
 end, or its silence, makes the loop stop.
 """
 
+import errno
 import glob
 import os
 import select
 import signal
 import socket
-import sys
+import time
 
+from robot.lights import Lights
 from robot.motors import MotorFault
+from robot.safety import RUNNING
 
 # Longer than the longest tick and a late one's outlier, and short enough to keep 250 ms together with the stopping itself.
 SILENCE_S = 0.2
 # The loop does not wait for echoes; it gives the watchdog this many ticks before it takes it for dead.
 MOST_UNANSWERED = 40
+# A motor that does not obey is told again: at once, for an error that passes, and then so often, for so long once the loop is dead.
+TRIES = 3
+AGAIN_S = 0.05
+LONGEST_S = 10.0
+FAREWELL_S = 1.0
 
 # What goes over the link: that the loop lives, and back; from the watchdog, that it has stopped the motors; from the loop, that it ends.
 _ALIVE, _STOPPED, _FAREWELL = b".", b"!", b"q"
+_GONE = (errno.ENOENT, errno.ENODEV)
 
 
 def stop_all(root):
-    """Stop every tacho motor under `root` (/sys/class on a brick), whatever the others do. Returns what could not be stopped."""
+    """Stop every tacho motor under `root` (/sys/class on a brick), whatever the others do. Returns what could not be stopped, in words."""
     failed = []
     for motor in glob.glob(os.path.join(root, "tacho-motor", "motor*")):
-        for name, text in (("duty_cycle_sp", b"0"), ("command", b"stop")):
+        for left in reversed(range(TRIES)):
             try:
-                handle = os.open(os.path.join(motor, name), os.O_WRONLY)
-                try:
-                    os.write(handle, text)
-                finally:
-                    os.close(handle)
+                _write(motor, "duty_cycle_sp", b"0")
+                _write(motor, "command", b"stop")
+                if int(_read(motor, "duty_cycle")) == 0:
+                    break
+                why = "it runs on"
             except OSError as error:
-                failed.append("{}/{}: {}".format(motor, name, error.strerror))
+                if error.errno in _GONE:
+                    break
+                why = error.strerror
+            except ValueError:
+                why = "it does not tell its duty cycle"
+            if not left:
+                failed.append("{}: {}".format(os.path.basename(motor), why))
     return failed
 
 
-def watch(link, stop, silence_s=SILENCE_S):
-    """Echo what comes over `link` until it ends, and call stop(reason) then and whenever it falls silent for silence_s.
+def _write(motor, name, text):
+    handle = os.open(os.path.join(motor, name), os.O_WRONLY)
+    try:
+        os.write(handle, text)
+    finally:
+        os.close(handle)
 
+
+def _read(motor, name):
+    with open(os.path.join(motor, name)) as file:
+        return file.read()
+
+
+def watch(link, stop, silence_s=SILENCE_S):
+    """Echo what comes over `link` until it ends. Whenever it falls silent for silence_s, and in the end, stop(reason).
+
+    stop returns whether the motors obeyed; if not, it is called again, until they do, the loop lives again, or LONGEST_S after its end.
     The reason is in words, empty if the loop has said that it ends. Before the first byte, and after a silence until the next, it may be
     silent for as long as it likes: a program takes seconds to start on the brick.
     """
@@ -55,13 +84,17 @@ def watch(link, stop, silence_s=SILENCE_S):
                 link.send(beat)
                 patience_s = silence_s
             else:
-                stop("the loop was silent for {:g} s".format(silence_s))
-                link.send(_STOPPED)
-                patience_s = None
+                fresh = patience_s == silence_s
+                patience_s = None if stop("the loop was silent for {:g} s".format(silence_s)) else AGAIN_S
+                if fresh:
+                    link.send(_STOPPED)
     except OSError:
         beat = b""
-    stop("" if beat else "the loop's process has died")
     link.close()
+    for _ in range(int(LONGEST_S / AGAIN_S)):
+        if stop("" if beat else "the loop's process has died"):
+            break
+        select.select((), (), (), AGAIN_S)
 
 
 class Watchdog(object):
@@ -79,30 +112,41 @@ class Watchdog(object):
         self._link.setblocking(False)
 
     def serve(self, loop):
-        """Tell, once a tick, that the loop lives; a robot whose watchdog does not live is in fault."""
+        """Tell, once a tick, that the loop lives. A robot whose watchdog does not live is in fault, and so is one that it had to stop."""
         tick = loop.blackbox.next_tick
-        if tick != self._fed_tick:
-            self._fed_tick = tick
-            try:
-                self.feed()
-            except MotorFault as fault:
-                loop.fail(str(fault))
+        if tick == self._fed_tick:
+            return
+        self._fed_tick = tick
+        try:
+            silent = self.feed()
+        except MotorFault as fault:
+            loop.incurable = str(fault)
+            loop.fail(loop.incurable)
+        else:
+            loop.incurable = ""
+            if silent and loop.safety.state == RUNNING:
+                loop.fail(
+                    "the loop was silent for {:g} s or longer, and the watchdog stepped in and stopped the motors: "
+                    "was the machine busy with something else? Clear the fault to go on".format(SILENCE_S)
+                )
 
     def feed(self):
-        """Tell that the loop lives. Raises MotorFault if the watchdog does not, or has stopped the motors meanwhile."""
+        """Tell that the loop lives. Returns whether the watchdog has stopped the motors meanwhile. Raises MotorFault if it is dead."""
         try:
             echoes = self._echoes()
-            self._link.send(_ALIVE)
+            self._send(_ALIVE)
         except OSError as error:
             raise MotorFault("the watchdog has ended ({}); start the robot's program anew".format(error.strerror)) from error
         self._unanswered += 1 - echoes.count(_ALIVE)
-        if _STOPPED in echoes:
-            raise MotorFault(
-                "the loop was silent for {:g} s or longer, so the watchdog has stopped the motors: "
-                "was the machine busy with something else? Clear the fault to go on".format(SILENCE_S)
-            )
         if self._unanswered > MOST_UNANSWERED:
             raise MotorFault("the watchdog does not answer; start the robot's program anew")
+        return _STOPPED in echoes
+
+    def _send(self, what):
+        try:
+            self._link.send(what)
+        except BlockingIOError:
+            pass  # the link is full of what a frozen watchdog has not read
 
     def _echoes(self):
         try:
@@ -116,27 +160,44 @@ class Watchdog(object):
     def close(self):
         """End the watchdog, after the motors were stopped."""
         try:
-            self._link.send(_FAREWELL)
+            self._send(_FAREWELL)
         except OSError:
             pass  # it has ended already
         self._link.close()
         try:
             os.kill(self.pid, signal.SIGCONT)  # or one that is frozen would not end, and this neither
-            os.waitpid(self.pid, 0)
+            until = time.monotonic() + FAREWELL_S
+            while os.waitpid(self.pid, os.WNOHANG)[0] == 0:
+                if time.monotonic() > until:
+                    os.kill(self.pid, signal.SIGKILL)
+                time.sleep(0.01)
         except OSError:
             pass
+
+
+def _say(text):
+    """Onto standard error, unless that would take time, as a terminal that is stopped does, or fails."""
+    try:
+        if select.select((), [2], (), 0)[1]:
+            os.write(2, text.encode())
+    except OSError:
+        pass
 
 
 def _be_watchdog(link, root):
     """What the forked process does, until it ends."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)  # these are meant for the loop, whose end is what counts
+    said = []
 
     def stop(reason):
         failed = stop_all(root)
-        if reason:
-            sys.stderr.write("watchdog: {}; {}\n".format(reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped"))
-            sys.stderr.flush()
+        words = "watchdog: {}; {}\n".format(reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped")
+        if reason and said[-1:] != [words]:
+            said[:] = [words]
+            Lights(root).alarm()
+            _say(words)
+        return not failed
 
     status = 0
     try:

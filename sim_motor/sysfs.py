@@ -233,7 +233,7 @@ class Tree:
         self._later(REGISTER_S, appear)
 
     def _disturb(self, name: str, times: str) -> None:
-        self._devices[self._ports[name].folder].errors = int(times or 1)
+        self._devices[self._ports[name].folder].errors = whole_number(times or "1", 0, 2**31 - 1)
 
 
 def _nobody(timeout_s: float) -> None:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from host.errors import KickctlError, WrongUse
+from host.errors import KickctlError, RobotFault, WrongUse, printable
 from host.terminal import answer, robot_of, say
 from robot.record import Record
 
@@ -24,21 +24,24 @@ class Tally:
         self.ticks = 0
         self.missing = 0
         self.restarts = 0
+        self.fault = ""
 
     def take_records(self, records: list[Record]) -> None:
         """Count records."""
         self.ticks += len(records)
 
     def take_event(self, event: dict[str, Any]) -> None:
-        """Count what the robot says is lost, and its new beginnings."""
+        """Count what the robot says is lost, and its new beginnings; remember its fault."""
         if event["event"] == "lost":
             self.missing += event["tick"] - event["from"]
         elif event["event"] == "restart":
             self.restarts += 1
+        elif event["event"] == "fault":
+            self.fault = str(event["reason"])
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record; ^C ends it early, and what was recorded is kept."""
+    """Record; ^C ends it early, and what was recorded is kept. 5 if the robot fell into a fault meanwhile."""
     from host.progress import progress
     from host.recording import McapTap, new_path
 
@@ -67,5 +70,8 @@ def run(options: argparse.Namespace) -> int:
         raise
     facts = {"log": str(path), "ticks": tally.ticks, "missing": tally.missing, "restarts": tally.restarts}
     anew = f"; the robot's program began anew {tally.restarts} times, and what it had not sent by then is lost" if tally.restarts else ""
+    if tally.fault:
+        facts["fault"] = tally.fault
+        anew += f"\nfault on the robot meanwhile: {printable(tally.fault)}"
     answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{anew}")
-    return 0
+    return RobotFault.status if tally.fault else 0

@@ -16,5 +16,9 @@ def run(options: argparse.Namespace) -> int:
     with robot_of(options, observe=True) as robot:
         tick = robot.stop()
         state = robot.status()["state"]
-        answer(options, {"state": state, "tick": tick}, f"motors stopped before tick {tick}; the robot is {state}")
+        answer(
+            options,
+            {"state": state, "tick": tick},
+            f"motors stopped before tick {tick}; the robot is {'in fault' if state == 'fault' else state}",
+        )
     return 0
