@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_motor.compiled import jit
+from sim_motor.own_motors import own_motor
 
 Array = NDArray[np.float64]
 State = tuple[float, float, float, float, float, float]
@@ -65,6 +66,10 @@ class Constants:
     def bare(self) -> "Constants":
         """The motor alone on a stiff supply: no wheel to speak of, no floor, no backlash."""
         return replace(self, wheel_inertia=1e-9, rolling=0.0, backlash=0.0, source_resistance=0.0)
+
+    def with_wheel(self, inertia: float) -> "Constants":
+        """With a wheel of this moment of inertia (kg m2), which then carries nothing else."""
+        return replace(self, wheel_inertia=inertia)
 
     def varied(self, strength: float, friction: float) -> "Constants":
         """Another specimen: torque and friction by these factors. What starts to move at which duty stays as it is."""
@@ -129,32 +134,34 @@ def names() -> list[str]:
 
 
 def load(name: str = "pybricks") -> Constants:
-    """The published motor `name` in the robot. Raises ValueError, with the names there are, for any other."""
-    if name not in names():
-        raise ValueError(f"there is no motor '{name}' in motors.toml; it has {', '.join(names())}")
-    tables = data()
-    motor, robot = ({key: float(entry[0]) for key, entry in tables[table].items()} for table in (name, "robot"))
-    share = robot["mass"] / 2
-    rolling = robot["rolling_resistance"] * share * GRAVITY * robot["wheel_radius"]
-    start_v = robot["break_away_duty"] / 100 * robot["battery_voltage"]
+    """The motor `name` in the robot: a published one, or a user's own, whose values of the robot come before the published ones.
+
+    Raises ValueError, in words, for a name that nobody has, and for an own one that is not as it should be.
+    """
+    published = data()
+    entry = published[name] if name in names() else own_motor(name, published)
+    values = {key: float(row[0]) for key, row in {**published["robot"], **entry}.items()}
+    share = values["mass"] / 2
+    rolling = values["rolling_resistance"] * share * GRAVITY * values["wheel_radius"]
+    start_v = values["break_away_duty"] / 100 * values["battery_voltage"]
     return Constants(
-        torque_constant=motor["torque_constant"],
-        emf_constant=motor["emf_constant"],
-        resistance=motor["resistance"],
-        inductance=motor["inductance"],
-        motor_inertia=motor["inertia"],
-        viscous=motor["viscous_friction"],
-        kinetic=motor["coulomb_friction"],
-        static=motor["torque_constant"] * start_v / motor["resistance"] - rolling,
-        wheel_inertia=robot["wheel_inertia"] + share * robot["wheel_radius"] ** 2,
+        torque_constant=values["torque_constant"],
+        emf_constant=values["emf_constant"],
+        resistance=values["resistance"],
+        inductance=values["inductance"],
+        motor_inertia=values["inertia"],
+        viscous=values["viscous_friction"],
+        kinetic=values["coulomb_friction"],
+        static=values["torque_constant"] * start_v / values["resistance"] - rolling,
+        wheel_inertia=values["wheel_inertia"] + share * values["wheel_radius"] ** 2,
         rolling=rolling,
-        backlash=robot["backlash"] * pi / 180,
-        source_resistance=robot["source_resistance"],
-        battery_v=robot["battery_voltage"],
-        latency_s=robot["latency"],
-        encoder_counts=robot["encoder_counts"],
-        wheel_radius=robot["wheel_radius"],
-        spread=robot["spread"],
+        backlash=values["backlash"] * pi / 180,
+        source_resistance=values["source_resistance"],
+        battery_v=values["battery_voltage"],
+        latency_s=values["latency"],
+        encoder_counts=values["encoder_counts"],
+        wheel_radius=values["wheel_radius"],
+        spread=values["spread"],
     )
 
 
