@@ -150,6 +150,8 @@ def soak(live, seconds, chance, path):
             print(
                 f"\r{max(0.0, left):5.0f} s left, {tally.ticks} ticks, {sum(done.values())} actions ", end="", file=sys.stderr, flush=True
             )
+        for one in (tap, tally):
+            live.robot.remove_tap(one)
     print(file=sys.stderr)
     return tally, vitals, done
 
