@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import socket
+from dataclasses import fields
 
 from host.errors import WrongUse
 from host.transport import LinkLost
@@ -11,9 +12,11 @@ from robot.loop import Loop
 from robot.server import Server
 from robot.wire import TOKEN_BYTES
 from sim_motor.brick import SimBrick
+from sim_motor.world import Scene
 
 _READ_BYTES = 65536
-_OPTIONS = ("seed", "idle", "motor", "battery")
+_SCENE = tuple(field.name for field in fields(Scene))
+_OPTIONS = ("seed", "idle", "motor", "battery", *_SCENE)
 
 
 class SimLink:
@@ -33,15 +36,22 @@ class SimLink:
 
     @classmethod
     def from_options(cls, uri: str, options: dict[str, str], seed: int | None) -> SimLink:
-        """The link for the options of a sim:// URI: seed, idle=1, motor=NAME, battery=V. Raises WrongUse."""
+        """The link for the options of a sim:// URI: seed, idle=1, motor=NAME, battery=V, and those of sim_motor.world.Scene.
+
+        Raises WrongUse.
+        """
         for name in options:
             if name not in _OPTIONS:
                 raise WrongUse(f"sim:// has no option '{name}'", "its options are " + ", ".join(_OPTIONS))
+        for name in _SCENE:
+            if name in options and "walls" not in options:
+                raise WrongUse(f"'{name}' belongs to a robot between walls, and '{uri}' has none", "add walls=2.0, their distance in m")
         try:
             if seed is None:
                 seed = int(options["seed"]) if "seed" in options else int.from_bytes(os.urandom(4), "big")
+            scene = Scene(**{name: float(options[name]) for name in _SCENE if name in options}) if "walls" in options else None
             battery_v = float(options["battery"]) if "battery" in options else None
-            brick = SimBrick(seed, motor=options.get("motor", "pybricks"), battery_v=battery_v)
+            brick = SimBrick(seed, motor=options.get("motor", "pybricks"), battery_v=battery_v, scene=scene)
         except (ValueError, KeyError) as error:
             raise WrongUse(f"'{uri}' cannot be simulated: {error}", "its options are " + ", ".join(_OPTIONS)) from error
         return cls(uri, brick, idle=options.get("idle", "0") not in ("", "0"))

@@ -46,7 +46,7 @@ def stop_all(root):
             except OSError as error:
                 if error.errno in _GONE:
                     break
-                why = error.strerror
+                why = os.strerror(error.errno)
             except ValueError:
                 why = "it does not tell its duty cycle"
             if not left:

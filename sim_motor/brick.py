@@ -7,7 +7,7 @@ out does not depend on how often anybody looks, and runs the same in virtual and
 from collections import deque
 from collections.abc import Callable, Iterator
 from itertools import repeat
-from math import pi
+from math import inf, pi, radians
 from random import Random
 from typing import NamedTuple, Protocol
 
@@ -23,11 +23,13 @@ from sim_motor.motor import (
     Array,
     Constants,
     advance_in_place,
+    data,
     encoder,
     load,
     substep_at,
     substep_from,
 )
+from sim_motor.world import Drive, Scene, World, alone
 
 # How late a tick begins: a record of 496 ticks of 30 ms on a brick (Python 3.5, balancing robot) lies on a shifted log-normal with
 # these three numbers: median 0.66 ms, 90 % below 2.1, 99 % below 5.7, the longest 13.6. Nothing is claimed beyond the longest.
@@ -89,6 +91,8 @@ class SimMotor(Motor):
         if mount not in {1, -1}:
             raise ValueError(f"a motor's mount is 1 or -1 (mirrored), not {mount!r}")
         self.constants = constants
+        self.mount = mount
+        self.world: World | None = None
         self.state = np.zeros(6)
         self.state[[ANGLE, LAST_ANGLE]] = angle
         self.state[GAP] = gap
@@ -96,7 +100,6 @@ class SimMotor(Motor):
         self._clock = clock
         self._epoch = clock.now()
         self._battery_v = battery_v
-        self._mount = mount
         self._tables = constants.tables()
         self._scalars = constants.scalars()
         self._counts = constants.encoder_counts
@@ -131,7 +134,7 @@ class SimMotor(Motor):
     def set_load(self, torque: float) -> None:
         """A torque (N m, forward positive) on the wheel from now on."""
         self._catch_up()
-        self._load = self._mount * torque
+        self._load = self.mount * torque
 
     def set_supply(self, open_v: float) -> None:
         """Another open-circuit voltage (V) of the battery from now on."""
@@ -141,13 +144,27 @@ class SimMotor(Motor):
     def truth(self) -> Truth:
         """The wheel's state now."""
         self._catch_up()
-        angle, _, speed, current, gap, wheel_speed = (self._mount * value for value in self.state.tolist())
+        angle, _, speed, current, gap, wheel_speed = (self.mount * value for value in self.state.tolist())
         return Truth(angle, speed, current, angle - gap, wheel_speed)
 
     def draw_a(self) -> float:
         """The current (A) that the motor draws from the battery now; negative while it feeds back."""
         self._catch_up()
         return 0.0 if self._duty == COAST else float(self.state[CURRENT]) * self._duty / 100
+
+    def drive(self) -> Drive:
+        """What drives the motor now: duty (% or COAST), battery voltage, and the load (N m) on its wheel, in its own sense of turning."""
+        return self._duty, self._battery_v, self._load
+
+    def next_turn(self) -> float:
+        """The substep from which the next duty acts; inf if none waits."""
+        return self._pending[0][0] if self._pending else inf
+
+    def reach(self, substep: int) -> None:
+        """Take it that the state has been brought to a substep by the world, and obey the duties whose turn it is."""
+        self._substep = substep
+        while self.next_turn() <= substep:
+            self._duty = self._pending.popleft()[1]
 
     def _command(self, duty: int) -> None:
         now = self._clock.now() - self._epoch
@@ -156,6 +173,9 @@ class SimMotor(Motor):
 
     def _catch_up(self) -> None:
         present = substep_at(self._clock.now() - self._epoch)
+        if self.world is not None:
+            self.world.catch_up(present)
+            return
         while self._pending and self._pending[0][0] <= present:
             begin, duty = self._pending.popleft()
             self._advance(begin)
@@ -189,7 +209,8 @@ class SimBrick:
 
     seed: fixes start phases, the small differences between the motors, and the clock's jitter. clock: a VirtualClock by default,
     robot.motors.MonotonicClock for real time. motor: which set of motors.toml. battery_v: open-circuit voltage, nominal by default.
-    mount: -1 for a motor that is mounted mirrored. jitter: whether the default clock is late as the brick is.
+    mount: -1 for a motor that is mounted mirrored. jitter: whether the default clock is late as the brick is. scene: walls, one of
+    which it faces, give or take how exactly a person places it; without any it has the floor for itself, and its tyres never slip.
     """
 
     def __init__(
@@ -201,6 +222,7 @@ class SimBrick:
         battery_v: float | None = None,
         mount: tuple[int, int] = (1, 1),
         jitter: bool = True,
+        scene: Scene | None = None,
     ) -> None:
         random = Random(f"brick {seed}")
         published = load(motor)
@@ -211,11 +233,20 @@ class SimBrick:
         def specimen(name: str, side: int) -> SimMotor:
             spread, half = published.spread, published.backlash / 2
             constants = published.varied(random.uniform(1 - spread, 1 + spread), random.uniform(1 - spread, 1 + spread))
+            constants = constants if scene is None else alone(constants)
             angle, gap = random.uniform(0, 2 * pi), random.uniform(-half, half)
+            if scene is not None:
+                angle = 0.0 if name == "left" else side * scene.apart
             return SimMotor(name, self.clock, constants, open_v, side, angle, gap)
 
         self.motors = (specimen("left", mount[0]), specimen("right", mount[1]))
         self.battery = SimBattery(open_v, published.source_resistance, self.motors)
+        self.world: World | None = None
+        if scene is not None:
+            askew = radians(data()["robot"]["placement"][0])
+            self.world = World(scene, self.motors, random.uniform(-askew, askew))
+            for wheel in self.motors:
+                wheel.world = self.world
 
     def set_battery(self, open_v: float) -> None:
         """Another open-circuit voltage from now on. Raises ValueError for one that is no battery's."""
