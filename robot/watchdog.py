@@ -46,7 +46,7 @@ def stop_all(root):
             except OSError as error:
                 if error.errno in _GONE:
                     break
-                why = os.strerror(error.errno)
+                why = str(error.strerror)
             except ValueError:
                 why = "it does not tell its duty cycle"
             if not left:
