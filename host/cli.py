@@ -19,6 +19,7 @@ from robot import __version__
 VERBS = (
     "demo",
     "kick",
+    "plan",
     "drive",
     "start",
     "stop",

@@ -8,9 +8,10 @@ from typing import Any
 from host.client import Robot
 from host.errors import NotDone, RobotFault
 from host.log import Log
-from host.motion import WINDOW_S, heading, settled, settling_s
+from host.motion import heading, settled, settling_s
 from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSED, WHEELS
 from robot.record import Record
+from sim_motor.settling import WINDOW_S
 
 SETTLE_PATIENCE_S = 15.0
 WATCH_S = 6.0
@@ -19,6 +20,7 @@ JUDGED_S = 2 * WINDOW_S + 0.1
 
 FORWARD, BACKWARD, STOPPED = "forward", "backward", "stopped"
 OPPOSITE = {FORWARD: BACKWARD, BACKWARD: FORWARD}
+DIRECTIONS = {FORWARD: 1, BACKWARD: -1}
 
 
 @dataclass(frozen=True)

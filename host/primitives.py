@@ -1,8 +1,9 @@
 """Motion primitives and how to reach them from each other: by kicks alone, and standing still by the spring constant k.
 
-A wheel that turns the wrong way gets a membrane inversion, which always reverses it; one that rests gets a phase kick of the sign
-that sets it going the right way. A pulse of k to zero lets the robot come to rest, and it stays there where rest coexists with
-locomotion; where it does not, k is halved and the pulse repeated until it stays, and k stays lowered.
+A wheel that turns the wrong way gets the quenched kick that is planned for the robot's parameters; if there is none, or it fails
+again and again, a membrane inversion, which always reverses it. One that rests gets a phase kick of the sign that sets it going the
+right way. A pulse of k to zero lets the robot come to rest, and it stays there where rest coexists with locomotion; where it does
+not, k is halved and the pulse repeated until it stays, and k stays lowered.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ from typing import Any
 
 from host.client import Robot
 from host.errors import NotDone
-from host.kicking import BACKWARD, FORWARD, STOPPED, Outcome, kick_and_watch, wait_settled
+from host.kicking import BACKWARD, DIRECTIONS, FORWARD, STOPPED, WATCH_S, Outcome, kick_and_watch, wait_settled
 from host.log import Log
 from host.motion import heading
-from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, PULSE, WHEELS
+from host.planning import Plan, reversal
+from robot.kicks import DEFAULT_SHIFT_RAD, DEFAULT_TICKS, DIRECTION_TICKS, MEMBRANE, PHASE, PULSE, WHEELS
 
 PRIMITIVES = {
     "forward": (FORWARD, FORWARD),
@@ -25,6 +27,9 @@ PRIMITIVES = {
 }
 UNSETTLED = "unsettled"
 MAX_KICKS = 6
+PLANNED_KICKS = 3
+# For the moment of a planned kick: some turns of a slow wheel.
+MOMENT_PATIENCE_S = 3.0
 # Long enough for the wheels to brake (0.3 s) and for the membrane potentials to forget the motion (four tau).
 STOP_PULSE_S = 1.5
 LEAST_K = 0.01
@@ -35,6 +40,7 @@ def headings(robot: Robot, log: Log) -> dict[str, str]:
     """Each wheel's heading once both have settled; UNSETTLED for both if they do not, as when they roll forth and back."""
     if not wait_settled(robot):
         return dict.fromkeys(WHEELS, UNSETTLED)
+    robot.wait(WATCH_S, until=lambda: len(log) > DIRECTION_TICKS)
     return {side: heading(log, side, log.records[-1].tick) for side in WHEELS}
 
 
@@ -68,12 +74,39 @@ def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
         wrong = [side for side in WHEELS if present[side] != wanted[side]]
         if not wrong:
             break
-        turning = [side for side in wrong if present[side] != STOPPED]
-        if turning:
-            kicks.append(kick_and_watch(robot, log, MEMBRANE, wheel="both" if len(turning) == 2 else turning[0]))
-        else:
-            kicks.append(kick_and_watch(robot, log, PHASE, wheel=wrong[0], shift=SHIFT_TOWARD[wanted[wrong[0]]]))
+        params = robot.status()["params"] if len(kicks) < PLANNED_KICKS else None
+        kicks.append(_kick(robot, log, {side: plan(present[side], wanted[side], params) for side in wrong}))
     return kicks
+
+
+def plan(present: str, wanted: str, params: dict[str, Any] | None) -> Plan:
+    """The kick for a wheel of this heading that should have another, at a robot's parameters; without them, the one that needs no map."""
+    if present == STOPPED:
+        return Plan(PHASE, DEFAULT_TICKS[PHASE], SHIFT_TOWARD[wanted])
+    planned = reversal(DIRECTIONS[present], params) if params and present in DIRECTIONS else None
+    return planned or Plan(MEMBRANE, DEFAULT_TICKS[MEMBRANE])
+
+
+def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
+    """Kick these wheels, each by its plan: both at once if that is the same, at any phase; else the first."""
+    side, chosen = next(iter(plans.items()))
+    if chosen.window_rad is not None:
+        _await_moment(robot, side, chosen)
+    elif len(plans) == 2 and all(own.window_rad is None and own.request() == chosen.request() for own in plans.values()):
+        side = "both"
+    return kick_and_watch(robot, log, wheel=side, **chosen.request())
+
+
+def _await_moment(robot: Robot, side: str, chosen: Plan) -> None:
+    """Wait until the wheel will be in the plan's window in the next tick; a kick at any moment is better than none, if that never comes."""
+    robot.lease()  # asked for only with the kick, it would cost a tick
+    robot.wait(MOMENT_PATIENCE_S, until=lambda: chosen.meets(sum(course(robot, side))))
+
+
+def course(robot: Robot, side: str) -> tuple[float, float]:
+    """A wheel's latest angle (rad), and its turn in a tick (rad) over the last DIRECTION_TICKS ticks."""
+    angles = [float(getattr(record, side + "_phi_rad")) for record in robot.recent()[-1 - DIRECTION_TICKS :]]
+    return angles[-1], (angles[-1] - angles[0]) / max(1, len(angles) - 1)
 
 
 def _restore_k(robot: Robot, log: Log) -> None:

@@ -47,13 +47,15 @@ class Result:
     """What became of the wheels.
 
     before, after: each wheel's direction when the kick began, and in the end. settled_s: how long after the kick's first tick the
-    wheel had settled, as sim_motor.settling has it, NaN if it has not. times: when ticks began, (1 or wheels, ticks). records: CHANNELS
-    of each tick of the wheels that were recorded, (wheels, ticks, channels).
+    wheel had settled, as sim_motor.settling has it, NaN if it has not. kick_phi_rad: the angle that the kick's first tick read, NaN
+    without a kick. times: when ticks began, (1 or wheels, ticks). records: CHANNELS of each tick of the wheels that were recorded,
+    (wheels, ticks, channels).
     """
 
     before: NDArray[np.int64]
     after: NDArray[np.int64]
     settled_s: Array
+    kick_phi_rad: Array
     times: Array
     records: Array
 
@@ -115,6 +117,7 @@ def run(
         before=np.zeros(wheels, dtype=np.int64),
         after=np.zeros(wheels, dtype=np.int64),
         settled_s=np.full(wheels, np.nan),
+        kick_phi_rad=np.full(wheels, np.nan),
         times=times,
         records=np.empty((min(record, wheels), ticks, len(CHANNELS))),
     )
@@ -130,6 +133,7 @@ def run(
         result.before,
         result.after,
         result.settled_s,
+        result.kick_phi_rad,
         result.records,
     )
     return result
@@ -228,6 +232,7 @@ def _run_all(
     before: NDArray[np.int64],
     after: NDArray[np.int64],
     settled_s: Array,
+    kick_phi_rad: Array,
     records: Array,
 ) -> None:
     ticks = times.shape[1]
@@ -243,3 +248,4 @@ def _run_all(
         if begin:
             before[wheel] = _direction(_travel(phis, begin - 1))
             settled_s[wheel] = _settling_s(phis, when, when[begin])
+            kick_phi_rad[wheel] = phis[begin]

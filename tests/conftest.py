@@ -14,5 +14,6 @@ settings.load_profile("house")
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "token"))
     monkeypatch.delenv("KICK_BRICK", raising=False)

@@ -42,5 +42,7 @@ def run(options: argparse.Namespace) -> int:
 
         for claim in summary["claims"]:
             print(Claim.from_dict(claim).sentence())
-        print(f"table {summary['table']}\nfigure {summary['figures'][0]}")
+        for kind, paths in (("table", [summary["table"]]), ("figure", summary["figures"][:1]), ("file", summary["files"])):
+            for path in paths:
+                print(kind, path)
     return 0 if all(claim["holds"] for claim in summary["claims"]) else 1

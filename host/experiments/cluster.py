@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 
 from host.errors import NoLink, WrongUse
 from host.experiments.experiment import Cell, Row, Setting
@@ -16,6 +17,7 @@ def spread(
     """(cell, rows) as they are done, on the workers of the Dask scheduler at `address`. Raises WrongUse and NoLink."""
     try:
         from distributed import Client, as_completed
+        from distributed.scheduler import KilledWorker
     except ImportError as error:
         raise WrongUse("--scheduler needs the package distributed", "install it: pip install 'kickctl[cluster]'") from error
     try:
@@ -24,5 +26,9 @@ def spread(
         raise NoLink(f"no Dask scheduler answers at {address}: {error}", "start one: dask scheduler, and dask worker ADDRESS") from error
     with client:
         futures = {client.submit(simulate, cell, setting, pure=False): cell for cell in cells}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+        for future in as_completed(futures, loop=client.loop):
+            try:
+                rows = future.result()
+            except (CancelledError, KilledWorker) as error:
+                raise NoLink(f"the Dask cluster at {address} was lost: {error}", "mend it, and run the same command again") from error
+            yield futures[future], rows

@@ -15,7 +15,7 @@ from host.claims import Claim
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
 from host.experiments.statistics import spread, wilson
-from host.kicking import BACKWARD, FORWARD, kick_and_watch, wait_settled
+from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
 from host.log import Log
 from host.motion import settling_s
 from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, POSITION, WHEELS, parse
@@ -24,7 +24,6 @@ from sim_motor.batch import run
 from sim_motor.motor import load
 
 LENGTHS = tuple(range(1, 11))
-DIRECTIONS = {FORWARD: 1, BACKWARD: -1}
 TURN_S = 0.5
 RELIABLE, FAILS = 0.95, 0.1
 SURE_LENGTHS = (3, 4, 5)

@@ -7,6 +7,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -21,6 +22,7 @@ from host.log import Log
 from host.progress import progress
 from host.recording import McapTap
 from robot import __version__
+from sim_motor.motor import load as constants
 
 RESULTS = Path("results")
 DEFAULT_SEED = 1
@@ -64,6 +66,8 @@ def perform(
         battery_v = float(simulated["battery"]) if "battery" in simulated else None
         setting = Setting(seed, options, simulated.get("motor", setting.motor), battery_v)
     settings = {"experiment": name, "brick": uri, "seed": seed, "options": options, "version": __version__}
+    if simulated is not None:
+        settings["motor"] = asdict(constants(setting.motor))  # an own motor of the same name may be another one tomorrow
     study = Study(Path(out), settings)
     cells = experiment.cells(options, batch=batch)
     say(f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in {study.folder}")

@@ -47,7 +47,7 @@ TABLE = {
     ),
     "kick-map": Entry(
         "success against the kick's length and the wheel's phase when it comes: where the basin lies",
-        (Option("kicks", 200000, 1000, 100000000, "kicks in all"),),
+        (Option("kicks", 200000, 36, 100000000, "kicks in all; on a robot a few hundred"),),
     ),
     "bifurcation": Entry(
         "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable branch between",
@@ -61,12 +61,12 @@ TABLE = {
     ),
     "chaos": Entry(
         "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and where motor latency and inertia make it chaotic",
-        (Option("minutes", 10.0, 0.5, 600.0, "length of the series"),),
+        (Option("minutes", 10.0, 1.0, 600.0, "length of the series"),),
         ("R14",),
     ),
     "calibrate": Entry(
         "identifies this robot's motor from logs and writes it for sim://?motor=mine",
-        (Option("seconds", 120.0, 20.0, 3600.0, "how long to drive the robot about"),),
+        (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about"),),
     ),
 }
 

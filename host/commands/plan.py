@@ -1,0 +1,88 @@
+"""kickctl plan."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from host.terminal import robot_of, say, show
+
+if TYPE_CHECKING:
+    from host.client import Robot
+
+HELP = "say which kick, and when, would bring each wheel to a direction; nothing is kicked"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The direction."""
+    parser.add_argument("--to", choices=("forward", "backward"), required=True, help="where the robot should go")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look at the wheels, and tell each wheel's plan."""
+    from host.errors import NotDone
+    from host.kicking import require_running, wait_settled
+    from robot.kicks import WHEELS
+
+    with robot_of(options, observe=True) as robot:
+        require_running(robot)
+        if not wait_settled(robot):
+            raise NotDone("the wheels did not settle, so there is no cycle to kick them out of", "look at k and tau_s: kickctl params list")
+        say("the kick map of the robot's parameters is being computed")
+        wheels = {side: _plan(robot, side, options.to) for side in WHEELS}
+        origin = {"params": robot.status()["params"], "brick": robot.link.uri, "seed": robot.hello["seed"]}
+    if options.json:
+        show({"to": options.to, "wheels": wheels, **origin})
+    else:
+        for side, found in wheels.items():
+            print(_sentence(side, options.to, found))
+    return 0
+
+
+def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
+    """A wheel's heading, phase and speed, and the kick for it: None if it goes as wanted already."""
+    from math import pi
+
+    from host.experiments.statistics import wilson
+    from host.motion import heading_of
+    from host.primitives import course, plan
+
+    present = heading_of([getattr(record, side + "_phi_rad") for record in robot.recent()])
+    params = robot.status()["params"]
+    chosen = None if present == wanted else plan(present, wanted, params)
+    phi, step = course(robot, side)
+    state = {"heading": present, "phase_rad": phi % (2 * pi), "turns_per_s": step / params["tick_s"] / (2 * pi)}
+    if chosen is None:
+        return {**state, "kick": None}
+    return {
+        **state,
+        "kick": chosen.request(),
+        "window_rad": chosen.window_rad,
+        "wait_ticks": chosen.wait_ticks(phi, step),
+        "rate": chosen.reversed / chosen.tried if chosen.tried else None,
+        "interval": wilson(chosen.reversed, chosen.tried) if chosen.tried else None,
+        "simulated": chosen.tried,
+    }
+
+
+def _sentence(side: str, wanted: str, found: dict[str, Any]) -> str:
+    from math import degrees
+
+    state = f"The {side} wheel is {found['heading']} ({found['turns_per_s']:+.2f} turns/s, phase {degrees(found['phase_rad']):.0f}°)"
+    kick = found["kick"]
+    if kick is None:
+        return f"{state}, as wanted: no kick."
+    shift = f" by {degrees(kick['shift']):+.0f}°" if "shift" in kick else ""
+    moment = "at any phase"
+    if found["window_rad"] is not None:
+        first, last = (degrees(edge) for edge in found["window_rad"])
+        moment = f"at a phase from {first:.0f}° to {last:.0f}°"
+        moment += " (which it does not meet)" if found["wait_ticks"] is None else f", {found['wait_ticks']} ticks from now"
+    reason = "no quenched kick is sure at these parameters"
+    if found["heading"] == "stopped":
+        reason = f"sets a resting wheel going {wanted}"
+    elif found["rate"] is not None:
+        low, high = found["interval"]
+        reason = f"reversed {found['rate']:.1%} of {found['simulated']} simulated wheels (95 %: {low:.1%} to {high:.1%})"
+    ticks = f"{kick['ticks']} tick{'s' if kick['ticks'] > 1 else ''}"
+    return f"{state}: {kick['mode']} kick{shift} of {ticks}, {moment}; {reason}."

@@ -1,0 +1,161 @@
+"""Wheels that may switch between forward and backward by themselves: running simulated ones under conditions, and telling what they do.
+
+A wheel switches when its direction changes, by the robot's own rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host.experiments.experiment import Setting
+from robot.kicks import DIRECTION_TICKS, JUMP, REST_TRAVEL_RAD, parse
+from robot.loop import Loop
+from robot.params import Params
+from robot.record import unpack
+from sim_motor.batch import CHANNELS, run
+from sim_motor.brick import HIGHEST_BATTERY_V, LATE_MOST_S, SimMotor, VirtualClock
+from sim_motor.motor import SUBSTEP_S, Constants, load
+
+Array = NDArray[np.float64]
+
+SWITCHES, ROLLS, RESTS = "switches", "rolls", "rests"
+# A wheel that has not switched for so long has stopped, for the time being: of 100 intervals between switches at most one is longer.
+QUIET_S = 30.0
+# One run of the batch keeps the records of at most so many ticks.
+_MOST_TICKS = 2_000_000
+_LOOP_CHUNK = 1000
+_DEFAULT = Params()
+
+
+@dataclass(frozen=True)
+class Condition:
+    """How a simulated brick differs from the one that was asked for; None is as there. inertia: factor on the motor's own."""
+
+    max_duty_pct: float = _DEFAULT.max_duty_pct
+    tick_s: float = _DEFAULT.tick_s
+    motor: str | None = None
+    battery_v: float | None = None
+    latency_s: float | None = None
+    inertia: float = 1.0
+
+    def constants(self, setting: Setting) -> Constants:
+        """Motor and wheel."""
+        published = load(self.motor or setting.motor)
+        latency_s = published.latency_s if self.latency_s is None else self.latency_s
+        return replace(published, latency_s=latency_s, motor_inertia=self.inertia * published.motor_inertia)
+
+    def supply_v(self, setting: Setting) -> float:
+        """The battery's open-circuit voltage."""
+        return self.battery_v or setting.battery_v or self.constants(setting).battery_v
+
+    def params(self, **changes: float) -> Params:
+        """Parameters of the loop."""
+        params = Params()
+        params.apply(params.check({"max_duty_pct": self.max_duty_pct, "tick_s": self.tick_s, **changes}))
+        return params
+
+
+class Jump(NamedTuple):
+    """A jump of the first neuron's potential in a tick."""
+
+    tick: int
+    size: float
+
+
+ORDINARY = "as it is"
+DELAYED = "latency of 70 ms"
+_AA_V = 9.0  # six cells of 1.5 V
+CONDITIONS = {
+    ORDINARY: Condition(),
+    "ticks of 40 ms": Condition(tick_s=0.04),
+    "motor nxt_unroller": Condition(motor="nxt_unroller"),
+    "duty up to 100 %": Condition(max_duty_pct=100.0),
+    "100 %, 9 V": Condition(max_duty_pct=100.0, battery_v=_AA_V),
+    "100 %, 9 V, 40 ms": Condition(max_duty_pct=100.0, battery_v=_AA_V, tick_s=0.04),
+    "100 %, 9 V, nxt_unroller": Condition(max_duty_pct=100.0, battery_v=_AA_V, motor="nxt_unroller"),
+    "100 %, 10 V": Condition(max_duty_pct=100.0, battery_v=HIGHEST_BATTERY_V),
+    DELAYED: Condition(latency_s=0.07),
+}
+
+
+def wheels_run(
+    condition: Condition, setting: Setting, wheels: int, seconds: float, seed: int, jump: Jump | None = None, **changes: float
+) -> Iterator[Array]:
+    """Records of wheels from random starts, a few wheels at a time: (wheels, ticks, CHANNELS of sim_motor.batch).
+
+    changes: parameters of the loop. The same seed gives the same starts, motors and ticks, whatever the jump.
+    """
+    params = condition.params(**changes)
+    ticks = round(seconds / params.tick_s)
+    rng = np.random.default_rng(seed)
+    published = condition.constants(setting)
+    bounds = 1 - published.spread, 1 + published.spread
+    motors = [published.varied(*pair) for pair in rng.uniform(*bounds, (wheels, 2)).tolist()]
+    batched = published.latency_s + LATE_MOST_S + 2 * SUBSTEP_S < params.tick_s
+    group = max(1, _MOST_TICKS // ticks) if batched else 2
+    for first in range(0, wheels, group):
+        some = motors[first : first + group]
+        one_seed = int(rng.integers(2**32))
+        if batched:
+            kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
+            supply_v = condition.supply_v(setting)
+            yield run(
+                len(some), ticks, one_seed, params=params, kick=kick, motors=tuple(some), battery_v=supply_v, record=len(some)
+            ).records
+        else:
+            yield _loop_run(some, condition.supply_v(setting), params, ticks, one_seed, jump)
+
+
+def _request(jump: Jump) -> dict[str, object]:
+    return {"id": "jump", "mode": JUMP, "variable": "x1", "delta": jump.size}
+
+
+def _loop_run(constants: list[Constants], supply_v: float, params: Params, ticks: int, seed: int, jump: Jump | None) -> Array:
+    """One robot, through its whole loop."""
+    rng = np.random.default_rng(seed)
+    clock = VirtualClock(seed)
+    pair = (constants * 2)[:2]
+    motors = [
+        SimMotor(side, clock, one, supply_v, 1, float(rng.uniform(0, 2 * pi)), float(rng.uniform(-0.5, 0.5) * one.backlash))
+        for side, one in zip(("left", "right"), pair, strict=True)
+    ]
+    loop = Loop(motors, None, clock, seed)
+    loop.set_params(dict(params.values()))
+    loop.start()
+    records: list[tuple[tuple[float, ...], ...]] = []
+    for tick in range(ticks):
+        clock.wait(loop.deadline, lambda timeout_s: None)
+        if jump is not None and tick == jump.tick:
+            loop.kick(_request(jump))
+        loop.tick()
+        if (tick + 1) % _LOOP_CHUNK == 0 or tick + 1 == ticks:
+            records += [(record[-12:-6], record[-6:]) for record in unpack(loop.blackbox.read(len(records), _LOOP_CHUNK))]
+    return np.array(records, dtype=float).reshape(ticks, 2, len(CHANNELS)).swapaxes(0, 1)[: len(constants)]
+
+
+def switches(phi: Array) -> NDArray[np.int64]:
+    """The ticks in which a wheel turned around, from its angles (rad), one a tick."""
+    travel = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
+    sign = (travel > REST_TRAVEL_RAD).astype(int) - (travel < -REST_TRAVEL_RAD)
+    moving = np.flatnonzero(sign)
+    changes = np.flatnonzero(np.diff(sign[moving]))
+    found = []
+    for first, last in zip(moving[changes], moving[changes + 1], strict=True):
+        between = phi[first : last + DIRECTION_TICKS + 1] * sign[first]
+        found.append(first + int(between.argmax()))
+    return np.array(found, dtype=np.int64)
+
+
+def ending(phi: Array, tick_s: float) -> tuple[float, str]:
+    """Until when (s) a wheel switched, and what it does in the end: SWITCHES, ROLLS or RESTS."""
+    found = switches(phi)
+    until_s = float(found[-1] * tick_s) if len(found) else 0.0
+    if len(phi) * tick_s - until_s < QUIET_S:
+        return until_s, SWITCHES
+    return until_s, ROLLS if abs(phi[-1] - phi[-1 - DIRECTION_TICKS]) > REST_TRAVEL_RAD else RESTS

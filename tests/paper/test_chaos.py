@@ -1,0 +1,224 @@
+"""The chaotic mode (R14): how switching and exponents are told, and what the simulated wheels do under which condition."""
+
+import json
+from math import log, pi
+
+import numpy as np
+import pytest
+
+from host.client import connect
+from host.errors import NotDone
+from host.experiments import chaos
+from host.experiments.experiment import Setting
+from host.experiments.lyapunov import from_series, from_twins, of_noise
+from host.experiments.switching import CONDITIONS, DELAYED, ORDINARY, RESTS, ROLLS, SWITCHES, Jump, ending, switches, wheels_run
+from host.figures.chaos import draw
+from host.log import Log
+from robot.controller import motor_torque
+from robot.params import Params
+from sim_motor.batch import CHANNELS
+
+SETTING = Setting(3, {"minutes": 2.5})
+PHI, X1, FORCE, TORQUE = (CHANNELS.index(name) for name in ("phi_rad", "x1", "force", "torque"))
+MODE = {"k": chaos.K, "tau_s": chaos.TAU_S}
+
+
+def runs(name, wheels, seconds, seed=1, jump=None, **changes):
+    return np.concatenate(list(wheels_run(CONDITIONS[name], SETTING, wheels, seconds, seed, jump, **{**MODE, **changes})))
+
+
+def with_fields(rows, **fields):
+    return [{**fields, **row} for row in rows]
+
+
+@pytest.fixture(scope="module")
+def delayed():
+    """Two wheels that switch irregularly."""
+    return runs(DELAYED, 2, 150.0)
+
+
+def test_the_exponent_of_the_logistic_map_is_ln_2():
+    values = [0.3]
+    while len(values) < 3000:
+        values.append(4 * values[-1] * (1 - values[-1]))
+    exponent, embedded = from_series(np.array(values), 1.0, 2.0, (0.0, 4.0))
+    assert embedded.dimension == 1
+    assert exponent.rate == pytest.approx(log(2), rel=0.01)
+
+
+def test_the_exponent_of_the_henon_map_is_the_known_one():
+    x, y = 0.1, 0.1
+    values = []
+    for _ in range(4000):
+        x, y = 1 - 1.4 * x * x + y, 0.3 * x
+        values.append(x)
+    exponent, embedded = from_series(np.array(values), 1.0, 2.0, (1.0, 7.0))
+    assert embedded.dimension == 2
+    assert exponent.rate == pytest.approx(0.419, rel=0.05)
+
+
+def test_a_noisy_rhythm_has_no_greater_exponent_than_noise_makes():
+    rng = np.random.default_rng(0)
+    phase = np.cumsum(0.2 + 0.01 * rng.standard_normal(8000))
+    exponent, _ = from_series(3 * np.sin(phase) + 0.01 * rng.standard_normal(8000), 0.03, 2.0)
+    assert exponent.interval[0] < of_noise()
+
+
+@pytest.mark.parametrize("values", [np.zeros(9000), np.sin(np.arange(300.0))], ids=["still", "short"])
+def test_no_exponent_is_made_up_where_there_is_nothing_to_estimate(values):
+    assert from_series(values, 0.03, 2.0) is None
+
+
+def test_twins_that_double_in_a_second_part_at_ln_2():
+    first = np.array([1e-3, 2e-3, 4e-3])
+    assert from_twins(first, 4 * first, 2.0).rate == pytest.approx(log(2))
+
+
+def test_a_wheel_turns_around_where_its_angle_is_greatest_or_least():
+    phi = np.concatenate([np.linspace(0, 9, 61), np.linspace(9, 2, 50)[1:], np.linspace(2, 12, 70)[1:]])
+    assert switches(phi).tolist() == [60, 109]
+
+
+def test_a_wheel_that_chatters_by_two_degrees_at_rest_does_not_switch():
+    assert len(switches(np.tile([0.0, 2 * pi / 180], 100))) == 0
+
+
+@pytest.mark.parametrize(
+    ("after", "expected"),
+    [(np.zeros(1200), RESTS), (np.arange(1200) * 0.3, ROLLS), (np.abs(np.arange(1200) % 100 - 50) * 0.3, SWITCHES)],
+    ids=[RESTS, ROLLS, SWITCHES],
+)
+def test_what_a_wheel_does_in_the_end_is_told_apart(after, expected):
+    swing = np.abs(np.arange(200) % 100 - 50) * 0.3
+    until_s, end = ending(np.concatenate([swing, swing[-1] + after - after[0]]), 0.03)
+    assert end == expected
+    assert (until_s > 30.0) == (expected == SWITCHES)
+
+
+@pytest.mark.parametrize("name", [ORDINARY, DELAYED])
+def test_twins_are_the_same_up_to_the_jump_and_not_after_it(name):
+    plain, other = (runs(name, 3, 10.0, jump=jump) for jump in (None, Jump(100, 1e-3)))
+    assert np.array_equal(plain[:, :100], other[:, :100])
+    assert plain.shape == (3, 333, len(CHANNELS))
+    assert np.all(plain[:, 100, X1] < other[:, 100, X1])
+    assert np.allclose(plain[:, 100, X1] + 1e-3, other[:, 100, X1], atol=1e-4)
+
+
+def test_records_of_the_whole_loop_have_their_channels_in_the_batchs_order(delayed):
+    for record in delayed[:, ::50].reshape(-1, len(CHANNELS)):
+        assert motor_torque(record[FORCE]) == record[TORQUE]
+
+
+def test_the_brick_as_it_is_stops_switching_within_a_minute():
+    ends = [ending(phi, Params().tick_s) for phi in runs(ORDINARY, 40, 90.0)[:, :, PHI]]
+    assert sum(end == SWITCHES for _, end in ends) == 0
+    assert max(until_s for until_s, _ in ends) > 4.0  # chaos there is, but it does not last
+
+
+def test_with_a_longer_latency_wheels_go_on_switching_and_their_exponent_is_positive(delayed):
+    for record in delayed:
+        assert ending(record[:, PHI], Params().tick_s)[1] == SWITCHES
+        exponent, _ = from_series(record[:, FORCE], Params().tick_s, chaos.APART_S)
+        assert exponent.interval[0] > of_noise()
+
+
+def test_twins_part_with_the_latency_and_a_jump_below_the_steps_dies_with_tau(monkeypatch):
+    monkeypatch.setattr(chaos, "_TWINS", 24)
+    cells = ({"part": "twins", "condition": DELAYED, "jump": jump} for jump in (chaos.SEEN, chaos.UNSEEN))
+    seen, unseen = (chaos.growth(chaos.simulate(cell, SETTING)) for cell in cells)
+    assert seen.interval[0] > 0.5
+    assert unseen.rate == pytest.approx(-1 / chaos.TAU_S, abs=0.05)
+
+
+def test_it_is_the_bound_of_the_torque_that_ends_the_chaos_of_the_papers_model():
+    free, bounded = (
+        {row["end"] for row in chaos.simulate({"part": "model", "wheel": "paper", "bounded": bounded}, SETTING)}
+        for bounded in (False, True)
+    )
+    assert free == {SWITCHES}
+    assert bounded == {ROLLS}
+
+
+def test_a_piece_done_again_has_the_same_rows_and_they_survive_json():
+    for cell in ({"part": "map", "latency_s": 0.075, "inertia": 1.0}, {"part": "speed", "condition": ORDINARY}):
+        rows = chaos.simulate(cell, SETTING)
+        assert rows == chaos.simulate(cell, SETTING) == json.loads(json.dumps(rows, allow_nan=False))
+
+
+def series_rows(records):
+    """Both wheels of a robot."""
+    return [
+        {"part": "series", "condition": ORDINARY, "side": side, "t_s": 0.03 * tick, "phi_rad": phi, "force": force, "torque": torque}
+        for side, record in zip(("left", "right"), records, strict=True)
+        for tick, (phi, force, torque) in enumerate(record[:, [PHI, FORCE, TORQUE]].tolist())
+    ]
+
+
+def test_r14_holds_for_a_robot_whose_wheels_switch_irregularly(delayed):
+    rows = series_rows(delayed)
+    findings = chaos.report(rows, SETTING)
+    (claim,) = findings.claims
+    assert (claim.id, claim.measured, claim.holds) == ("R14", 1.0, True)
+    assert len(draw(rows, findings).axes) == 4
+
+
+def test_r14_does_not_hold_for_a_robot_that_rolls_nor_for_one_that_rolls_to_and_fro_evenly(delayed):
+    for records in (runs(ORDINARY, 2, 150.0), np.stack([_even(delayed[0])] * 2)):
+        (claim,) = chaos.report(series_rows(records), SETTING).claims
+        assert not claim.holds
+
+
+def _even(record):
+    """A wheel to and fro, like clockwork but for a late tick now and then."""
+    time_s = 0.03 * np.arange(len(record)) + 0.001 * np.random.default_rng(0).standard_exponential(len(record))
+    even = record.copy()
+    even[:, PHI] = np.round(180 / pi * 3 * np.sin(4 * time_s)) * pi / 180
+    even[:, FORCE] = 8 * np.sin(4 * time_s + 1)
+    return even
+
+
+def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hold(monkeypatch):
+    for name, value in (("LATENCIES_S", (0.003, 0.06)), ("INERTIAS", (1.0,)), ("_LIVES", 6), ("_LIVES_DELAYED", 2), ("_TWINS", 4)):
+        monkeypatch.setattr(chaos, name, value)
+    setting = Setting(1, {"minutes": 1.0})
+    rows = [row for cell in chaos.cells(setting.options, batch=True) for row in with_fields(chaos.simulate(cell, setting), **cell)]
+    findings = chaos.report(rows, setting)
+    (claim,) = findings.claims
+    assert not claim.holds
+    assert claim.measured == 0.0
+    assert DELAYED in claim.note
+    assert "100 %, 10 V" in claim.note
+    json.dumps(findings.numbers, allow_nan=False)
+    assert len(draw(rows, findings).axes) == 7
+
+
+def test_a_robot_gives_both_wheels_from_its_start_and_gets_its_parameters_back():
+    setting = Setting(1, {"minutes": 0.1})
+    with connect("sim://", 1) as robot:
+        log = Log()
+        robot.add_tap(log)
+        rows = chaos.trial({"part": "series", "condition": ORDINARY}, robot, log, setting)
+        params = robot.status()["params"]
+    assert (params["k"], params["tau_s"]) == (Params().k, Params().tau_s)
+    left, right = ([row for row in rows if row["side"] == side] for side in ("left", "right"))
+    assert left[0]["t_s"] == right[0]["t_s"] == 0.0
+    assert 6.0 <= left[-1]["t_s"] < 6.1
+    assert len(left) == len(right) == round(left[-1]["t_s"] / Params().tick_s) + 1
+
+
+def test_a_stop_in_between_is_told_and_the_parameters_come_back():
+    with connect("sim://", 1) as robot:
+        log = Log()
+        robot.add_tap(log)
+        wait = robot.wait
+
+        def stopped_meanwhile(seconds, until=None):
+            wait(1.0)
+            robot.stop()
+            return wait(seconds, until)
+
+        robot.wait = stopped_meanwhile
+        with pytest.raises(NotDone, match="does not run"):
+            chaos.trial({"part": "series", "condition": ORDINARY}, robot, log, Setting(1, {"minutes": 10.0}))
+        assert log.seconds < 5.0
+        assert robot.status()["params"]["k"] == Params().k

@@ -1,0 +1,85 @@
+"""Simulations spread over a Dask cluster of two worker processes: the same results, whatever becomes of a worker."""
+
+import csv
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from distributed import LocalCluster
+from matplotlib.figure import Figure
+
+from host.errors import NoLink, WrongUse
+from host.experiments import kick_map
+from host.experiments.cluster import spread
+from host.experiments.experiment import Setting
+from host.experiments.run import perform
+
+KICKS = 36 * 30
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Two processes of one thread each."""
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
+        yield cluster
+
+
+@pytest.mark.timeout(300)  # three processes compile the batch, perhaps beside other work
+def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr("host.figures.kick_map.draw", lambda rows, findings: Figure())
+    there = perform("kick-map", kicks=KICKS, seed=3, out=tmp_path, scheduler=cluster.scheduler_address)
+    setting = Setting(3, {"kicks": KICKS})
+    cells = kick_map.cells(setting.options, batch=True)
+    here = [{**cell, **row} for cell in cells for row in kick_map.simulate(cell, setting)]
+    with Path(there["table"]).open(encoding="utf-8", newline="") as table:
+        assert list(csv.DictReader(table)) == [{name: str(value) for name, value in row.items()} for row in here]
+    assert there["numbers"] == kick_map.report(here, setting).numbers
+    assert there["numbers"]["kicks"] > 0.9 * KICKS
+
+
+@pytest.fixture
+def scramble():
+    """A simulation that takes a while, which no compiler shortens; defined in here, so that it travels to workers as it is."""
+
+    def scramble(cell, setting):
+        number = setting.seed_of(cell)
+        for _ in range(100000):
+            number = number * 6364136223846793005 % 2**64 + 1442695040888963407
+        return [{"number": number}]
+
+    return scramble
+
+
+CELLS = [{"cell": number} for number in range(60)]
+SETTING = Setting(5, {})
+
+
+def test_nothing_is_lost_with_a_worker_that_is_killed(cluster, scramble):
+    results = spread(cluster.scheduler_address, scramble, CELLS, SETTING)
+    done = [next(results)]
+    victim = next(iter(cluster.workers.values())).pid
+    os.kill(victim, signal.SIGKILL)
+    done += results
+    assert sorted(cell["cell"] for cell, _ in done) == list(range(60))
+    assert all(rows == scramble(cell, SETTING) for cell, rows in done)
+    assert victim not in {nanny.pid for nanny in cluster.workers.values()}
+
+
+def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0") as brief:
+        results = spread(brief.scheduler_address, scramble, CELLS, SETTING)
+        next(results)
+    with pytest.raises(NoLink, match="was lost"):
+        list(results)
+
+
+def test_no_scheduler_is_told_in_words(monkeypatch):
+    monkeypatch.setattr("host.experiments.cluster.CONNECT_S", 0.5)
+    with pytest.raises(NoLink, match="no Dask scheduler answers"):
+        next(spread("tcp://127.0.0.1:1", kick_map.simulate, [], Setting(1, {})))
+
+
+def test_a_robot_is_not_spread(tmp_path):
+    with pytest.raises(WrongUse, match="--scheduler"):
+        perform("kick-map", "tcp://127.0.0.1:1", kicks=36, out=tmp_path, scheduler="tcp://127.0.0.1:1")
