@@ -1,0 +1,113 @@
+"""The experiment `bifurcation`: the jump, the hysteresis, the unstable branch that is one, and no claim where they are missing."""
+
+import pytest
+
+from host.client import connect
+from host.experiments import bifurcation
+from host.experiments.experiment import Setting
+from host.figures.bifurcation import draw
+from host.log import Log
+from robot.kicks import WHEELS
+
+SETTING = Setting(1, {"points": 33})
+
+
+def done(cell, seed=3):
+    """A cell's rows with its fields, as a run has them."""
+    with connect("sim://", seed) as robot:
+        log = Log(robot.info())
+        robot.add_tap(log)
+        return [{**cell, **row} for row in bifurcation.trial(cell, robot, log, SETTING)]
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    return done({"part": "sweep", "motion": "backward", "trial": 0})
+
+
+@pytest.fixture(scope="module")
+def folds():
+    return done({"part": "fold", "motion": "forward", "trial": 0})
+
+
+@pytest.fixture(scope="module")
+def branch():
+    return {hertz: done({"part": "branch", "motion": "forward", "held_hz": hertz})[0] for hertz in (0.24, 0.3, 0.5)}
+
+
+def verdict(rows, number):
+    return next(claim for claim in bifurcation.report(rows, SETTING).claims if claim.id == number)
+
+
+def test_the_same_k_finds_the_robot_running_on_the_way_down_and_at_rest_on_the_way_up(sweep):
+    for side in WHEELS:
+        runs = {way: {row["k"] for row in sweep if (row["way"], row["side"]) == (way, side) and not row["rests"]} for way in ("down", "up")}
+        assert len(runs["down"] - runs["up"]) >= 2
+        assert bifurcation.START_K in runs["up"]
+        assert min(runs["down"] | runs["up"]) > 0.44
+
+
+def test_locomotion_falls_from_a_torque_well_above_the_stall(folds):
+    assert [row["side"] for row in folds] in (["left", "right"], ["right", "left"])
+    assert all(abs(row["torque"]) > 0.15 and abs(row["torque_after"]) < 0.1 for row in folds)
+    assert all(0.44 < row["k_after"] < row["k"] < 0.52 for row in folds)
+
+
+def test_feedback_holds_cycles_on_both_sides_of_the_fold_and_does_not_change_them(branch):
+    assert len(bifurcation.held(list(branch.values()))) == len(branch)
+    assert branch[0.24]["k"] > branch[0.3]["k"] < branch[0.5]["k"]
+
+
+def test_without_the_feedback_a_wheel_leaves_an_unstable_cycle_and_stays_on_a_stable_one(branch):
+    assert abs(branch[0.24]["free_hz"] - 0.24) > 0.15 * 0.24
+    assert branch[0.5]["free_hz"] == pytest.approx(0.5, rel=0.1)
+
+
+def test_the_claims_hold(sweep, folds, branch):
+    rows = [*sweep, *folds, *branch.values(), *done({"part": "ramp", "trial": 0}), *done({"part": "ramp", "trial": 1}, seed=4)]
+    assert verdict(rows, "R5").holds
+    assert verdict(rows, "R6").holds
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"torque": 0.11},  # a torque that fades away
+        {"torque_after": 0.13},  # no rest
+        {"k": 9.0, "k_after": 8.5},  # where it falls it runs again: no hysteresis
+    ],
+)
+def test_no_jump_no_rest_or_no_hysteresis_is_told(sweep, folds, branch, changed):
+    rows = [*sweep, *({**row, **changed} for row in folds), *branch.values()]
+    assert not verdict(rows, "R6").holds
+
+
+def test_a_motor_that_moves_too_early_is_told(branch):
+    early = {"part": "ramp", "torque": 0.05, "holds": False, "note": "left: moves at 0.050"}
+    claim = verdict([*branch.values(), early], "R5")
+    assert not claim.holds
+    assert "0.050" in claim.note
+
+
+def test_a_speed_that_was_not_held_is_no_point_of_the_branch(branch):
+    slipped = {**branch[0.24], "hz": 0.0}
+    shaken = {**branch[0.24], "k_sd": 0.1}
+    assert bifurcation.held([slipped, shaken]) == []
+    assert bifurcation.least_k([slipped, shaken]) is None
+
+
+def test_the_figure_tells_unstable_cycles_from_stable_ones(sweep, folds, branch):
+    rows = [*sweep, *folds, *branch.values()]
+    figure = draw(rows, bifurcation.report(rows, SETTING))
+    lines = {line.get_label(): len(line.get_xdata()) for line in figure.axes[1].lines}
+    assert (lines["forward, unstable cycle"], lines["forward, stable cycle"]) == (2, 2)
+    assert figure.get_size_inches()[0] * figure.dpi == 1600
+
+
+def test_a_ladder_has_as_many_rungs_as_asked_for_and_is_denser_at_small_k():
+    steps = bifurcation.ladder(33)
+    assert len(set(steps)) == 33
+    assert steps == sorted(steps)
+    assert steps[0] == bifurcation.LEAST_K
+    assert steps[-1] == bifurcation.START_K
+    assert sum(k <= bifurcation.MIDDLE_K for k in steps) >= 16

@@ -1,0 +1,104 @@
+"""The experiment `timeline`: three kicks there and back, the slip told apart from drift and from the encoder's counts."""
+
+import json
+from math import pi
+
+import numpy as np
+import pytest
+
+from host.client import connect
+from host.experiments import timeline
+from host.experiments.experiment import Setting
+from host.figures.timeline import draw
+from host.log import Log
+
+SETTING = Setting(1, {"trials": 2})
+
+
+def done(cell):
+    """A cell's rows with its fields, as a run has them."""
+    with connect("sim://", SETTING.seed_of(cell)) as robot:
+        log = Log(robot.info())
+        robot.add_tap(log)
+        return [{**cell, **row} for row in timeline.trial(cell, robot, log, SETTING)]
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return [row for cell in timeline.cells(SETTING.options, batch=False) for row in done(cell)]
+
+
+def kick(slip, drift=0.01, settling=0.6):
+    return {
+        "kind": "kick",
+        "mode": "membrane",
+        "turn": 1,
+        "ticks": 1,
+        "kick_s": 0.03,
+        "reversed": True,
+        "settling_left_s": settling,
+        "settling_right_s": settling,
+        "slip_rad": slip,
+        "drift_rad": drift,
+    }
+
+
+def verdict(rows, number):
+    return next(claim for claim in timeline.report(rows, SETTING).claims if claim.id == number)
+
+
+def test_all_three_kicks_reverse_there_and_back_and_take_longer_to_settle_than_they_last(rows):
+    kicks = [row for row in rows if row["kind"] == "kick"]
+    assert [row["mode"] for row in kicks] == 2 * [mode for mode in timeline.KICKS for _ in timeline.TURNS]
+    assert all(row["reversed"] for row in kicks)
+    assert min(timeline.settling(timeline.kicks(rows))) > max(row["kick_s"] for row in kicks)
+    assert verdict(rows, "R8").holds
+
+
+def test_kicks_make_the_relative_phase_slip_and_that_it_does_not_without(rows):
+    done = timeline.kicks(rows)
+    assert max(abs(row["slip_rad"]) for row in done) > 3 * max(abs(row["drift_rad"]) for row in done)
+
+
+def test_slip_is_what_lies_between_the_phases_before_and_after(rows):
+    for row in timeline.kicks(rows):
+        assert timeline.wrapped(row["relative_before_rad"] + row["slip_rad"] - row["relative_after_rad"]) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_only_the_first_round_keeps_its_ticks_and_they_show_both_kicks_of_each_kind(rows):
+    ticks = [row for row in rows if row["kind"] == "tick"]
+    assert {row["trial"] for row in ticks} == {0}
+    for mode in timeline.KICKS:
+        kicked = [row["kicked"] for row in ticks if row["mode"] == mode]
+        assert np.count_nonzero(np.diff(np.array([False, *kicked], dtype=int)) == 1) == len(timeline.TURNS)
+
+
+def test_the_same_seed_gives_the_same_rows_which_survive_json(rows):
+    again = done({"trial": 1})
+    assert json.loads(json.dumps(again, allow_nan=False)) == [row for row in rows if row["trial"] == 1]
+
+
+def test_the_figure_shows_the_round(rows):
+    figure = draw(rows, timeline.report(rows, SETTING))
+    assert figure.get_size_inches()[0] * figure.dpi == 1600
+    assert [len(axes.lines) for axes in figure.axes[:3]] == 3 * [len(timeline.SHOWN)]
+
+
+def test_slips_no_greater_than_the_drift_are_no_slips():
+    assert verdict([kick(slip) for slip in (0.1, -0.12, 0.15, -0.2)], "R12").holds
+    assert not verdict([kick(slip, drift=0.3) for slip in (0.1, -0.12, 0.15, -0.2)], "R12").holds
+
+
+def test_settling_within_the_kick_or_always_at_once_is_told():
+    assert verdict([kick(0.1), kick(0.1, settling=0.3)], "R11").holds
+    assert not verdict([kick(0.1, settling=0.3)], "R11").holds
+    assert not verdict([kick(0.1), kick(0.1, settling=0.02)], "R11").holds
+
+
+def test_kicks_that_did_not_reverse_count_against_the_inversion():
+    assert not verdict([kick(0.1), {**kick(0.1), "reversed": False}], "R8").holds
+
+
+@pytest.mark.parametrize(("angle", "same"), [(0.0, 0.0), (3 * pi, -pi), (-pi / 2, -pi / 2), (7.0, 7.0 - 2 * pi)])
+def test_relative_phases_are_directions(angle, same):
+    assert timeline.wrapped(angle) == pytest.approx(same)
