@@ -18,12 +18,18 @@ from robot.program import PORT
 
 _FORM = "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens elsewhere than at its usual port"
 _END_S = 2.0
+# ssh may say much; what it gives up for comes last.
+_LAST_WORDS = 280
 # ^C reaches ssh too, but is kickctl's to answer: it still has the motors to stop, over this very link.
 _RUN = ("sh", "-c", 'trap "" INT; exec ssh "$@"', "sh")
-# What ssh says, and what to do about it.
+# What ssh says, and what to do about it; the first that fits.
 _REMEDIES = {
-    "Permission denied": "the user of an ev3dev brick is robot: ssh://robot@HOST; `ssh-copy-id robot@HOST` once spares the password",
-    "Host key verification failed": "`ssh robot@HOST` once to make its acquaintance; a brick with a new card has a new key",
+    "IDENTIFICATION HAS CHANGED": "a brick with a newly written card has a new key, and this machine remembers the old one: "
+    "`ssh-keygen -R {host}`, then try again",
+    "Host key verification failed": "make its acquaintance: `ssh robot@{host}` once, and say yes to its key",
+    "Permission denied": "an ev3dev brick's user is robot, with the password maker unless it was changed: ssh://robot@{host}; "
+    "`ssh-copy-id robot@{host}` once spares typing it",
+    "Could not resolve hostname": "the network knows no {host}: `kickctl discover` looks around, or take the address on the brick's screen",
     "ssh: not found": "install ssh (Debian, Ubuntu: apt-get install openssh-client)",
     "open failed": "ssh works, but the robot's program does not listen there: `./deploy.sh --status` looks, `./deploy.sh` starts it",
 }
@@ -103,6 +109,7 @@ class SshLink(TcpLink):
             with suppress(subprocess.TimeoutExpired):
                 self._ssh.wait(_END_S)
             self._words.seek(0)
-            words = printable(" ".join(self._words.read().decode(errors="replace").split()))
+            words = " ".join(self._words.read().decode(errors="replace").split())
             remedy = next((remedy for sign, remedy in _REMEDIES.items() if sign in words), _REMEDY)
-            raise NoLink(f"no robot answers at {self.uri}: {words or error}", remedy) from error
+            shown = printable(words if len(words) <= _LAST_WORDS else "... " + words[-_LAST_WORDS:].partition(" ")[2])
+            raise NoLink(f"no robot answers at {self.uri}: {shown or error}", remedy.format(host=self._address[0])) from error

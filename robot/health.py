@@ -15,6 +15,8 @@ HOST = "127.0.0.1"
 PATIENCE_S = 20.0
 # A program that ticks does so within this time.
 LONGEST_TICK_S = 2.0
+# What main returns.
+WELL, UNWELL, IN_FAULT = 0, 1, 3
 
 
 class Unwell(Exception):
@@ -38,7 +40,12 @@ class Questioner(object):
                 if "error" in answer:
                     raise Unwell("it refuses: {}".format(answer["error"].get("message")))
                 return answer
-            data = self._link.recv(wire.MAX_PAYLOAD)
+            try:
+                data = self._link.recv(wire.MAX_PAYLOAD)
+            except socket.timeout:
+                raise Unwell(
+                    "it hangs, without a word for {:g} s; the watchdog stops the motors of a program that hangs".format(PATIENCE_S)
+                ) from None
             if not data:
                 raise Unwell("it hangs up")
             self._decoder.feed(data)
@@ -81,7 +88,7 @@ def examine(port, secret):
 
 
 def main():
-    """Print in a line how the robot is. Returns 0 if it is well, a fault of its motors included, else 1."""
+    """Print in a line how the robot is. Returns WELL, UNWELL, or IN_FAULT if the program is well and its motors, for example, are not."""
     arguments = argparse.ArgumentParser(description="Asks the robot's program on this machine whether it is well.")
     arguments.add_argument("--port", type=int, default=PORT)
     arguments.add_argument("--token", default=token.default_path())
@@ -90,10 +97,12 @@ def main():
         status = examine(options.port, token.load(options.token))
     except (OSError, ValueError, KeyError, wire.BadMessage, token.TokenError, Unwell) as error:
         print("the robot's program at port {} is not well: {}".format(options.port, error))
-        return 1
+        return UNWELL
     battery = "" if status["battery_v"] is None else ", battery {:.1f} V".format(status["battery_v"])
-    print("{} ({}){}".format(status["state"], status["reason"], battery))
-    return 0
+    fault = status["state"] == "fault"
+    remedy = "; mend that, then `kickctl clear` and `kickctl start`" if fault else ""
+    print("{} ({}){}{}".format(status["state"], status["reason"], battery, remedy))
+    return IN_FAULT if fault else WELL
 
 
 if __name__ == "__main__":

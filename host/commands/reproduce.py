@@ -35,9 +35,13 @@ def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    table = Table("", "claim", "paper", "measured", "", "note", show_lines=True)
+    table = Table("", "claim", "paper", "measured", "", show_lines=True)
     for claim in claims:
-        table.add_row(claim.id, claim.claim, claim.paper, claim.number(), "holds" if claim.holds else "DOES NOT HOLD", claim.note)
-    for number, reason in skipped.items():
-        table.add_row(number, "", "", "", "not tried", reason)
-    Console().print(table)
+        table.add_row(claim.id, claim.claim, claim.paper, claim.number(), "holds" if claim.holds else "DOES NOT HOLD")
+    for number in skipped:
+        table.add_row(number, "", "", "", "not tried")
+    console = Console()
+    console.print(table)
+    for number, note in [(claim.id, claim.note) for claim in claims] + list(skipped.items()):
+        if note:
+            console.print(f"{number}: {note}", markup=False, highlight=False)

@@ -7,7 +7,8 @@
 #   arguments           what the program is started with, such as --left outA
 #   robot.log           what it said since its last start by deploy.sh; before that: robot.log.1
 #
-# Exit status: 0 done; 1 not done, and the brick is as it was; 4 the brick is not fit for it; 5 no robot's program is well now.
+# Exit status: 0 done; 1 not done, and the brick is as it was; 4 the brick is not fit for it; 5 no robot's program is well now;
+# 6 done, and the program that was started is well, but the robot is in fault.
 set -eu
 
 ROOT=$HOME/kickctl
@@ -16,6 +17,7 @@ TOKEN=$HOME/.config/kickctl/token
 CLASS=${KICK_SYSFS:-/sys/class}
 ETC=${KICK_ETC:-/etc}
 UNIT=$ETC/systemd/system/kickctl.service
+AVAHI=$ETC/avahi/services/kickctl.service
 
 LEAST_FREE_KB=20000
 # What the brick itself warns of; writing to the card must not be cut short by an empty battery.
@@ -23,9 +25,10 @@ LEAST_LITHIUM_UV=6500000
 LEAST_OTHER_UV=5500000
 READY_S=60
 STOP_S=5
+IN_FAULT=3 # what robot.health returns of a program that is well, and whose robot is in fault
 
 # Whoever deploys may be gone by now; that is no reason to stop half-way.
-tell() { echo "$*" 2>/dev/null || true; }
+tell() { printf '%s\n' "$*" 2>/dev/null || true; }
 
 give_up() { # give_up STATUS WHAT REMEDY
     tell "deploy: $2"
@@ -40,6 +43,10 @@ only_one() {
 }
 
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+
+ask_password() { # before anything is touched
+    as_root true || give_up 1 "a service needs the brick's administrator" "run deploy.sh at a terminal, where sudo can ask for the password"
+}
 
 release() { basename "$(readlink "$ROOT/$1" 2>/dev/null || true)"; } # release current|previous: its name, or nothing
 
@@ -121,12 +128,28 @@ stop_program() {
     reset_motors
 }
 
+arguments() { cat "$ROOT/arguments" 2>/dev/null || true; }
+
+keep_arguments() {
+    printf '%s\n' "$1" >"$ROOT/arguments.new"
+    mv -f "$ROOT/arguments.new" "$ROOT/arguments"
+}
+
+warn() { # of wheels that turn; a service begins with its motors off
+    [ ! -e "$UNIT" ] || return 0
+    case " $(arguments) " in
+    *" --idle "*) ;;
+    *) tell "The wheels will turn as soon as the program is ready: hold the robot up (with --idle among KICK_ROBOT_ARGS they do not)." ;;
+    esac
+}
+
 start_program() { # start the current release and wait until it is ready and well
+    warn
     rm -f "$ROOT/robot.pid"
     [ ! -e "$ROOT/robot.log" ] || mv -f "$ROOT/robot.log" "$ROOT/robot.log.1"
     if [ -e "$UNIT" ]; then
         as_root systemctl reset-failed kickctl 2>/dev/null || true # or the starts of the last minutes count
-        as_root systemctl start --no-block kickctl || return 1
+        as_root systemctl start --no-block kickctl || { tell "systemd did not start it" && return 1; }
     else
         setsid nice -n -10 sh "$ROOT/current/robot/service/brick.sh" run </dev/null >/dev/null 2>&1 9>&- &
     fi
@@ -146,71 +169,95 @@ start_program() { # start the current release and wait until it is ready and wel
     examine
 }
 
-examine() { # ask the program how it is
-    health=$(cd "$ROOT/current" && python3 -m robot.health --port "$(port)" --token "$TOKEN") || {
-        tell "$health"
-        return 1
-    }
+examine() { # ask the program how it is; fault becomes yes if the robot is in fault
+    fault='' ill=0
+    health=$(cd "$ROOT/current" && python3 -m robot.health --port "$(port)" --token "$TOKEN") || ill=$?
     tell "$health"
+    [ "$ill" != "$IN_FAULT" ] || fault=yes
+    [ "$ill" = 0 ] || [ -n "$fault" ]
 }
+
+done_well() { [ -z "$fault" ] || exit 6; }
 
 install_service() {
     sed -e "s|@USER@|$(id -un)|" -e "s|@ROOT@|$ROOT|" -e "s|@CLASS@|$CLASS|" \
         "$ROOT/current/robot/service/kickctl.service" >"$ROOT/unit.new" &&
         as_root install -D -m 644 "$ROOT/unit.new" "$UNIT" &&
         as_root systemctl daemon-reload &&
-        as_root systemctl enable kickctl &&
-        rm -f "$ROOT/unit.new"
+        as_root systemctl enable kickctl && rm -f "$ROOT/unit.new" && return
+    tell "systemd did not take the service"
+    return 1
+}
+
+remove_service() { # of a program that was stopped; whatever of it is there
+    rm -f "$ROOT/unit.new"
+    [ ! -e "$UNIT" ] || as_root systemctl disable kickctl || true
+    as_root rm -f "$UNIT" "$AVAHI"
+    as_root systemctl daemon-reload || true
 }
 
 announce() { # have avahi tell the network that a robot is here; it works without
     sed -e "s|@USER@|$(id -un)|" -e "s|@PORT@|$(port)|" "$ROOT/current/robot/service/kickctl-avahi.service" >"$ROOT/avahi.new"
-    as_root install -D -m 644 "$ROOT/avahi.new" "$ETC/avahi/services/kickctl.service" || tell "  the network is not told"
+    as_root install -D -m 644 "$ROOT/avahi.new" "$AVAHI" || tell "  the network is not told"
     rm -f "$ROOT/avahi.new"
 }
 
-activate() { # activate RELEASE [service]: run it, as a service from now on if asked; if it is not well, run again what ran before
+# activate RELEASE [service|'' [ARGUMENTS]]: run it from now on, as a service and with these arguments if they are given; if it is not
+# well, run again what ran before, as it did.
+activate() {
     only_one
     trap '' HUP INT PIPE # nobody may stop this half-way, not even by going away
     [ -d "$ROOT/releases/$1" ] || give_up 1 "there is no release $1 on the brick" "deploy it anew"
-    if [ "${2-}" = service ] || [ -e "$UNIT" ]; then
-        # Ask for the password before anything is touched.
-        as_root true || give_up 1 "a service needs the brick's administrator" "deploy at a terminal, where sudo can ask for the password"
-    fi
+    new=$1 as=${2-}
+    served=''
+    [ ! -e "$UNIT" ] || served=yes
+    [ -z "$as$served" ] || ask_password
     old=$(release current)
-    old_arguments=$(cat "$ROOT/arguments" 2>/dev/null || true)
+    old_arguments=$(arguments)
     tell "stopping the robot's program, resetting its motors"
     stop_program
-    switch current "$1"
-    [ ! -e "$ROOT/arguments.new" ] || mv -f "$ROOT/arguments.new" "$ROOT/arguments"
-    tell "starting $1"
-    if { [ "${2-}" != service ] || install_service; } && start_program; then
-        [ "$old" = "$1" ] || [ -z "$old" ] || switch previous "$old"
+    switch current "$new"
+    [ -z "${3+given}" ] || keep_arguments "$3"
+    tell "starting $new"
+    if { [ -z "$as" ] || install_service; } && start_program; then
+        [ "$old" = "$new" ] || [ -z "$old" ] || switch previous "$old"
         [ ! -e "$UNIT" ] || announce
         prune
+        done_well
         return
     fi
-    tell "its last words:"
-    tell "$(tail -n 15 "$ROOT/robot.log" 2>/dev/null | sed 's/^/    /')"
+    last_words
     stop_program
-    echo "$old_arguments" >"$ROOT/arguments"
-    go_back "$1" "$old"
+    [ -n "$served" ] || [ -z "$as" ] || remove_service
+    go_back
 }
 
-go_back() { # go_back FAILED OLD: exits
+last_words() {
+    tell "the last words of its log:"
+    tell "$(tail -n 15 "$ROOT/robot.log" 2>/dev/null | sed 's/^/    /')"
+}
+
+go_back() { # from activate, whose variables it uses; exits
     mend="mend what its last words say, and deploy again"
-    if [ -z "$2" ]; then
-        rm -f "$ROOT/current"
-        give_up 5 "release $1 does not run, and there was none before it; the motors are off" "$mend"
+    again="$old runs again"
+    failed_arguments=$(arguments)
+    if [ "$failed_arguments" != "$old_arguments" ]; then
+        keep_arguments "$old_arguments"
+        again="$again, and with the arguments of before ('$old_arguments' instead of '$failed_arguments')"
     fi
-    tell "starting $2 again"
-    switch current "$2"
+    if [ -z "$old" ]; then
+        rm -f "$ROOT/current"
+        give_up 5 "release $new does not run, and there was none before it; the motors are off" "$mend"
+    fi
+    tell "starting $old again"
+    switch current "$old"
+    [ -z "$served" ] || [ -z "$as" ] || install_service || true # its own unit file, instead of that of the new one
     if start_program; then
         prune
-        give_up 1 "release $1 did not run; $2 runs again" "$mend"
+        give_up 1 "release $new did not run; $again" "$mend"
     fi
     stop_program
-    give_up 5 "neither $1 nor $2 runs; the motors are off" "is another program at work? The brick's log may tell: ./deploy.sh --logs"
+    give_up 5 "neither $new nor $old runs; the motors are off" "is another program at work? The brick's log may tell: ./deploy.sh --logs"
 }
 
 prune() { # keep the release that runs and the one before
@@ -220,9 +267,27 @@ prune() { # keep the release that runs and the one before
 }
 
 rollback() {
+    [ -n "$(release current)" ] || give_up 1 "no release is on this brick, and none to go back to" "./deploy.sh brings one"
     before=$(release previous)
     [ -n "$before" ] || give_up 1 "there is no release before this one on the brick" "check out the one that you want, and deploy it"
     activate "$before"
+}
+
+no_service() { # from now on the release runs when deploy.sh starts it
+    [ -e "$UNIT" ] || [ -e "$AVAHI" ] || give_up 1 "the robot's program is no service of this brick" "so there is nothing to undo"
+    only_one
+    trap '' HUP INT PIPE
+    ask_password
+    tell "stopping the service, resetting the motors"
+    stop_program
+    remove_service
+    tell "starting $(release current) without it"
+    start_program || {
+        last_words
+        stop_program
+        give_up 5 "the program is no service any more, but does not run; the motors are off" "./deploy.sh deploys it anew"
+    }
+    done_well
 }
 
 run() { # run [ARGUMENT ...]: become the robot's program; robot.pid keeps its number
@@ -230,7 +295,7 @@ run() { # run [ARGUMENT ...]: become the robot's program; robot.pid keeps its nu
     cd "$(pwd -P)" # the release that it began with, whatever becomes current
     echo $$ >"$ROOT/robot.pid"
     # shellcheck disable=SC2046 # one word each
-    exec python3 -m robot --token "$TOKEN" $(cat "$ROOT/arguments" 2>/dev/null) "$@" >>"$ROOT/robot.log" 2>&1
+    exec python3 -m robot --token "$TOKEN" $(arguments) "$@" >>"$ROOT/robot.log" 2>&1
 }
 
 status() {
@@ -247,7 +312,7 @@ status() {
     tell "program  runs as process $(program_pid), $(grep '^READY' "$ROOT/robot.log" | tail -n 1)"
     state=$(examine) || ill=5
     tell "state    $state"
-    exit "${ill:-0}"
+    [ -z "${ill-}" ] || { tell "         ./deploy.sh ends it and starts it anew" && exit 5; }
 }
 
 logs() {

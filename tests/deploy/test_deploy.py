@@ -2,6 +2,7 @@
 
 import shutil
 import stat
+import subprocess
 
 import pytest
 
@@ -15,7 +16,7 @@ def test_the_first_deploy_brings_a_whole_release_and_starts_it(brick, checkout):
     assert status == 0, output
     assert brick.runs() == brick.release() == brick.releases()[0]
     assert brick.release("previous") is None
-    assert "kickctl --brick ssh://brick kick" in output
+    assert "kickctl --brick ssh://brick start" in output
     current = brick.kickctl / "current"
     assert sorted(path.name for path in (current / "robot").glob("*.py")) == sorted(
         path.name for path in (checkout.folder / "robot").glob("*.py")
@@ -83,6 +84,44 @@ def test_upgrade_then_rollback_and_forth_again(brick, checkout):
     assert (brick.runs(), brick.release("previous")) == (new, old)
 
 
+def test_whoever_may_stand_beside_the_robot_is_warned_of_its_wheels(brick, checkout):
+    assert "wheels will turn" in checkout.deploy()[1]
+    checkout.change()
+    assert "wheels will turn" not in checkout.deploy(KICK_ROBOT_ARGS=f"--idle --sysfs {brick.sysfs} --host 127.0.0.1 --port 0")[1]
+    assert "wheels will turn" not in checkout.deploy("--rollback")[1]
+    checkout.deploy()
+    status, output = checkout.deploy("--rollback")
+    assert status == 0
+    assert "wheels will turn" in output
+    assert "the wheels turn" in checkout.deploy("--dry-run", "--rollback")[1]
+
+
+def test_a_robot_in_fault_is_told_with_what_to_do(brick, checkout):
+    status, output = checkout.deploy()
+    assert status == 0  # as --help says: another release would not bring the motor
+    assert "left motor (outB): there is none" in output
+    told = output.partition("robot is in fault")[2].splitlines()
+    assert [line.split()[-1] for line in told[1:3]] == ["clear", "start"]
+    assert "kick --mode" not in output
+    assert "kickctl clear" in checkout.deploy("--status")[1]
+
+
+@pytest.mark.parametrize("installed", [False, True])
+def test_the_closing_words_can_be_typed_as_they_stand(brick, checkout, installed):
+    environment = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
+    if installed:
+        environment["PATH"] += f":{checkout.bin}"
+        write(checkout.bin / "kickctl", "#!/bin/sh\necho $*\n", 0o755)
+    else:
+        assert "make setup" in checkout.deploy(**environment)[1]
+        write(checkout.folder / ".venv" / "bin" / "kickctl", "#!/bin/sh\necho $*\n", 0o755)
+    output = checkout.deploy(**environment)[1]
+    assert "make setup" not in output
+    (hint,) = [line for line in output.splitlines() if line.endswith("start")]
+    done = subprocess.run(["/bin/sh", "-c", hint], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == "--brick ssh://brick start\n"
+
+
 def test_only_the_release_before_is_kept(brick, checkout):
     seen = []
     for _ in range(3):
@@ -93,6 +132,11 @@ def test_only_the_release_before_is_kept(brick, checkout):
 
 
 def test_rollback_of_a_first_release_is_refused(brick, checkout):
+    status, output = checkout.deploy("--rollback")
+    assert status == 1
+    assert "to go back to" in output
+    assert "cannot open" not in output
+    assert list(brick.home.iterdir()) == []
     checkout.deploy()
     status, output = checkout.deploy("--rollback")
     assert status == 1
@@ -127,6 +171,7 @@ def test_status_and_logs(brick, checkout):
     status, output = checkout.deploy("--status")
     assert status == 0
     assert brick.release() in output
+    assert "no: ./deploy.sh --service" in output
     assert "left motor (outB): there is none" in output
     assert "READY tcp://127.0.0.1:" in checkout.deploy("--logs")[1]
     brick.stop_program()
@@ -141,13 +186,22 @@ def test_a_dry_run_connects_to_nothing_and_writes_nothing(checkout, brick):
     assert "robot/loop.py" in output
     assert brick.releases() == []
     assert not checkout.token.exists()
-    for verb in ("--rollback", "--status", "--logs"):
+    for verb in ("--rollback", "--no-service", "--status", "--logs"):
         status, output = checkout.deploy("--dry-run", verb, to="robot@nowhere.invalid")
         assert (status, "would connect to robot@nowhere.invalid" in output) == (0, True)
 
 
 @pytest.mark.parametrize(
-    "arguments", [("--fly",), ("--status", "--logs"), ("--rollback", "--service"), ("another",), ("",), ("-oProxyCommand=touch x",)]
+    "arguments",
+    [
+        ("--fly",),
+        ("--status", "--logs"),
+        ("--rollback", "--service"),
+        ("--service", "--no-service"),
+        ("another",),
+        ("",),
+        ("-oProxyCommand=touch x",),
+    ],
 )
 def test_wrong_use_is_told_before_anything_is_done(checkout, brick, arguments):
     status, output = checkout.deploy(*arguments)
@@ -162,6 +216,7 @@ def test_help_names_every_option_and_exit_status(checkout, brick):
     assert status == 0
     for word in (
         "--service",
+        "--no-service",
         "--rollback",
         "--status",
         "--logs",

@@ -114,6 +114,53 @@ def test_arguments_that_kill_the_program_are_taken_back(deployed, checkout):
     assert "--sysfs" in (deployed.kickctl / "arguments").read_text(encoding="utf-8")
 
 
+def test_arguments_that_were_put_back_are_told(brick, checkout):
+    checkout.deploy()
+    status, output = checkout.deploy(KICK_ROBOT_ARGS="--left")
+    assert status == 1
+    last = output[output.index(f"{brick.release()} runs again") :]
+    assert "arguments of before ('--sysfs" in last
+    assert "instead of '--left'" in last
+
+
+def test_arguments_of_a_deploy_that_never_changed_over_are_of_no_use_to_the_next(deployed, checkout):
+    """The arguments arrive, and then somebody else holds the lock, or the line is cut; later comes --rollback, with none."""
+    checkout.deploy()
+    arguments = (deployed.kickctl / "arguments").read_text(encoding="utf-8")
+    release = deployed.release()
+    deployed.replace("flock", "exit 1")
+    status, output = checkout.deploy(KICK_ROBOT_ARGS="--left outA --never")
+    assert (status, "somebody else" in output) == (1, True)
+    (deployed.bin / "flock").unlink()
+    assert checkout.deploy("--rollback")[0] == 0
+    assert deployed.runs() != release
+    assert (deployed.kickctl / "arguments").read_text(encoding="utf-8") == arguments
+
+
+def test_arguments_are_never_a_command_for_the_bricks_shell(deployed, checkout):
+    arguments = """--it's "$(touch here)" `touch there`; touch everywhere"""
+    status, output = checkout.deploy(KICK_ROBOT_ARGS=arguments)
+    assert status == 1
+    assert f"instead of '{arguments}'" in output
+    assert [path for path in deployed.home.rglob("*") if path.name.endswith("here")] == []
+
+
+def test_a_program_that_hangs_is_told_and_a_deploy_ends_it(brick, checkout):
+    health = checkout.folder / "robot" / "health.py"
+    health.write_text(health.read_text(encoding="utf-8").replace("PATIENCE_S = 20.0", "PATIENCE_S = 1.0"), encoding="utf-8")
+    checkout.deploy()
+    pid = brick.pid()
+    os.kill(pid, signal.SIGSTOP)
+    status, output = checkout.deploy("--status")
+    assert status == 5
+    for words in ("it hangs", "the watchdog stops the motors", "./deploy.sh ends it"):
+        assert words in output
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert pid not in brick.processes()
+    assert brick.runs() == brick.release()
+
+
 def test_a_release_that_the_bricks_python_cannot_read_is_never_started(deployed, checkout):
     release, pid = deployed.release(), deployed.pid()
     checkout.change("kicks", "\ndef broken(:\n")
@@ -275,3 +322,34 @@ def test_no_brick_at_the_address_is_told_in_words(checkout, brick):
     assert status == 3
     assert "Connection refused" in output
     assert "address on its screen" in output
+
+
+def test_a_brick_with_a_new_card_is_told_from_one_that_is_off(brick, checkout):
+    write(brick.folder / "known_hosts", f"[127.0.0.1]:{brick.port} {(brick.folder / 'user_key.pub').read_text(encoding='utf-8')}")
+    status, output = checkout.deploy()
+    assert status == 3
+    assert "IDENTIFICATION HAS CHANGED" in output
+    assert "ssh-keygen -R brick" in output
+    assert "is it on?" not in output
+
+
+def test_a_brick_never_met_is_told(brick, checkout):
+    write(brick.folder / "known_hosts", "")
+    status, output = checkout.deploy()
+    assert status == 3
+    assert "ssh brick, and say yes" in output
+
+
+def test_a_brick_that_lets_nobody_in_is_told_with_the_password(brick, checkout):
+    write(brick.folder / "user_key.pub", "")
+    status, output = checkout.deploy()
+    assert status == 3
+    assert "Permission denied" in output
+    assert "maker" in output
+    assert "ssh-copy-id robot@brick" in output
+
+
+def test_a_name_that_nobody_has_is_told_with_how_to_find_another(checkout):
+    status, output = checkout.deploy(to="robot@nowhere.invalid")
+    assert status == 3
+    assert "the network knows no nowhere.invalid: kickctl discover" in output

@@ -16,17 +16,27 @@ from tests.deploy.brick import ROOT, needs_sshd, wait_until, write
 pytestmark = needs_sshd
 
 
+SYSTEMCTL = f'exec {sys.executable} {Path(__file__).parent / "systemd.py"} "$@"'
+
+
 @pytest.fixture
-def served(brick, checkout):
-    """A brick with a motor and systemd, to which the program was deployed as a service."""
+def ready(brick):
+    """A brick with a motor and systemd."""
     write(brick.sysfs / "tacho-motor" / "motor0" / "command", "")
-    brick.replace("systemctl", f'exec {sys.executable} {Path(__file__).parent / "systemd.py"} "$@"')
-    status, output = checkout.deploy("--service")
-    assert status == 0, output
+    (brick.etc / "systemd" / "system").mkdir(parents=True)
+    brick.replace("systemctl", SYSTEMCTL)
     yield brick
     manager = brick.etc / "systemd" / "system" / "manager.pid"
     if manager.exists():
         os.kill(int(manager.read_text(encoding="ascii")), signal.SIGKILL)
+
+
+@pytest.fixture
+def served(ready, checkout):
+    """Such a brick, to which the program was deployed as a service."""
+    status, output = checkout.deploy("--service")
+    assert status == 0, output
+    return ready
 
 
 def unit(brick):
@@ -55,6 +65,8 @@ def test_the_program_starts_with_the_brick_and_tells_systemd_that_it_lives(serve
     wait_until(lambda: notified(served)[-1].endswith("WATCHDOG=1"))
     assert notified(served)[0] == f"{served.pid()} READY=1"
     assert "the program starts with the brick" in checkout.deploy("--status")[1]
+    output = checkout.deploy("--service")[1]
+    assert "wheels will turn" not in output  # it starts with its motors off
 
 
 def test_upgrade_and_rollback_go_through_systemd(served, checkout):
@@ -69,6 +81,85 @@ def test_upgrade_and_rollback_go_through_systemd(served, checkout):
     assert checkout.deploy()[0] == 1
     assert checkout.deploy("--rollback")[0] == 0
     assert served.runs() == old
+
+
+def is_no_service(brick):
+    """Whether nothing of a service is left, and a program runs that systemd did not start."""
+    left = [path.name for folder in (unit(brick).parent, brick.etc / "avahi" / "services") for path in folder.glob("kickctl*")]
+    manager = unit(brick).parent / "manager.pid"
+    return left == [] and not manager.exists() and not list(brick.kickctl.glob("*.new")) and brick.runs() is not None
+
+
+@pytest.mark.parametrize(
+    "systemctl",
+    [f'[ "$1" != {verb} ] || exit 1\n{SYSTEMCTL}' for verb in ("daemon-reload", "enable", "start")] + ["exit 1"],
+    ids=["daemon-reload", "enable", "start", "everything"],
+)
+def test_a_first_service_that_systemd_does_not_take_leaves_the_release_before_as_it_was(ready, checkout, systemctl):
+    checkout.deploy()
+    old = ready.release()
+    ready.replace("systemctl", systemctl)
+    checkout.change()
+    status, output = checkout.deploy("--service")
+    assert status == 1, output
+    assert "systemd did not" in output
+    assert f"{old} runs again" in output
+    assert is_no_service(ready)
+    assert ready.runs() == ready.release() == old
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert is_no_service(ready)
+    assert ready.runs() == ready.release() != old
+
+
+def test_a_first_release_of_all_that_systemd_does_not_take_is_no_service(ready, checkout):
+    ready.replace("systemctl", "exit 1")
+    assert checkout.deploy("--service")[0] == 5
+    assert not unit(ready).exists()
+    assert checkout.deploy()[0] == 0
+    assert is_no_service(ready)
+
+
+def test_a_bad_release_does_not_become_a_service(ready, checkout):
+    checkout.deploy()
+    old = ready.release()
+    checkout.change("params", "\nraise RuntimeError('no')\n")
+    status, output = checkout.deploy("--service")
+    assert status == 1, output
+    assert is_no_service(ready)
+    assert ready.runs() == old
+    assert commands(ready)[-2:] == ["disable kickctl", "daemon-reload"]
+
+
+def test_a_bad_release_of_a_service_takes_its_unit_file_with_it(served, checkout):
+    old, text = served.release(), unit(served).read_bytes()
+    template = checkout.folder / "robot" / "service" / "kickctl.service"
+    template.write_text(template.read_text(encoding="utf-8").replace("run --idle", "run --fly"), encoding="utf-8")
+    status, output = checkout.deploy("--service")
+    assert status == 1, output
+    assert unit(served).read_bytes() == text
+    assert served.runs() == old
+
+
+def test_no_service_undoes_it_and_the_release_stays(served, checkout):
+    release, pid = served.release(), served.pid()
+    status, output = checkout.deploy("--no-service")
+    assert status == 0, output
+    assert is_no_service(served)
+    assert served.runs() == served.release() == release
+    assert served.pid() != pid
+    assert "wheels will turn" in output
+    assert "disable kickctl" in commands(served)
+    status, output = checkout.deploy("--no-service")
+    assert (status, "no service" in output) == (1, True)
+    assert checkout.deploy()[0] == 0
+    assert is_no_service(served)
+
+
+def test_no_service_of_a_brick_that_was_never_deployed_to(brick, checkout):
+    status, output = checkout.deploy("--no-service")
+    assert (status, "no service" in output) == (1, True)
+    assert list(brick.home.iterdir()) == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSEGV, signal.SIGSTOP])
@@ -89,7 +180,9 @@ def test_without_the_administrators_password_nothing_is_touched(served, checkout
     status, output = checkout.deploy()
     assert status == 1
     assert "at a terminal" in output
+    assert checkout.deploy("--no-service")[0] == 1
     assert (served.release(), served.pid()) == (release, pid)
+    assert unit(served).exists()
     served.replace("sudo", 'exec "$@"')
     assert checkout.deploy()[0] == 0
 

@@ -47,6 +47,7 @@ def test_deploy_then_a_kick_through_the_tunnel_reverses_the_wheels(brick, checko
             status, output = checkout.deploy()
             assert status == 0, output
             assert "running (started), battery" in output
+            assert "kickctl --brick ssh://brick kick --mode phase" in output
             status, out, err = checkout.kickctl("--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4", "--json")
             assert status == 0, err
             result = json.loads(out)
@@ -113,7 +114,7 @@ def test_a_brick_that_one_may_not_log_in_to(brick, through):
     (brick.folder / "user_key.pub").write_text("", encoding="ascii")
     with pytest.raises(NoLink, match="Permission denied") as caught:
         connect("ssh://brick")
-    assert "ssh://robot@HOST" in caught.value.hint
+    assert "ssh://robot@brick" in caught.value.hint
 
 
 @needs_sshd
@@ -121,7 +122,25 @@ def test_a_brick_that_is_not_known(brick, through):
     (brick.folder / "known_hosts").write_text("", encoding="ascii")
     with pytest.raises(NoLink, match="Host key verification failed") as caught:
         connect("ssh://brick")
-    assert "new key" in caught.value.hint
+    assert "say yes" in caught.value.hint
+
+
+@needs_sshd
+def test_a_brick_with_a_new_card(brick, through):
+    """What ssh says of it is long: a warning between rows of @, and the reason at its end."""
+    key = (brick.folder / "user_key.pub").read_text(encoding="utf-8")
+    (brick.folder / "known_hosts").write_text(f"[127.0.0.1]:{brick.port} {key}", encoding="utf-8")
+    with pytest.raises(NoLink, match=r"Host key verification failed\.$") as caught:
+        connect("ssh://brick")
+    assert "`ssh-keygen -R brick`" in caught.value.hint
+    assert "@@" not in caught.value.message
+    assert len(caught.value.message) < 400
+
+
+def test_a_name_that_nobody_has():
+    with pytest.raises(NoLink, match="Could not resolve hostname") as caught:
+        connect("ssh://nowhere.invalid")
+    assert "kickctl discover" in caught.value.hint
 
 
 def test_a_machine_without_ssh(monkeypatch, tmp_path):

@@ -70,14 +70,20 @@ def test_a_robot_that_ticks_is_well():
         assert examine(port, TOKEN)["state"] == "idle"
 
 
-def test_a_robot_in_fault_is_well_as_a_program(capsys, monkeypatch, tmp_path):
+def test_a_robot_in_fault_has_a_program_that_is_well(capsys, monkeypatch, tmp_path):
     (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
     (tmp_path / "token").chmod(0o600)
     with robot() as (port, loop):
         loop.safety.fault("the cable is out")
         monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")])
-        assert main() == 0
-    assert capsys.readouterr().out == "fault (the cable is out)\n"
+        assert main() == health.IN_FAULT
+    assert capsys.readouterr().out == "fault (the cable is out); mend that, then `kickctl clear` and `kickctl start`\n"
+
+
+def test_a_program_that_takes_connections_and_says_nothing_hangs(monkeypatch):
+    monkeypatch.setattr(health, "PATIENCE_S", 0.1)
+    with listening() as listener, pytest.raises(Unwell, match=r"it hangs, without a word for 0\.1 s"):
+        examine(listener.getsockname()[1], TOKEN)
 
 
 def test_one_that_does_not_tick_is_not(monkeypatch):
