@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from host.experiments.statistics import spread
 from host.log import Log
 from robot.kicks import WHEELS
 
@@ -63,9 +64,29 @@ class Span:
     end: int
 
 
-def starts(log: Log, spans: Sequence[Span]) -> Claim:
-    """R1: from random starts both directions are reached, equally fast. Each span is steady motion after a start of its own."""
-    speeds = np.array([log.omega(side)[span.first : span.end].mean() for span in spans for side in WHEELS])
+class Steady(NamedTuple):
+    """A wheel in steady motion: turns per second (forward positive), mean |duty cycle| in %, and std(M) / mean(|M|)."""
+
+    hz: float
+    duty_pct: float
+    ripple: float
+
+
+def steady(log: Log, span: Span) -> list[Steady]:
+    """The left and the right wheel in a span of steady motion."""
+    rows = slice(span.first, span.end)
+    found = []
+    for side in WHEELS:
+        torque = log.column(side + "_torque")[rows]
+        hertz = float(log.omega(side)[rows].mean()) / (2 * pi)
+        duty = float(np.abs(log.column(side + "_duty_pct")[rows]).mean())
+        found.append(Steady(hertz, duty, float(torque.std() / np.abs(torque).mean())))
+    return found
+
+
+def coexistence(wheels: Sequence[Steady]) -> Claim:
+    """R1: from random starts both directions are reached, equally fast. Each wheel comes from a start of its own."""
+    speeds = np.array([wheel.hz for wheel in wheels])
     forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
     both = len(forward) > 0 and len(backward) > 0
     asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
@@ -76,33 +97,39 @@ def starts(log: Log, spans: Sequence[Span]) -> Claim:
         asymmetry,
         "1",
         None,
-        both and bool(asymmetry <= 0.03),
-        f"difference of the speeds; {len(spans)} starts of two wheels: {len(forward)} forward, {len(backward)} backward",
+        both and asymmetry <= 0.03,
+        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward, {len(backward)} backward",
     )
 
 
-def locomotion(log: Log, span: Span) -> list[Claim]:
-    """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque in steady motion."""
-    rows = slice(span.first, span.end)
-    turns = [abs(log.omega(side)[rows].mean()) / (2 * pi) for side in WHEELS]
-    duty = float(np.mean([np.abs(log.column(side + "_duty_pct")[rows]).mean() for side in WHEELS]))
-    torques = [log.column(side + "_torque")[rows] for side in WHEELS]
-    ripple = max(float(torque.std() / np.abs(torque).mean()) for torque in torques)
-    hertz = float(np.mean(turns))
-    speed = 2 * pi * hertz * WHEEL_RADIUS_M
+def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
+    """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque."""
+    hertz = [abs(wheel.hz) for wheel in wheels]
+    mean, interval = float(np.mean(hertz)), spread(hertz)
+    duty, ripple = float(np.mean([wheel.duty_pct for wheel in wheels])), max(wheel.ripple for wheel in wheels)
+    to_m_s = 2 * pi * WHEEL_RADIUS_M
     return [
-        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", hertz, "Hz", None, 1.8 <= hertz <= 2.3),
+        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", mean, "Hz", interval, 1.8 <= mean <= 2.3),
         Claim(
             "R3",
             "speed, and share of the motor's power, at k = 8",
             "0.32 to 0.39 m/s, duty 80 to 90 %",
-            speed,
+            mean * to_m_s,
             "m/s",
-            None,
-            0.32 <= speed <= 0.39 and 80.0 <= duty <= 90.0,
+            (interval[0] * to_m_s, interval[1] * to_m_s) if interval else None,
+            0.32 <= mean * to_m_s <= 0.39 and 80.0 <= duty <= 90.0,
             f"at a duty cycle of {duty:.0f} %",
         ),
-        Claim("R4", "the torque M is quasi-stationary", "std(M) / mean(|M|) < 0.1", ripple, "1", None, ripple < 0.1),
+        Claim(
+            "R4",
+            "the torque M is quasi-stationary",
+            "std(M) / mean(|M|) < 0.1",
+            ripple,
+            "1",
+            None,
+            ripple < 0.1,
+            f"the greatest of {len(wheels)} wheels",
+        ),
     ]
 
 

@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
         if robot.status()["state"] != "running":
             robot.start()
         drive(robot, log, "forward")
-        steady = showing.steady(robot, log)
+        rolling = showing.steady(robot, log)
         outcome = kick_and_watch(robot, log, "phase", ticks=4)
         figure = draw(log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick)
         advance(1)
@@ -41,7 +41,13 @@ def run(options: argparse.Namespace) -> int:
         ramp = showing.ramp(robot, log)
         advance(4)
         brick, seed = robot.link.uri, robot.hello["seed"]
-    report = [claims.starts(log, starts), *claims.locomotion(log, steady), claims.break_away(log, ramp), claims.inversions(inversions)]
+    begun = [wheel for span in starts for wheel in claims.steady(log, span)]
+    report = [
+        claims.coexistence(begun),
+        *claims.locomotion(claims.steady(log, rolling)),
+        claims.break_away(log, ramp),
+        claims.inversions(inversions),
+    ]
     holds = outcome.reversed and all(claim.holds for claim in report)
     if options.json:
         show(

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import WHEEL_RADIUS_M, Claim
+from host.claims import Claim, Steady, coexistence, locomotion, steady
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import spread, wilson
+from host.experiments.statistics import wilson
 from host.kicking import FORWARD, STOPPED, kick_and_watch, require_running
 from host.log import Log
 from host.motion import heading
@@ -120,20 +120,7 @@ def _start(robot: Robot, log: Log) -> list[Row]:
     """Steady motion of each wheel after a start from random potentials."""
     (span,) = starts(robot, log, 1)
     require_running(robot)
-    part = slice(span.first, span.end)
-    rows = []
-    for side in WHEELS:
-        torque = log.column(side + "_torque")[part]
-        rows.append(
-            {
-                "kind": "start",
-                "side": side,
-                "hz": float(log.omega(side)[part].mean() / (2 * pi)),
-                "duty_pct": float(np.abs(log.column(side + "_duty_pct")[part]).mean()),
-                "ripple": float(torque.std() / np.abs(torque).mean()),
-            }
-        )
-    return rows
+    return [{"kind": "start", "side": side, **wheel._asdict()} for side, wheel in zip(WHEELS, steady(log, span), strict=True)]
 
 
 def _rest(robot: Robot, log: Log, k: float) -> Row:
@@ -164,60 +151,16 @@ def rests(rows: list[Row], k: float, name: str) -> tuple[int, int]:
 
 def report(rows: list[Row], setting: Setting) -> Findings:
     """R1 to R4 and R7."""
-    begun = [row for row in rows if row["kind"] == "start"]
+    begun = [Steady(*(row[name] for name in Steady._fields)) for row in rows if row["kind"] == "start"]
     table = {f"{begin} to {end}": _score(transitions(rows, begin, end)) for begin in STATES for end in STATES if begin != end}
     rest = {str(k): {name: [*rests(rows, k, name)] for name in ("runs", "stays")} for k in KS}
-    return Findings([*_locomotion(begun), _primitives(rows)], {"transitions": table, "rest_after_a_pulse_of_k": rest})
+    return Findings([coexistence(begun), *locomotion(begun), _primitives(rows)], {"transitions": table, "rest_after_a_pulse_of_k": rest})
 
 
 def _score(tries: list[Row]) -> dict[str, Any]:
     seconds = [row["seconds"] for row in tries if row["reached"]]
     rate = wilson(len(seconds), len(tries))
     return {"reached": len(seconds), "of": len(tries), "rate": rate, "median_s": float(np.median(seconds)) if seconds else None}
-
-
-def _locomotion(begun: list[Row]) -> list[Claim]:
-    speeds = np.array([row["hz"] for row in begun])
-    forward, backward = speeds[speeds > 0], -speeds[speeds < 0]
-    both = len(forward) > 0 and len(backward) > 0
-    asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
-    hertz, duty = np.abs(speeds), float(np.mean([row["duty_pct"] for row in begun]))
-    mean, interval = float(hertz.mean()), spread(hertz.tolist())
-    to_m_s = 2 * pi * WHEEL_RADIUS_M
-    ripple = [row["ripple"] for row in begun]
-    return [
-        Claim(
-            "R1",
-            "forward and backward locomotion coexist",
-            "both from random starts, speeds equal within 3 %",
-            asymmetry,
-            "1",
-            None,
-            both and asymmetry <= 0.03,
-            f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward, {len(backward)} backward",
-        ),
-        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", mean, "Hz", interval, 1.8 <= mean <= 2.3),
-        Claim(
-            "R3",
-            "speed, and share of the motor's power, at k = 8",
-            "0.32 to 0.39 m/s, duty 80 to 90 %",
-            mean * to_m_s,
-            "m/s",
-            (interval[0] * to_m_s, interval[1] * to_m_s) if interval else None,
-            0.32 <= mean * to_m_s <= 0.39 and 80.0 <= duty <= 90.0,
-            f"at a duty cycle of {duty:.0f} %",
-        ),
-        Claim(
-            "R4",
-            "the torque M is quasi-stationary",
-            "std(M) / mean(|M|) < 0.1",
-            max(ripple),
-            "1",
-            None,
-            max(ripple) < 0.1,
-            f"the greatest of {len(ripple)} wheels",
-        ),
-    ]
 
 
 def _primitives(rows: list[Row]) -> Claim:

@@ -1,4 +1,4 @@
-"""How surely a kick reverses a wheel, against its length: position and phase kicks of both signs, membrane beside them (R8 to R11).
+"""How surely a kick reverses a wheel, against its length: position and phase kicks of both signs, membrane beside them (R8 to R10).
 
 A trial is one wheel that has settled, at whatever phase the kick meets it. Phase kicks of both signs are given to wheels of both
 directions: of the sign that the paper names for a direction, and of the other one, of which it says nothing.
@@ -14,7 +14,7 @@ import numpy as np
 from host.claims import Claim
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import spread, wilson
+from host.experiments.statistics import wilson
 from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
 from host.log import Log
 from host.motion import settling_s
@@ -96,8 +96,8 @@ def points(rows: list[Row], mode: str, ticks: int, named: bool | None = None) ->
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """R8 to R11."""
-    claims = [_membrane(rows), _quenched("R9", rows, POSITION, None), _quenched("R10", rows, PHASE, named=True), _settling(rows)]
+    """R8 to R10."""
+    claims = [_membrane(rows), _quenched("R9", rows, POSITION, None), _quenched("R10", rows, PHASE, named=True)]
     rates = {
         name: [[*rate(points(rows, mode, ticks, named))] for ticks in LENGTHS]
         for name, mode, named in (("position", POSITION, None), ("phase", PHASE, True), ("phase, other sign", PHASE, False))
@@ -144,21 +144,4 @@ def _quenched(number: str, rows: list[Row], mode: str, named: bool | None) -> Cl
         wilson(*of(best, worst)),
         share(best, worst) >= RELIABLE and short <= FAILS and long <= FAILS,
         f"at {best} ticks, in the worse direction; at 1 tick {short:.0%}; of 6 to 10 ticks the least sure reverses {long:.0%}",
-    )
-
-
-def _settling(rows: list[Row]) -> Claim:
-    times = [row["settling_s"] for row in rows if row["reversed"] and row["settling_s"] is not None]
-    median = float(np.median(times)) if times else 0.0
-    longest = max(times, default=0.0)
-    low, high = np.quantile(times or [0.0], (0.05, 0.95))
-    return Claim(
-        "R11",
-        "settling into the reversed cycle outlasts the kick (half a second or more is seen)",
-        "distribution of settling times",
-        median,
-        "s",
-        spread(times, np.median),
-        longest >= 0.5,
-        f"median of {len(times)} reversals; 5 to 95 %: {low:.2f} to {high:.2f} s",
     )
