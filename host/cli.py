@@ -85,7 +85,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         _drop_output()
         place = f"{error.filename} " if error.filename else ""
-        print(f"kickctl: {place}cannot be written or read: {error.strerror or error}\n  is the disk full?", file=sys.stderr)
+        message = f"{place}cannot be written or read: {error.strerror or error}"
+        if options.json:
+            print(json.dumps({"error": {"message": message, "hint": "is the disk full?", "status": 1}}))
+        print(f"kickctl: {message}\n  is the disk full?", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("kickctl: interrupted", file=sys.stderr)

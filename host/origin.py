@@ -21,7 +21,7 @@ def origin(uri: str, hello: dict[str, Any], status: dict[str, Any], clock_zero_s
         "robot_machine": hello["machine"],
         "host_software": __version__,
         "host_machine": f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}",
-        "commit": _commit(),
+        "commit": commit(),
         "params": status["params"],
         "polarity": {side: status["params"]["polarity_" + side] for side in ("left", "right")},
         "battery_v": status["battery_v"],
@@ -30,7 +30,7 @@ def origin(uri: str, hello: dict[str, Any], status: dict[str, Any], clock_zero_s
     }
 
 
-def _commit() -> str:
+def commit() -> str:
     """The commit of the checkout that this runs from, with a '+' if it was changed; empty outside of one."""
     root = Path(__file__).resolve().parent.parent
     if not (root / ".git").exists():

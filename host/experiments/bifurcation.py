@@ -155,7 +155,7 @@ def _stall(rows: list[Row]) -> Claim:
         _mean(torques),
         "1",
         spread(torques),
-        all(row["holds"] for row in ramps),
+        bool(ramps) and all(row["holds"] for row in ramps),
         f"slow ramps from rest: {len(ramps)}, in all of which both wheels rest below 0.1 and move at 0.11 at most"
         if all(row["holds"] for row in ramps)
         else "; ".join(row["note"] for row in ramps if not row["holds"]),
@@ -167,7 +167,7 @@ def _jump(folds: list[Row], critical: list[float], again: list[float]) -> Claim:
     after = max((abs(row["torque_after"]) for row in folds), default=1.0)
     interval = spread(before)
     jumps = interval is not None and interval[0] > LEAST_JUMP and after < STALL_TORQUE
-    hysteresis = bool(again) and float(np.median(again)) > max(critical)
+    hysteresis = bool(again and critical) and float(np.median(again)) > max(critical)
     low, high = spread(critical) or (0.0, 0.0)
     return Claim(
         "R6",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 
@@ -20,6 +21,8 @@ def spread(
         from distributed.scheduler import KilledWorker
     except ImportError as error:
         raise WrongUse("--scheduler needs the package distributed", "install it: pip install 'kickctl[cluster]'") from error
+    if not re.fullmatch(r"\w+://.+:\d+", address):
+        raise WrongUse(f"'{address}' is no address of a Dask scheduler", "it is like tcp://HOST:8786")
     try:
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from host.claims import Claim
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.reliability import FAILS, RELIABLE, SURE_LENGTHS, TURN_S
+from host.experiments.reliability import FAILS, LEAST_TRIALS, RELIABLE, SURE_LENGTHS, TURN_S
 from host.experiments.statistics import wilson
 from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
 from host.log import Log
@@ -127,6 +127,7 @@ def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> 
     worst = {ticks: _least_sure(totals[LENGTHS.index(ticks)]) for ticks in SURE_LENGTHS}
     best = max(SURE_LENGTHS, key=lambda ticks: _share(*worst[ticks]))
     rate = _share(*worst[best])
+    few = "" if worst[best][1] >= LEAST_TRIALS else f"; {worst[best][1]} kicks there decide nothing: give more --kicks"
     long = min(blind[ticks] for ticks in LENGTHS if ticks > max(SURE_LENGTHS))
     return Claim(
         number,
@@ -135,9 +136,9 @@ def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> 
         rate,
         "1",
         wilson(*worst[best]),
-        rate >= RELIABLE and blind[1] <= FAILS and long <= FAILS,
+        not few and rate >= RELIABLE and blind[1] <= FAILS and long <= FAILS,
         f"at {best} ticks, in the direction and at the phase where it is least sure; at 1 tick {blind[1]:.0%}; of 6 to {LENGTHS[-1]} ticks"
-        f" the least sure reverses {long:.0%}",
+        f" the least sure reverses {long:.0%}{few}",
     )
 
 

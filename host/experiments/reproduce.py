@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from host import report
 from host.claims import Claim
 from host.errors import WrongUse
-from host.experiments.run import RESULTS, perform
+from host.experiments.run import RESULTS, address, perform
 from host.experiments.table import TABLE
 from host.links import sim_options
 
@@ -41,12 +41,14 @@ def reproduce(
 ) -> Reproduction:
     """Run what settles the claims `only`, by default all that the robot can do, and write OUT/report.html.
 
-    Each experiment goes on where it was cut short. Raises KickctlError.
+    The report of some claims has their names in its own, as report-R5-R6.html. Each experiment goes on where it was cut short. Raises
+    KickctlError.
     """
     unknown = [number for number in only if number not in known()]
     if unknown:
         raise WrongUse(f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(known()))
-    simulated = uri is None or sim_options(uri) is not None
+    uri = address(uri)
+    simulated = sim_options(uri) is not None
     skipped = {} if simulated or only else NEEDS
     wanted = [number for number in known() if number not in skipped and (not only or number in only)]
     summaries: list[dict[str, Any]] = []
@@ -57,5 +59,6 @@ def reproduce(
             summaries.append(summary)
             found = [Claim.from_dict(claim) for claim in summary["claims"]]
             claims.update((claim.id, claim) for claim in found if claim.id in entry.claims and claim.id in wanted)
-    page = report.write(Path(out) / "report.html", [claims[number] for number in wanted], summaries, skipped)
+    name = "-".join(["report", *(wanted if only else [])])
+    page = report.write(Path(out) / f"{name}.html", [claims[number] for number in wanted], summaries, skipped)
     return Reproduction([claims[number] for number in wanted], skipped, page)

@@ -19,9 +19,11 @@ from host.experiments.study import Study, digest
 from host.experiments.table import checked, load
 from host.links import SIM, make_link, sim_options
 from host.log import Log
+from host.origin import commit
 from host.progress import progress
 from host.recording import McapTap
 from robot import __version__
+from robot.params import TABLE as TABLE_OF_PARAMETERS
 from sim_motor.motor import load as constants
 
 RESULTS = Path("results")
@@ -29,6 +31,10 @@ DEFAULT_SEED = 1
 # A robot's cell is tried again when something else came between, a fault or a link that broke.
 TRIES = 3
 PAUSE_S = 1.0
+# The paper's parameters, with which every trial begins, whatever a robot was set to; it gets its own back in the end.
+PAPER = {name: TABLE_OF_PARAMETERS[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")}
+# What of sim:// an experiment leaves to its user.
+OWN_OPTIONS = ("motor", "battery", "seed", "idle")
 
 Outcome = tuple[list[Row], list[str]]  # and why earlier tries did not count
 Result = tuple[Cell, list[Row], list[str]]
@@ -54,10 +60,14 @@ def perform(
     """
     options = checked(name, arguments)
     experiment = load(name)
-    uri = uri or os.environ.get("KICK_BRICK") or SIM
+    uri = address(uri)
     make_link(uri)  # raises, in words, if that is no robot's address
-    seed = DEFAULT_SEED if seed is None else seed
     simulated = sim_options(uri)
+    for option in simulated or ():
+        if option not in OWN_OPTIONS:
+            raise WrongUse(f"an experiment places its robots itself, and '{uri}' says {option}", "leave that out")
+    if seed is None:
+        seed = int((simulated or {}).get("seed", DEFAULT_SEED))
     batch = simulated is not None and experiment.simulate is not None
     if scheduler and not batch:
         raise WrongUse("--scheduler spreads simulations, and this experiment runs on a robot's loop", "leave it out")
@@ -65,7 +75,7 @@ def perform(
     if simulated is not None:
         battery_v = float(simulated["battery"]) if "battery" in simulated else None
         setting = Setting(seed, options, simulated.get("motor", setting.motor), battery_v)
-    settings = {"experiment": name, "brick": uri, "seed": seed, "options": options, "version": __version__}
+    settings = {"experiment": name, "brick": uri, "seed": seed, "options": options, "version": __version__, "commit": commit()}
     if simulated is not None:
         settings["motor"] = asdict(constants(setting.motor))  # an own motor of the same name may be another one tomorrow
     study = Study(Path(out), settings)
@@ -78,11 +88,16 @@ def perform(
             with _robots(experiment, uri, setting, token, study.folder / "logs", say) as work:
                 _do(cells, study, work, name)
         return _summary(name, experiment, cells, setting, study, settings)
-    except (KickctlError, KeyboardInterrupt):
+    except (KickctlError, KeyboardInterrupt, OSError):
         say(f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes on from there")
         raise
     finally:
         study.close()
+
+
+def address(uri: str | None) -> str:
+    """The robot's address: the one given, else $KICK_BRICK, else the simulated robot's."""
+    return uri or os.environ.get("KICK_BRICK") or SIM
 
 
 def _do(cells: list[Cell], study: Study, work: Work, name: str) -> None:
@@ -122,10 +137,12 @@ def _robots(
     if sim_options(uri) is None:
         with connect(uri, token=token) as robot:
             robot.on_trouble = say
+            own = {name: robot.status()["params"][name] for name in PAPER}
             try:
                 yield lambda cell: _patient(experiment, cell, robot, setting, logs, say)
             finally:
                 robot.stop()
+                _set(robot, own)
         return
 
     def alone(cell: Cell) -> Outcome:
@@ -144,6 +161,7 @@ def _trial(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, l
     """One try of a cell, with its raw log, which a cell's next try replaces."""
     path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
+    _set(robot, PAPER)
     if robot.status()["state"] != "running":
         robot.start()
     info = {**robot.info(), "cell": cell}
@@ -152,10 +170,21 @@ def _trial(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, l
         robot.add_tap(file)
         robot.add_tap(log)
         try:
-            return experiment.trial(cell, robot, log, setting)
+            rows = experiment.trial(cell, robot, log, setting)
         finally:
             robot.remove_tap(log)
             robot.remove_tap(file)
+    if log.restarts() or log.missing():
+        raise NotDone("the robot's program began anew meanwhile, or records were lost", "look at its log: ./deploy.sh --logs")
+    return rows
+
+
+def _set(robot: Robot, wanted: dict[str, Any]) -> None:
+    """Set those parameters that are not as wanted."""
+    params = robot.status()["params"]
+    changes = {name: value for name, value in wanted.items() if params[name] != value}
+    if changes:
+        robot.set(**changes)
 
 
 def _patient(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path, say: Callable[[str], None]) -> Outcome:

@@ -37,7 +37,7 @@ TABLE = {
     ),
     "timeline": Entry(
         "the three kicks one after the other: potentials, torque, settling, and the phase slip between the wheels",
-        (Option("trials", 20, 1, 10000, "rounds of the three kicks"),),
+        (Option("trials", 25, 1, 10000, "rounds of the three kicks, there and back"),),
         ("R11", "R12"),
     ),
     "reliability": Entry(

@@ -10,11 +10,12 @@ from matplotlib.figure import Figure
 from host.experiments.bifurcation import SIGN, STALL_TORQUE, held, least_k
 from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
+from host.kicking import FORWARD
 
 _COLOUR = {"forward": COLOURS[0], "backward": COLOURS[1], "rest": "black"}
 _QUANTITIES = (("torque", "torque $M$", "$|M|$", 1.1, 0.45), ("hz", r"$\omega/2\pi$ (Hz)", r"$|\omega|/2\pi$ (Hz)", 2.3, 0.75))
 _WAYS = {"down": ("o", "full"), "up": ("^", "none")}
-_NEAR_K = (-0.06, 0.12)  # around k_c
+_NEAR_K = (-0.015, 0.03)  # around k_c
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -69,6 +70,10 @@ def _draw_cycles(axes: Axes, rows: list[Row], quantity: str) -> None:
         if node is None:
             continue
         fold = cycles.index(node)
-        for part, line, label in ((cycles[: fold + 1], (0, (3, 1.5)), "unstable cycle"), (cycles[fold:], "-", "stable cycle")):
-            style: Any = {"linestyle": line, "color": _COLOUR[motion], "marker": ".", "markersize": 5}
+        for part, line, label in ((cycles[: fold + 1], (0, (2, 1)), "unstable cycle"), (cycles[fold:], "-", "stable cycle")):
+            style: Any = {"linestyle": line, "color": _COLOUR[motion]}
             axes.plot([row["k"] for row in part], [abs(row[quantity]) for row in part], label=f"{motion}, {label}", **style)
+        if motion == FORWARD:
+            lowest = cycles[0]
+            spot = lowest["k"] + 0.0008, abs(lowest[quantity])
+            axes.text(*spot, "unstable", va="center", fontsize=12)

@@ -115,17 +115,17 @@ def size(folder):
 
 
 def test_reliability_ends_with_its_claims_and_files(kickctl):
-    status, out, err = kickctl("experiment", "reliability", "--trials", "20", "--json")
+    status, out, err = kickctl("experiment", "reliability", "--trials", "25", "--json")
     summary = json.loads(out)
     assert status == 0, err
     assert [claim["id"] for claim in summary["claims"]] == ["R8", "R9", "R10"]
     assert all(claim["holds"] for claim in summary["claims"])
     assert summary["seed"] == 1
     rows = Path(summary["table"]).read_text().splitlines()
-    assert len(rows) == 1 + summary["trials"] == 1 + 31 * 2 * 20
+    assert len(rows) == 1 + summary["trials"] == 1 + 31 * 2 * 25
     assert all(Path(figure).stat().st_size > 10000 for figure in summary["figures"])
     assert json.loads((Path(summary["folder"]) / "summary.json").read_text()) == summary
-    status, out, err = kickctl("experiment", "reliability", "--trials", "20")
+    status, out, err = kickctl("experiment", "reliability", "--trials", "25")
     assert "31 of 31 pieces are done" in err
     assert "R9 holds" in out
 
@@ -141,6 +141,9 @@ def test_reliability_ends_with_its_claims_and_files(kickctl):
         (("experiment", "reliability", "--brick", "sim://?battery=much"), 2, "cannot be simulated"),
         (("experiment", "reliability", "--brick", "tcp://127.0.0.1:1"), 3, "no robot's program runs"),
         (("experiment", "reliability", "--brick", "tcp://127.0.0.1:1", "--scheduler", "tcp://127.0.0.1:2"), 2, "--scheduler"),
+        (("experiment", "reliability", "--brick", "sim://?walls=2.0"), 2, "says walls"),
+        (("experiment", "reliability", "--brick", "sim://?battery=0.5"), 1, "0 rolled forward and 0 backward"),
+        (("experiment", "reliability", "--scheduler", "bogus"), 2, "no address of a Dask scheduler"),
         (("reproduce", "--only", "R99"), 2, "there is no claim R99"),
     ],
 )
@@ -187,6 +190,76 @@ def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(toy, 
     assert f"3 of {COUNT} pieces are kept" in said[-1]
 
 
+def test_a_try_in_which_the_robots_program_began_anew_does_not_count(toy, desk, tmp_path, monkeypatch):
+    real = toy.trial
+    broken = []
+
+    def trial(cell, robot, log, setting):
+        rows = real(cell, robot, log, setting)
+        if cell["number"] == 1 and not broken:
+            broken.append(log)
+            log.take_event({"event": "restart", "tick": 0})
+        return rows
+
+    toy.trial = trial
+    summary = perform("toy", desk[0], out=tmp_path)
+    assert len(summary["spoiled"]) == 1
+    assert "began anew" in summary["spoiled"][0]
+    assert toy.done == [0, 1, 1, 2, 3, 4, 5]
+
+
+def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(toy, desk, tmp_path):
+    from host.client import connect
+
+    own = {"k": 2.0, "tick_s": 0.02, "tau_s": 0.5}
+    with connect(desk[0]) as robot:
+        robot.set(**own)
+    seen = []
+    real = toy.trial
+
+    def trial(cell, robot, log, setting):
+        params = robot.status()["params"]
+        seen.append((params["k"], params["tick_s"], params["tau_s"]))
+        robot.set(k=1.0)  # as an experiment may
+        return real(cell, robot, log, setting)
+
+    toy.trial = trial
+    perform("toy", desk[0], out=tmp_path)
+    assert seen == [(8.0, 0.03, 0.25)] * COUNT
+    with connect(desk[0]) as robot:
+        params = robot.status()["params"]
+    assert {name: params[name] for name in own} == own
+
+
+def test_a_simulated_robots_seed_may_stand_in_its_address(toy, tmp_path):
+    summaries = [perform("toy", uri, seed, out=tmp_path) for uri, seed in (("sim://?seed=7", None), ("sim://", 7), ("sim://", 8))]
+    assert [summary["seed"] for summary in summaries] == [7, 7, 8]
+    assert summaries[0]["numbers"] == summaries[1]["numbers"] != summaries[2]["numbers"]
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_no_real_robot_is_sent_against_a_wall_that_nobody_has_built(monkeypatch, tmp_path, named):
+    from host.experiments import reproduce
+
+    asked = []
+
+    def perform(name, uri, *_, **__):
+        asked.append((name, uri))
+        claims = [Claim(number, "", "", 1.0, "1", None, True).as_dict() for number in table.TABLE[name].claims]
+        return {"claims": claims, "brick": uri, "seed": 1, "version": "", "figures": [str(figure)], "experiment": name, "options": {}} | (
+            {"spoiled": [], "trials": 1, "folder": ""}
+        )
+
+    figure = tmp_path / "figure.png"
+    figure.write_bytes(b"")
+    monkeypatch.setattr(reproduce, "perform", perform)
+    monkeypatch.setenv("KICK_BRICK", "tcp://robot:5425")
+    done = reproduce.reproduce(only=["R13"] if named else [], out=tmp_path)
+    assert {uri for _, uri in asked} == {"tcp://robot:5425"}
+    assert ("wall" in {name for name, _ in asked}) == named
+    assert ("R13" in done.skipped) == (not named)
+
+
 def test_after_an_experiment_the_robot_stands_still(toy, desk, tmp_path):
     from host.client import connect
 
@@ -201,7 +274,7 @@ def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
     assert status == 0
     assert [claim["id"] for claim in claims] == ["R8", "R10"]
     assert set(claims[0]) == {"id", "claim", "paper", "measured", "unit", "interval", "holds", "note"}
-    page = Path("results/report.html").read_text()
+    page = Path("results/report-R8-R10.html").read_text()
     assert page.count("<img") == page.count("data:image/png;base64,") == 1
     assert "http" not in page
     for claim in claims:

@@ -156,9 +156,12 @@ def series_rows(records):
 
 def test_r14_holds_for_a_robot_whose_wheels_switch_irregularly(delayed):
     rows = series_rows(delayed)
-    findings = chaos.report(rows, SETTING)
+    findings = chaos.report(rows, Setting(3, {"minutes": 10.0}))
     (claim,) = findings.claims
     assert (claim.id, claim.measured, claim.holds) == ("R14", 1.0, True)
+    (claim,) = chaos.report(rows, SETTING).claims
+    assert (claim.measured, claim.holds) == (1.0, False)
+    assert "2.5 min decide nothing" in claim.note
     assert len(draw(rows, findings).axes) == 4
 
 

@@ -164,7 +164,10 @@ def test_the_experiment_tries_what_was_asked_in_chunks_and_reports_the_best_besi
     assert sum(cell["kicks"] for cell in kick_map.cells({"kicks": 2000000}, batch=True)) == pytest.approx(2000000, abs=36)
     summary = perform("kick-map", kicks=36 * 300, out=tmp_path, seed=2)
     assert json.loads(json.dumps(summary["numbers"])) == summary["numbers"]
-    assert {claim["id"]: claim["holds"] for claim in summary["claims"]} == {"R9": True, "R10": True}
+    assert {claim["id"]: claim["measured"] for claim in summary["claims"]} == {"R9": 1.0, "R10": 1.0}
+    for claim in summary["claims"]:  # four kicks at a phase, all of which reversed
+        assert not claim["holds"]
+        assert "decide nothing" in claim["note"]
     maps = {(entry["mode"], entry["sign"], entry["before"]): entry for entry in summary["numbers"]["maps"]}
     assert len(maps) == 6
     for entry in maps.values():
