@@ -10,13 +10,11 @@ IDLE, RUNNING, HELD, STOPPED, FAULT = range(len(STATES))
 
 def limit_duty(torque, max_duty_pct):
     """The duty cycle for a relative torque: a whole number of percent, never beyond +-max_duty_pct nor +-100; 0 for NaN."""
-    bound = int(max_duty_pct) if max_duty_pct < 100.0 else 100
     duty = max_duty_pct * torque
-    if -bound < duty < bound:
-        return round(duty)
     if isnan(duty):
         return 0
-    return bound if duty > 0.0 else -bound
+    bound = int(min(max_duty_pct, 100.0))
+    return round(max(-bound, min(bound, duty)))
 
 
 class Safety(object):
