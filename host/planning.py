@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
@@ -130,15 +130,17 @@ def _width(plan: Plan) -> float:
     return (last - first) % tau
 
 
-def reversal(before: int, values: dict[str, Any]) -> Plan | None:
+def reversal(before: int, values: dict[str, Any], say: Callable[[str], None] = lambda words: None) -> Plan | None:
     """The plan for a wheel that runs in this direction, at a robot's parameters by name; None if no quenched kick is sure.
 
-    The map takes some seconds, once for these parameters: its plan is kept in ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json.
+    The map takes some seconds, once for these parameters, of which `say` is told: its plan is kept in
+    ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json.
     """
     chosen = tuple(values[name] for name in _MAPPED)
     key = json.dumps([__version__, before, *chosen])
     kept = _kept()
     if key not in kept:
+        say("computing which kicks reverse a wheel at these parameters: some seconds, this once")
         plan = _planned(before, *chosen)
         _keep({**_kept(), key: plan and asdict(plan)})
         return plan

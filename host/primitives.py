@@ -75,15 +75,15 @@ def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
         if not wrong:
             break
         params = robot.status()["params"] if len(kicks) < PLANNED_KICKS else None
-        kicks.append(_kick(robot, log, {side: plan(present[side], wanted[side], params) for side in wrong}))
+        kicks.append(_kick(robot, log, {side: plan(robot, present[side], wanted[side], params) for side in wrong}))
     return kicks
 
 
-def plan(present: str, wanted: str, params: dict[str, Any] | None) -> Plan:
+def plan(robot: Robot, present: str, wanted: str, params: dict[str, Any] | None) -> Plan:
     """The kick for a wheel of this heading that should have another, at a robot's parameters; without them, the one that needs no map."""
     if present == STOPPED:
         return Plan(PHASE, DEFAULT_TICKS[PHASE], SHIFT_TOWARD[wanted])
-    planned = reversal(DIRECTIONS[present], params) if params and present in DIRECTIONS else None
+    planned = reversal(DIRECTIONS[present], params, robot.on_trouble) if params and present in DIRECTIONS else None
     return planned or Plan(MEMBRANE, DEFAULT_TICKS[MEMBRANE])
 
 

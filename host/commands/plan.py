@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from host.terminal import robot_of, say, show
+from host.terminal import robot_of, show
 
 if TYPE_CHECKING:
     from host.client import Robot
@@ -28,7 +28,6 @@ def run(options: argparse.Namespace) -> int:
         require_running(robot)
         if not wait_settled(robot):
             raise NotDone("the wheels did not settle, so there is no cycle to kick them out of", "look at k and tau_s: kickctl params list")
-        say("the kick map of the robot's parameters is being computed")
         wheels = {side: _plan(robot, side, options.to) for side in WHEELS}
         origin = {"params": robot.status()["params"], "brick": robot.link.uri, "seed": robot.hello["seed"]}
     if options.json:
@@ -49,7 +48,7 @@ def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
 
     present = heading_of([getattr(record, side + "_phi_rad") for record in robot.recent()])
     params = robot.status()["params"]
-    chosen = None if present == wanted else plan(present, wanted, params)
+    chosen = None if present == wanted else plan(robot, present, wanted, params)
     phi, step = course(robot, side)
     state = {"heading": present, "phase_rad": phi % (2 * pi), "turns_per_s": step / params["tick_s"] / (2 * pi)}
     if chosen is None:
