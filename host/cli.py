@@ -32,6 +32,7 @@ VERBS = (
     "doctor",
     "discover",
     "experiment",
+    "theory",
     "reproduce",
 )
 

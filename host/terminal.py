@@ -51,6 +51,17 @@ def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -
         print(sentence)
 
 
+def tell(summary: dict[str, Any]) -> None:
+    """What a run came to, in sentences: claims, and where its files are."""
+    from host.claims import Claim
+
+    for claim in summary["claims"]:
+        print(Claim.from_dict(claim).sentence())
+    for kind, paths in (("table", [summary["table"]]), ("figure", summary["figures"][:1]), ("file", summary["files"])):
+        for path in paths:
+            print(kind, path)
+
+
 @contextmanager
 def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
     """A log of all that the robot does meanwhile, in memory and, as it grows, in a new file of this path."""

@@ -1,6 +1,6 @@
-"""The one place that knows numba: typed decorators, and the robot's pure functions compiled as they are."""
+"""The one place that knows numba: typed decorators, and the robot's pure functions told anew in another mathematics, or compiled."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from types import FunctionType
 from typing import Any, TypeVar, cast
@@ -34,12 +34,20 @@ def assembled_parallel(function: F) -> F:
 
 @cache
 def compiled(function: F) -> F:
-    """A plain Python function compiled together with the functions it calls, whose source stays as it is.
+    """A plain Python function compiled together with the functions it calls, whose source stays as it is."""
+    return retold(function, {}, numba.njit)
 
-    Its code object runs with globals in which every Python function that it names is replaced by the compiled one.
+
+def retold(function: F, mathematics: Mapping[str, Any], finish: Callable[[Any], Any] = lambda function: function) -> F:
+    """A plain Python function, and the functions it calls, from the same source in another mathematics.
+
+    Its code object runs with globals in which every Python function that it names is replaced by that function retold, and what
+    `mathematics` names, as "cos", by what is given there. finish: what is done to each function, as compiling it.
     """
     source = cast(FunctionType, function)
     names = source.__globals__
-    callees = {name: compiled(names[name]) for name in source.__code__.co_names if isinstance(names.get(name), FunctionType)}
-    twin = FunctionType(source.__code__, {**names, **callees}, source.__name__, source.__defaults__)
-    return cast(F, numba.njit(twin))
+    own = {name: mathematics[name] for name in source.__code__.co_names if name in mathematics}
+    for name in source.__code__.co_names:
+        if isinstance(names.get(name), FunctionType):
+            own[name] = retold(names[name], mathematics, finish)
+    return cast(F, finish(FunctionType(source.__code__, {**names, **own}, source.__name__, source.__defaults__)))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import importlib
-import json
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -13,14 +11,15 @@ from typing import Any
 from urllib.parse import urlencode
 
 from host.client import Robot, connect
-from host.errors import KickctlError, NoLink, NotDone, RobotFault, WrongUse
+from host.entries import checked
+from host.errors import NoLink, NotDone, RobotFault, WrongUse
 from host.experiments.experiment import Cell, Experiment, Row, Setting
-from host.experiments.study import Study, digest
-from host.experiments.table import checked, load
+from host.experiments.study import digest
+from host.experiments.table import TABLE, load
+from host.experiments.work import Outcome, Work, begun, do, finish, simulate
 from host.links import SIM, make_link, sim_options
 from host.log import Log
 from host.origin import commit
-from host.progress import progress
 from host.recording import McapTap
 from robot import __version__
 from robot.params import TABLE as TABLE_OF_PARAMETERS
@@ -35,10 +34,6 @@ PAUSE_S = 1.0
 PAPER = {name: TABLE_OF_PARAMETERS[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")}
 # What of sim:// an experiment leaves to its user.
 OWN_OPTIONS = ("motor", "battery", "seed", "idle")
-
-Outcome = tuple[list[Row], list[str]]  # and why earlier tries did not count
-Result = tuple[Cell, list[Row], list[str]]
-Work = Callable[[Cell], Outcome]
 
 
 def perform(
@@ -58,7 +53,7 @@ def perform(
     exactly these arguments has one of its own there. scheduler: address of a Dask scheduler for the compiled batch. arguments: the
     experiment's own options. Raises KickctlError; what was measured until then is kept.
     """
-    options = checked(name, arguments)
+    options = checked("experiment", TABLE, name, arguments)
     experiment = load(name)
     uri = address(uri)
     make_link(uri)  # raises, in words, if that is no robot's address
@@ -78,54 +73,20 @@ def perform(
     settings = {"experiment": name, "brick": uri, "seed": seed, "options": options, "version": __version__, "commit": commit()}
     if simulated is not None:
         settings["motor"] = asdict(constants(setting.motor))  # an own motor of the same name may be another one tomorrow
-    study = Study(Path(out), settings)
     cells = experiment.cells(options, batch=batch)
-    say(f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in {study.folder}")
-    try:
-        if batch:
-            _simulate(experiment, cells, setting, study, scheduler)
+    with begun(Path(out), settings, cells, say) as study:
+        if experiment.simulate and batch:
+            simulate(name, experiment.simulate, cells, setting, study, scheduler)
         elif any(cell not in study for cell in cells):
             with _robots(experiment, uri, setting, token, study.folder / "logs", say) as work:
-                _do(cells, study, work, name)
-        return _summary(name, experiment, cells, setting, study, settings)
-    except (KickctlError, KeyboardInterrupt, OSError):
-        say(f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes on from there")
-        raise
-    finally:
-        study.close()
+                do(name, cells, study, work)
+        rows = study.rows(cells)
+        return finish(name, rows, experiment.report(rows, setting), study, settings)
 
 
 def address(uri: str | None) -> str:
     """The robot's address: the one given, else $KICK_BRICK, else the simulated robot's."""
     return uri or os.environ.get("KICK_BRICK") or SIM
-
-
-def _do(cells: list[Cell], study: Study, work: Work, name: str) -> None:
-    missing = [cell for cell in cells if cell not in study]
-    _keep(((cell, *work(cell)) for cell in missing), len(cells) - len(missing), len(cells), study, name)
-
-
-def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:
-    with progress(name, total) as advance:
-        advance(done)
-        for cell, rows, spoiled in results:
-            study.keep(cell, rows, spoiled)
-            done += 1
-            advance(done)
-
-
-def _simulate(experiment: Experiment, cells: list[Cell], setting: Setting, study: Study, scheduler: str | None) -> None:
-    simulate = experiment.simulate
-    assert simulate is not None
-    name = simulate.__module__.rpartition(".")[2]
-    if scheduler is None:
-        _do(cells, study, lambda cell: (simulate(cell, setting), []), name)
-        return
-    from host.experiments.cluster import spread
-
-    missing = [cell for cell in cells if cell not in study]
-    results: Iterator[Result] = ((cell, rows, []) for cell, rows in spread(scheduler, simulate, missing, setting))
-    _keep(results, len(cells) - len(missing), len(cells), study, name)
 
 
 @contextmanager
@@ -203,27 +164,3 @@ def _patient(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting,
                 robot.clear()
         except NoLink as error:
             raise NoLink(error.message, error.hint or "mend the link, and run the same command again") from error
-
-
-def _summary(
-    name: str, experiment: Experiment, cells: list[Cell], setting: Setting, study: Study, settings: dict[str, Any]
-) -> dict[str, Any]:
-    rows = study.rows(cells)
-    findings = experiment.report(rows, setting)
-    draw = importlib.import_module("host.figures." + name.replace("-", "_")).draw
-    figures = study.write_figure(name, draw(rows, findings))
-    logs = study.folder / "logs"
-    summary = {
-        **settings,
-        "claims": [claim.as_dict() for claim in findings.claims],
-        "numbers": findings.numbers,
-        "trials": len(rows),
-        "spoiled": study.spoiled(),
-        "folder": str(study.folder),
-        "table": str(study.write_table(name, rows)),
-        "figures": [str(path) for path in figures],
-        "files": [str(study.write(file, text)) for file, text in findings.files.items()],
-        "logs": str(logs) if logs.exists() else None,
-    }
-    study.write("summary.json", json.dumps(summary, indent=1, allow_nan=False) + "\n")
-    return summary

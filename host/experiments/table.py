@@ -3,30 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, cast
 
-from host.errors import WrongUse
+from host.entries import Entry, Option, entry_of
 
 if TYPE_CHECKING:
     from host.experiments.experiment import Experiment
-
-
-class Option(NamedTuple):
-    """A number that an experiment can be asked for, of the type of its default, from `least` to `most`."""
-
-    name: str
-    default: int | float
-    least: float
-    most: float
-    doc: str
-
-
-class Entry(NamedTuple):
-    """An experiment, for people. claims: ids of the paper's claims that are settled here (others may be touched)."""
-
-    help: str
-    options: tuple[Option, ...]
-    claims: tuple[str, ...] = ()
 
 
 TABLE = {
@@ -73,25 +55,5 @@ TABLE = {
 
 def load(name: str) -> Experiment:
     """The module of an experiment. Raises WrongUse if there is none."""
-    if name not in TABLE:
-        raise WrongUse(f"there is no experiment '{name}'", "there are " + ", ".join(TABLE))
+    entry_of("experiment", TABLE, name)
     return cast("Experiment", importlib.import_module("host.experiments." + name.replace("-", "_")))
-
-
-def checked(name: str, arguments: dict[str, Any]) -> dict[str, int | float]:
-    """All options of an experiment, those that are not given at their defaults. Raises WrongUse."""
-    if name not in TABLE:
-        raise WrongUse(f"there is no experiment '{name}'", "there are " + ", ".join(TABLE))
-    options = {option.name: option for option in TABLE[name].options}
-    for given in arguments:
-        if given not in options:
-            raise WrongUse(f"the experiment '{name}' has no option '{given}'", "it has " + (", ".join(options) or "none"))
-    values = {}
-    for option in options.values():
-        value = arguments.get(option.name, option.default)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not option.least <= value <= option.most:
-            raise WrongUse(f"{option.name} cannot be {value!r}", f"give a number from {option.least:g} to {option.most:g}: {option.doc}")
-        if isinstance(option.default, int) and value != int(value):
-            raise WrongUse(f"{option.name} cannot be {value!r}", f"give a whole number: {option.doc}")
-        values[option.name] = type(option.default)(value)
-    return values

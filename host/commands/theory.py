@@ -1,0 +1,31 @@
+"""kickctl theory."""
+
+import argparse
+
+from host.entries import add_options, options_given
+from host.options import common
+from host.terminal import say, show, tell
+from host.theory.table import TABLE
+
+HELP = "the paper's analytic model of a wheel: fixpoints, bifurcations, portraits, phase diagram, chaos, basins"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """A name, and that study's options."""
+    names = parser.add_subparsers(metavar="NAME", required=True, dest="study")
+    for name, entry in TABLE.items():
+        add_options(names.add_parser(name, help=entry.help, description=entry.help, parents=[common(defaults=False)]), entry)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run it; 1 if a claim does not hold. With --json the numbers stand at the top, unless they are a list, which is all then."""
+    from host.theory.run import perform
+
+    name = options.study
+    summary = perform(name, options.seed, out=options.out, scheduler=options.scheduler, say=say, **options_given(options, TABLE[name]))
+    if options.json:
+        numbers = summary.pop("numbers")
+        show(numbers if isinstance(numbers, list) else {**summary, **numbers})
+    else:
+        tell(summary)
+    return 0 if all(claim["holds"] for claim in summary["claims"]) else 1

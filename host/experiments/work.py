@@ -1,0 +1,89 @@
+"""Does the cells of a run one by one, keeps what comes of each, and puts it all together in the end."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from host.errors import KickctlError
+from host.experiments.experiment import Cell, Findings, Row, Setting
+from host.experiments.study import Study
+from host.progress import progress
+
+Outcome = tuple[list[Row], list[str]]  # and why earlier tries did not count
+Result = tuple[Cell, list[Row], list[str]]
+Work = Callable[[Cell], Outcome]
+
+
+@contextmanager
+def begun(results: Path, settings: dict[str, Any], cells: list[Cell], say: Callable[[str], None]) -> Iterator[Study]:
+    """Yields the study of a run, begun or gone on with, and says what is kept of it if it ends early."""
+    study = Study(results, settings)
+    name = settings["experiment"]
+    say(f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in {study.folder}")
+    try:
+        yield study
+    except (KickctlError, KeyboardInterrupt, OSError):
+        say(f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes on from there")
+        raise
+    finally:
+        study.close()
+
+
+def do(name: str, cells: list[Cell], study: Study, work: Work) -> None:
+    """Do those cells that the study does not have yet."""
+    missing = [cell for cell in cells if cell not in study]
+    _keep(((cell, *work(cell)) for cell in missing), len(cells) - len(missing), len(cells), study, name)
+
+
+def simulate(
+    name: str,
+    function: Callable[[Cell, Setting], list[Row]],
+    cells: list[Cell],
+    setting: Setting,
+    study: Study,
+    scheduler: str | None = None,
+) -> None:
+    """Do them by computing, here or on the Dask cluster of the scheduler at this address."""
+    if scheduler is None:
+        do(name, cells, study, lambda cell: (function(cell, setting), []))
+        return
+    from host.experiments.cluster import spread
+
+    missing = [cell for cell in cells if cell not in study]
+    results: Iterator[Result] = ((cell, rows, []) for cell, rows in spread(scheduler, function, missing, setting))
+    _keep(results, len(cells) - len(missing), len(cells), study, name)
+
+
+def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:
+    with progress(name, total) as advance:
+        advance(done)
+        for cell, rows, spoiled in results:
+            study.keep(cell, rows, spoiled)
+            done += 1
+            advance(done)
+
+
+def finish(name: str, rows: list[Row], findings: Findings, study: Study, settings: dict[str, Any]) -> dict[str, Any]:
+    """Write the table, the figures of host.figures, and the summary, which is returned."""
+    draw = importlib.import_module("host.figures." + name.replace("-", "_")).draw
+    figures = study.write_figure(name, draw(rows, findings))
+    logs = study.folder / "logs"
+    summary = {
+        **settings,
+        "claims": [claim.as_dict() for claim in findings.claims],
+        "numbers": findings.numbers,
+        "trials": len(rows),
+        "spoiled": study.spoiled(),
+        "folder": str(study.folder),
+        "table": str(study.write_table(name, rows)),
+        "figures": [str(path) for path in figures],
+        "files": [str(study.write(file, text)) for file, text in findings.files.items()],
+        "logs": str(logs) if logs.exists() else None,
+    }
+    study.write("summary.json", json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    return summary

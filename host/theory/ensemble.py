@@ -1,0 +1,141 @@
+"""Many wheels of the analytic model at once: Runge and Kutta's method of order 8 with fixed steps, over all cores and vector units.
+
+The rates are host.theory.model.rates, and through it robot/controller.py, compiled with sin, cos and exp of host.theory.elementary.
+Wheels stand side by side in memory, so that the compiler lets one instruction do several of them.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+from scipy.integrate import DOP853
+
+from host.errors import WrongUse
+from host.theory.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.model import OMEGA, PHI, Array, rates
+from sim_motor.compiled import prange, retold
+
+# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate.
+_STAGES, _WEIGHTS = np.array(DOP853.A, dtype=np.float64), np.array(DOP853.B, dtype=np.float64)
+LANES = 128
+# Steps per unit of a wheel's rate (see `steps`): at FINE, averages of regular motion have nine digits.
+FINE = 1.0
+# A wheel that needs more is stiff: an explicit method is the wrong one.
+MOST_STEPS = 20_000_000
+
+vectorised_rates = retold(rates, MATHEMATICS, inlined)
+
+
+@numba.njit(**OPTIONS)
+def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
+    """The rates of all wheels, (4, wheels)."""
+    for i in range(states.shape[1]):
+        out[0, i], out[1, i], out[2, i], out[3, i] = vectorised_rates(
+            states[0, i],
+            states[1, i],
+            states[2, i],
+            states[3, i],
+            parameters[0, i],
+            parameters[1, i],
+            parameters[2, i],
+            parameters[3, i],
+            parameters[4, i],
+            parameters[5, i],
+        )
+
+
+@numba.njit(**OPTIONS)
+def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
+    """The rates of all wheels, and omega^2, whose integral makes the standard deviation."""
+    wheel_rates(states, parameters, out)
+    for i in range(states.shape[1]):
+        out[4, i] = states[3, i] * states[3, i]
+
+
+@numba.njit(**OPTIONS)
+def _add(states: Array, factor: float, rate: Array) -> None:
+    for row in range(states.shape[0]):
+        for i in range(states.shape[1]):
+            states[row, i] += factor * rate[row, i]
+
+
+@numba.njit(**OPTIONS)
+def _advance(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
+    """Take `count` steps of step_s with all wheels of a block."""
+    stages = np.empty((len(_WEIGHTS), *states.shape))
+    at = np.empty_like(states)
+    for _ in range(count):
+        for stage in range(len(_WEIGHTS)):
+            at[:] = states
+            for earlier in range(stage):
+                if _STAGES[stage, earlier] != 0.0:
+                    _add(at, step_s * _STAGES[stage, earlier], stages[earlier])
+            rates_of(at, parameters, stages[stage])
+        for stage in range(len(_WEIGHTS)):
+            if _WEIGHTS[stage] != 0.0:
+                _add(states, step_s * _WEIGHTS[stage], stages[stage])
+
+
+@numba.njit(parallel=True, error_model="numpy")
+def _advance_all(rates_of: Any, states: Array, parameters: Array, seconds: float, counts: Any, edges: Any) -> None:
+    """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each."""
+    for block in prange(len(counts)):
+        first, end = edges[block], edges[block + 1]
+        own = states[:, first:end].copy()
+        _advance(rates_of, own, parameters[:, first:end].copy(), seconds / counts[block], counts[block])
+        states[:, first:end] = own
+
+
+def rate_per_s(parameters: Array) -> Array:
+    """How fast a wheel can change at most, (wheels,), by which its steps are chosen."""
+    a, tau_s, k, inertia, friction, _ = parameters
+    return np.asarray(1.0 / tau_s + friction / inertia + np.sqrt(k * (1.0 + a / 2) / inertia))
+
+
+def advance(states: Array, parameters: Array, seconds: float, fineness: float = FINE, rates_of: Any = wheel_rates) -> Array:
+    """The states of wheels after some time.
+
+    states: (rows, wheels), of which rates_of gives the rates; parameters: (6, wheels). fineness: steps per unit of `rate_per_s`. The
+    work is done in blocks of wheels that need about the same step, whatever the number of cores, so that the same call gives the same
+    bits. Raises WrongUse of a wheel that is too stiff.
+    """
+    order = np.argsort(rate_per_s(parameters), kind="stable")
+    needed = np.ceil(seconds * fineness * rate_per_s(parameters)[order])
+    if len(order) and not needed[-1] <= MOST_STEPS:
+        stiff = dict(zip(("a", "tau_s", "k", "I", "f"), parameters[:, order[-1]].tolist(), strict=False))
+        words = ", ".join(f"{name} = {value:g}" for name, value in stiff.items())
+        raise WrongUse(f"{seconds:g} s of a wheel with {words} would take {needed[-1]:.1e} steps", "choose a larger tau or I, a smaller k")
+    edges = np.append(np.arange(0, len(order), LANES), len(order))
+    counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
+    sorted_states = np.ascontiguousarray(states[:, order], dtype=np.float64)
+    _advance_all(rates_of, sorted_states, np.ascontiguousarray(parameters[:, order]), float(seconds), counts, edges)
+    found = np.empty_like(sorted_states)
+    found[:, order] = sorted_states
+    return found
+
+
+class Averages(NamedTuple):
+    """Time averages of wheels, (wheels,), in rad/s, and the states (4, wheels) in which they ended."""
+
+    omega_mean: Array
+    omega_std: Array
+    states: Array
+
+
+def averages(states: Array, parameters: Array, transient_s: float, measured_s: float, fineness: float = FINE) -> Averages:
+    """Mean and standard deviation of omega over measured_s, after transient_s.
+
+    Raises WrongUse of a wheel that is too stiff, and of one that cannot be followed.
+    """
+    begun = advance(states, parameters, transient_s, fineness) if transient_s > 0.0 else np.asarray(states, dtype=np.float64)
+    ended = advance(np.vstack([begun, np.zeros(begun.shape[1])]), parameters, measured_s, fineness, _averaged_rates)
+    mean = (ended[PHI] - begun[PHI]) / measured_s
+    variance = ended[4] / measured_s - mean**2
+    if not np.isfinite(ended).all():
+        lost = int(np.flatnonzero(~np.isfinite(ended).all(axis=0))[0])
+        raise WrongUse(
+            f"the wheel with constants {parameters[:, lost].tolist()} ran away", "these equations are too stiff; ask for more steps"
+        )
+    return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), ended[: OMEGA + 1])

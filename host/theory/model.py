@@ -1,0 +1,71 @@
+"""The four equations of a wheel (eq. dot_x_phi): the robot's controller, and the mechanics that the paper adds to it.
+
+A state is (x1, x2, phi, omega): membrane potentials (1), angle (rad), angular velocity (rad/s). Torques are in the units of the
+rods' forces, moments of inertia in these times s^2, friction in these times s. Arrays of states are (4, wheels), of parameters
+(6, wheels), with the rows of `Wheel`.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host.errors import WrongUse
+from robot.controller import actual_positions, membrane_rate, rod_force, tangential_force, target_position
+from sim_motor.compiled import retold
+
+Array = NDArray[np.float64]
+X1, X2, PHI, OMEGA = range(4)
+STEEPEST = 100.0
+
+
+def rates(
+    x1: Any, x2: Any, phi: Any, omega: Any, a: Any, tau_s: Any, k: Any, inertia: Any, friction: Any, dry_friction: Any
+) -> tuple[Any, Any, Any, Any]:
+    """(dx1/dt, dx2/dt, dphi/dt, domega/dt) of a wheel. Eq. dot_x_phi.
+
+    dry_friction: torque with which a threshold of the motor holds against a wheel that rolls forward; 0 in the paper's equations. The
+    arguments are floats, or whatever the controller's functions are retold for.
+    """
+    actual_1, actual_2 = actual_positions(phi)
+    force_1 = rod_force(target_position(x1, a), actual_1, k)
+    force_2 = rod_force(target_position(x2, a), actual_2, k)
+    force = tangential_force(force_1, force_2, actual_1, actual_2)
+    acceleration = (force - friction * omega - dry_friction) / inertia
+    return membrane_rate(x1, actual_1, tau_s), membrane_rate(x2, actual_2, tau_s), omega, acceleration
+
+
+class Wheel(NamedTuple):
+    """The constants of a wheel, in the order in which `rates` takes them; the paper's where it gives any."""
+
+    a: float = 4.0
+    tau_s: float = 0.25
+    k: float = 1.85
+    inertia: float = 0.05
+    friction: float = 0.5
+    dry_friction: float = 0.0
+
+    def checked(self) -> Wheel:
+        """The same wheel. Raises WrongUse if these are no constants of one."""
+        for name, value in self._asdict().items():
+            if not isfinite(value) or value < 0.0 or (value == 0.0 and name in ("tau_s", "inertia")):
+                least = "above 0" if name in ("tau_s", "inertia") else "0 or more"
+                raise WrongUse(f"{name} cannot be {value!r}", f"give a finite number, {least}")
+        if self.a > STEEPEST:
+            raise WrongUse(f"a cannot be {self.a!r}", f"give at most {STEEPEST:g}: steeper neurons are switches, and no longer smooth")
+        return self
+
+    def columns(self, count: int) -> Array:
+        """The constants of `count` such wheels, (6, count)."""
+        return np.repeat(np.array(self, dtype=np.float64)[:, None], count, axis=1)
+
+
+def resting(phi: Array) -> Array:
+    """States of wheels that rest at these angles (rad) with the potentials that belong to them, (4, wheels)."""
+    return np.array([*_actual_positions(phi), phi, np.zeros_like(phi)])
+
+
+_actual_positions: Any = retold(actual_positions, {"cos": np.cos, "sin": np.sin})

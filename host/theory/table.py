@@ -1,0 +1,93 @@
+"""Which studies of the analytic model there are, and what each can be asked for. Light enough for `kickctl --help`."""
+
+from __future__ import annotations
+
+from host.entries import Entry, Option
+
+# The constants of a wheel, by the paper's letters.
+A = Option("a", 4.0, 0.0, 100.0, "gain of the neurons")
+TAU = Option("tau", 0.25, 1e-6, 1e3, "time constant of the membrane potentials, s")
+K = Option("k", 1.85, 0.0, 1e4, "spring constant of the rods")
+F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel")
+I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel")  # noqa: E741
+
+TABLE = {
+    "fixpoints": Entry(
+        "the eight fixpoints: eigenvalues, stability, and the 16 resting states of two wheels",
+        (A, TAU, K, F, I),
+        ("M1", "M2"),
+    ),
+    "hopf": Entry(
+        "the exact Hopf line in (k, tau), whether limit cycles are born stable there, and the paper's estimate beside it",
+        (A, TAU, F, I),
+        ("M3",),
+    ),
+    "branch": Entry(
+        "fixpoints, limit cycles and rotations followed in a parameter, stable and unstable, with their bifurcations",
+        (
+            A,
+            TAU,
+            K._replace(default=None, doc="spring constant of the rods, if another constant is followed (default 1.85)"),
+            F,
+            I,
+            Option("along", "k", 0.0, 0.0, "the constant that is followed", ("k", "tau", "a", "f", "I")),
+            Option("to", None, 1e-6, 1e4, "where to end (default: 20 for k, twelve times its value for others)"),
+            Option("dry", 0.1, 0.0, 10.0, "dry friction of the motor, for a branch of its own, in units of the rods' force"),
+        ),
+        ("M5", "M6", "M9"),
+    ),
+    "portrait": Entry(
+        "portraits in (phi, omega/2pi): fixpoints, manifolds of the saddles, limit cycles, trajectories",
+        (A, TAU, K._replace(default=None, doc="spring constant of the rods (default: the paper's 1.4, 1.65 and 1.85)"), F, I),
+        ("M4",),
+    ),
+    "phase-diagram": Entry(
+        "std and mean of omega over (k, tau), with the phases and the lines between them; k swept up and down",
+        (
+            A,
+            F,
+            I,
+            Option("points", 200, 2, 4000, "points on each axis"),
+            Option("k_to", 20.0, 1e-3, 1e4, "greatest k; the least is 0"),
+            Option("tau_to", 1.5, 1e-3, 1e3, "greatest tau, s; the least is 0"),
+            Option(
+                "start",
+                "sweep",
+                0.0,
+                0.0,
+                "states to begin with; sweep: those at the neighbouring k, up and down",
+                ("sweep", "rest", "roll"),
+            ),
+            Option("transient", 100.0, 0.0, 1e5, "how long to wait before measuring, s"),
+            Option("seconds", 100.0, 1.0, 1e5, "how long to measure, s"),
+        ),
+        ("M7",),
+    ),
+    "lyapunov": Entry(
+        "the Lyapunov spectrum at a point, the largest exponent along k and over the plane, attractors and chaotic transients",
+        (
+            A,
+            TAU._replace(default=1.0),
+            K._replace(default=15.0),
+            F,
+            I,
+            Option("seconds", 2000.0, 50.0, 1e6, "how long to follow a wheel for the spectrum, s"),
+        ),
+        ("M8",),
+    ),
+    "basins": Entry(
+        "basins of attraction in (phi, omega), and of kicks: which kick at which phase of the cycle leads where",
+        (A, TAU, K._replace(default=8.0), F, I, Option("points", 240, 16, 4000, "points on each axis")),
+    ),
+    "tick": Entry(
+        "what the length of a tick and the motor's latency do to the lines: the sampled wheel as a map",
+        (
+            A,
+            TAU,
+            F,
+            I,
+            Option("tick", 0.03, 1e-5, 1.0, "length of a tick, s"),
+            Option("latency", 0.0, 0.0, 1.0, "how long after its tick's begin a torque acts, s; no longer than a tick"),
+        ),
+    ),
+}
