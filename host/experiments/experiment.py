@@ -42,10 +42,13 @@ class Setting:
 
 @dataclass(frozen=True)
 class Findings:
-    """What an experiment found: the paper's claims it speaks to, other numbers worth telling, and texts to keep as files by name."""
+    """What an experiment found: the paper's claims it speaks to, other numbers worth telling, and texts to keep as files by name.
+
+    numbers: a dictionary, or a list of them, of plain data.
+    """
 
     claims: list[Claim]
-    numbers: dict[str, Any]
+    numbers: Any
     files: dict[str, str] = field(default_factory=dict)
 
 

@@ -14,7 +14,7 @@ I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel")  # noqa: E741
 TABLE = {
     "fixpoints": Entry(
         "the eight fixpoints: eigenvalues, stability, and the 16 resting states of two wheels",
-        (A, TAU, K, F, I),
+        (A, TAU, K._replace(default=1.4), F, I),
         ("M1", "M2"),
     ),
     "hopf": Entry(
