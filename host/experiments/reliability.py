@@ -69,8 +69,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
                 "is the battery too weak for this motor?",
             )
         batches += 1
-        bounds = 1 - published.spread, 1 + published.spread
-        motors = tuple(published.varied(*pair) for pair in rng.uniform(*bounds, (3 * trials, 2)).tolist())
+        motors = published.specimens(3 * trials, rng)
         ticks = _SETTLE_TICKS + kick.ticks + _WATCH_TICKS
         result = run(len(motors), ticks, int(rng.integers(2**32)), kick=kick, motors=motors, battery_v=setting.battery_v)
         for before, reverses, settled in zip(result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True):

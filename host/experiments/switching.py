@@ -95,8 +95,7 @@ def wheels_run(
     ticks = round(seconds / params.tick_s)
     rng = np.random.default_rng(seed)
     published = condition.constants(setting)
-    bounds = 1 - published.spread, 1 + published.spread
-    motors = [published.varied(*pair) for pair in rng.uniform(*bounds, (wheels, 2)).tolist()]
+    motors = published.specimens(wheels, rng)
     batched = published.latency_s + LATE_MOST_S + 2 * SUBSTEP_S < params.tick_s
     group = max(1, _MOST_TICKS // ticks) if batched else 2
     for first in range(0, wheels, group):
@@ -105,9 +104,7 @@ def wheels_run(
         if batched:
             kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
             supply_v = condition.supply_v(setting)
-            yield run(
-                len(some), ticks, one_seed, params=params, kick=kick, motors=tuple(some), battery_v=supply_v, record=len(some)
-            ).records
+            yield run(len(some), ticks, one_seed, params=params, kick=kick, motors=some, battery_v=supply_v, record=len(some)).records
         else:
             yield _loop_run(some, condition.supply_v(setting), params, ticks, one_seed, jump)
 
@@ -116,7 +113,7 @@ def _request(jump: Jump) -> dict[str, object]:
     return {"id": "jump", "mode": JUMP, "variable": "x1", "delta": jump.size}
 
 
-def _loop_run(constants: list[Constants], supply_v: float, params: Params, ticks: int, seed: int, jump: Jump | None) -> Array:
+def _loop_run(constants: tuple[Constants, ...], supply_v: float, params: Params, ticks: int, seed: int, jump: Jump | None) -> Array:
     """One robot, through its whole loop."""
     rng = np.random.default_rng(seed)
     clock = VirtualClock(seed)
