@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from host.claims import Claim
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.reliability import FAILS, LEAST_TRIALS, RELIABLE, SURE_LENGTHS, TURN_S
+from host.experiments.reliability import FAILS, LEAST_TRIALS, RELIABLE, SURE_LENGTHS, kick_settled
 from host.experiments.statistics import wilson
-from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
+from host.kicking import DIRECTIONS, OPPOSITE
 from host.log import Log
-from host.mapping import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, request, shift_of, tally
+from host.mapping import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, tally
 from host.planning import choose
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
 from robot.params import Params
@@ -49,17 +49,15 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot that has settled, at a random phase."""
-    wait_settled(robot)
-    robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
-    outcome = kick_and_watch(robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"])))
+    """Both wheels of a robot."""
+    outcome = kick_settled(cell, robot, log, setting)
     met = next(record for record in reversed(log.records) if record.tick == outcome.applied_tick)
     return [
         {
             "before": DIRECTIONS[outcome.before[side]],
             "phase": phase_bin(getattr(met, side + "_phi_rad")),
             "tried": 1,
-            "reversed": int(DIRECTIONS.get(outcome.after[side]) == -DIRECTIONS[outcome.before[side]]),
+            "reversed": int(outcome.after[side] == OPPOSITE[outcome.before[side]]),
         }
         for side in WHEELS
         if outcome.before[side] in DIRECTIONS

@@ -7,7 +7,6 @@ directions: of the sign that the paper names for a direction, and of the other o
 from __future__ import annotations
 
 from math import isnan
-from typing import Any
 
 import numpy as np
 
@@ -16,10 +15,11 @@ from host.client import Robot
 from host.errors import NotDone
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
 from host.experiments.statistics import wilson
-from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
+from host.kicking import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
 from host.log import Log
+from host.mapping import request, shift_of
 from host.motion import settling_s
-from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, POSITION, WHEELS, parse
+from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
 from robot.params import Params
 from sim_motor.batch import run
 from sim_motor.motor import load
@@ -47,17 +47,11 @@ def world(cell: Cell) -> dict[str, str]:
     return {}
 
 
-def _details(cell: Cell) -> dict[str, Any]:
-    if cell["mode"] == MEMBRANE:
-        return {}
-    shift = {"shift": cell["sign"] * DEFAULT_SHIFT_RAD} if cell["mode"] == PHASE else {}
-    return {"ticks": cell["ticks"], **shift}
-
-
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """As many wheels as it takes until so many ran in each direction."""
     rng = np.random.default_rng(setting.seed_of(cell))
-    kick = parse({"id": "reliability", "mode": cell["mode"], **_details(cell)}, (0, 0), Params(), _SETTLE_TICKS)
+    asked = request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
+    kick = parse({"id": "reliability", **asked}, (0, 0), Params(), _SETTLE_TICKS)
     published, trials = load(setting.motor), setting.options["trials"]
     rows: dict[int, list[Row]] = {1: [], -1: []}
     batches = 0
@@ -78,15 +72,20 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     return rows[1][:trials] + rows[-1][:trials]
 
 
-def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot that has settled, at a random phase."""
+def kick_settled(cell: Cell, robot: Robot, log: Log, setting: Setting) -> Outcome:
+    """Give a robot that has settled the cell's kick, at a random phase."""
     wait_settled(robot)
     robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
-    outcome = kick_and_watch(robot, log, cell["mode"], **_details(cell))
+    return kick_and_watch(robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"])))
+
+
+def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
+    """Both wheels of a robot."""
+    outcome = kick_settled(cell, robot, log, setting)
     return [
         {
             "before": DIRECTIONS[outcome.before[side]],
-            "reversed": outcome.after[side] in DIRECTIONS and outcome.after[side] != outcome.before[side],
+            "reversed": outcome.after[side] == OPPOSITE[outcome.before[side]],
             "settling_s": settling_s(log, side, outcome.applied_tick),
         }
         for side in WHEELS
