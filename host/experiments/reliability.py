@@ -10,11 +10,11 @@ from math import isnan
 
 import numpy as np
 
-from host.claims import Claim, inversions
+from host.claims import Claim, inversions, quenched
 from host.client import Robot
 from host.errors import NotDone
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
+from host.experiments.statistics import fraction
 from host.kicking import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
 from host.log import Log
 from host.mapping import request, shift_of
@@ -26,9 +26,6 @@ from sim_motor.motor import load
 
 LENGTHS = tuple(range(1, 11))
 TURN_S = 0.5
-RELIABLE, FAILS = 0.95, 0.1
-SURE_LENGTHS = (3, 4, 5)
-LEAST_TRIALS = 20
 # So many batches without a wheel in one of the directions, and it is no matter of chance.
 PATIENT_BATCHES = 3
 _SETTLE_TICKS, _WATCH_TICKS = 170, 130
@@ -109,8 +106,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     """R8 to R10."""
     claims = [
         inversions([row["reversed"] for row in points(rows, MEMBRANE, 1)]),
-        _quenched("R9", rows, POSITION, None),
-        _quenched("R10", rows, PHASE, named=True),
+        _quenched("R9", "inverted positions are", rows, POSITION, None),
+        _quenched("R10", "a phase shift of the named sign is", rows, PHASE, named=True),
     ]
     rates = {
         name: [[*rate(points(rows, mode, ticks, named))] for ticks in LENGTHS]
@@ -119,31 +116,18 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     return Findings(claims, {"lengths": list(LENGTHS), "reversals_of_trials": rates})
 
 
-def _quenched(number: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
-    """Reliable somewhere in 3 to 5 ticks for each direction, failing at 1 tick and, for R9, again when long."""
-
-    def of(ticks: int, before: int) -> tuple[int, int]:
-        return rate([row for row in points(rows, mode, ticks, named) if row["before"] == before])
-
-    def share(ticks: int, before: int) -> float:
-        done, tried = of(ticks, before)
-        return done / tried if tried else 0.0
-
-    best = max(SURE_LENGTHS, key=lambda ticks: min(share(ticks, 1), share(ticks, -1)))
-    worst = min((1, -1), key=lambda before: share(best, before))
-    short = max(share(1, 1), share(1, -1))
-    long = min(max(share(ticks, 1), share(ticks, -1)) for ticks in LENGTHS if ticks > max(SURE_LENGTHS))
-    fewest = min(of(ticks, before)[1] for ticks in LENGTHS for before in (1, -1))
-    few = "" if fewest >= LEAST_TRIALS else f"; {fewest} trials in a direction decide nothing: give more --trials"
-    return Claim(
+def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
+    """Reliable in the worse direction, failing in both."""
+    directions = {
+        ticks: [rate([row for row in points(rows, mode, ticks, named) if row["before"] == before]) for before in (1, -1)]
+        for ticks in LENGTHS
+    }
+    return quenched(
         number,
-        "inverted positions are reliable for 3 to 5 ticks"
-        if mode == POSITION
-        else "a phase shift of the named sign is reliable for 3 to 5 ticks",
-        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
-        share(best, worst),
-        "1",
-        wilson(*of(best, worst)),
-        not few and share(best, worst) >= RELIABLE and short <= FAILS and long <= FAILS,
-        f"at {best} ticks, in the worse direction; at 1 tick {short:.0%}; of 6 to 10 ticks the least sure reverses {long:.0%}{few}",
+        f"{what} reliable for 3 to 5 ticks",
+        "in the worse direction",
+        {ticks: min(both, key=lambda counts: fraction(*counts)) for ticks, both in directions.items()},
+        {ticks: max(fraction(*counts) for counts in both) for ticks, both in directions.items()},
+        min(tried for both in directions.values() for _, tried in both),
+        "trials in a direction decide nothing: give more --trials",
     )

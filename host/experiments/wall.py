@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from host.claims import WHEEL_RADIUS_M, Claim
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
+from host.experiments.statistics import fraction, wilson
 from host.kicking import FORWARD
 from host.log import Log
 from host.primitives import SHIFT_TOWARD
@@ -229,7 +229,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     hits = of(rows, PAPER)
     done, tried = rate(hits)
     signs = [row["before"] * row["after"] < 0 for row in hits if row["reversed"]]
-    share = done / tried if tried else 0.0
+    share = fraction(done, tried)
     claim = Claim(
         "R13",
         "at k = 2 a robot that hits a wall reverses by itself, with no sensor for it",
