@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.experiments.experiment import Setting
-from robot.kicks import DIRECTION_TICKS, JUMP, REST_TRAVEL_RAD, parse
+from host.motion import directions
+from robot.kicks import DIRECTION_TICKS, JUMP, parse
 from robot.loop import Loop
 from robot.params import Params
 from robot.record import unpack
@@ -138,14 +139,13 @@ def _loop_run(constants: tuple[Constants, ...], supply_v: float, params: Params,
 
 def switches(phi: Array) -> NDArray[np.int64]:
     """The ticks in which a wheel turned around, from its angles (rad), one a tick."""
-    travel = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
-    sign = (travel > REST_TRAVEL_RAD).astype(int) - (travel < -REST_TRAVEL_RAD)
-    moving = np.flatnonzero(sign)
-    changes = np.flatnonzero(np.diff(sign[moving]))
+    way = directions(phi)
+    moving = np.flatnonzero(way)
+    changes = np.flatnonzero(np.diff(way[moving]))
     found = []
-    for first, last in zip(moving[changes], moving[changes + 1], strict=True):
-        between = phi[first : last + DIRECTION_TICKS + 1] * sign[first]
-        found.append(first + int(between.argmax()))
+    for before, after in zip(moving[changes], moving[changes + 1], strict=True):
+        first = before - DIRECTION_TICKS
+        found.append(first + int((phi[first : after + 1] * way[before]).argmax()))
     return np.array(found, dtype=np.int64)
 
 
@@ -155,4 +155,4 @@ def ending(phi: Array, tick_s: float) -> tuple[float, str]:
     until_s = float(found[-1] * tick_s) if len(found) else 0.0
     if len(phi) * tick_s - until_s < QUIET_S:
         return until_s, SWITCHES
-    return until_s, ROLLS if abs(phi[-1] - phi[-1 - DIRECTION_TICKS]) > REST_TRAVEL_RAD else RESTS
+    return until_s, ROLLS if directions(phi)[-1] else RESTS

@@ -24,8 +24,9 @@ from host.experiments.experiment import Cell, Findings, Options, Row, Setting
 from host.experiments.statistics import fraction, wilson
 from host.kicking import FORWARD
 from host.log import Log
+from host.motion import directions, travels
 from host.primitives import SHIFT_TOWARD
-from robot.kicks import DIRECTION_TICKS, PHASE, REST_TRAVEL_RAD, WHEELS
+from robot.kicks import DIRECTION_TICKS, PHASE, WHEELS
 from robot.loop import Loop
 from robot.record import unpack
 from sim_motor.brick import SimBrick
@@ -144,22 +145,9 @@ def _watched(log: Log, begin: int = 0) -> tuple[Array, Array, Array]:
     return log.column("t_s")[rows], angles[rows], torques[rows]
 
 
-def _travels(phi: Array) -> Array:
-    """How far each wheel came in the DIRECTION_TICKS ticks up to each; 0 before there are so many."""
-    travels = np.zeros_like(phi)
-    travels[DIRECTION_TICKS:] = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
-    return travels
-
-
-def _ways(phi: Array) -> Array:
-    """1 forward, -1 backward, 0 at rest, of each wheel in each tick, by the robot's own rule."""
-    travels = _travels(phi)
-    return np.where(np.abs(travels) > REST_TRAVEL_RAD, np.sign(travels), 0)
-
-
 def _lasting(t: Array, phi: Array, torque: Array) -> list[tuple[int, int]]:
     """(first tick, 1 or -1) of each stretch of LASTS_S or more in which both wheels run, and are driven, one way."""
-    both = np.concatenate([_ways(phi), np.sign(torque)], axis=1)
+    both = np.concatenate([directions(phi), np.sign(torque)], axis=1)
     way = np.where((both == both[:, :1]).all(axis=1), both[:, 0], 0).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), len(way)]
     return [(first, int(way[first])) for first, end in pairwise(edges) if way[first:end].any() and t[end - 1] - t[first] >= LASTS_S]
@@ -187,7 +175,7 @@ def told(t: Array, phi: Array, torque: Array) -> Row:
         return row
     apart = float(phi[wall, 1] - phi[wall, 0])
     return {
-        "ended": BOUNCED if turned else _stuck(_ways(phi)[-1].tolist()),
+        "ended": BOUNCED if turned else _stuck(directions(phi)[-1].tolist()),
         "reversed": bool(turned),
         "before": float(torque[(t < t[wall]) & (t >= t[wall] - MEAN_S)].mean()),
         "after": float(torque[t >= t[-1] - MEAN_S].mean()),
@@ -198,7 +186,7 @@ def told(t: Array, phi: Array, torque: Array) -> Row:
 
 def _wall(t: Array, phi: Array, first: int) -> int | None:
     """The last tick before a wheel, settled since tick `first`, is slowed down."""
-    speed = np.abs(_travels(phi))
+    speed = np.abs(travels(phi))
     cruising = (t >= t[first] + SETTLE_S) & (t < t[first] + 2 * SETTLE_S)
     slowed = (speed < SLOWED * np.median(speed[cruising], axis=0)).any(axis=1) if cruising.any() else np.zeros(len(t), dtype=bool)
     late = np.flatnonzero(slowed & (t >= t[first] + SETTLE_S))
