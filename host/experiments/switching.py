@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from host.experiments import unattended
 from host.experiments.experiment import Setting
 from host.motion import directions
 from robot.kicks import DIRECTION_TICKS, JUMP, parse
 from robot.loop import Loop
 from robot.params import Params
-from robot.record import unpack
 from sim_motor.batch import CHANNELS, run
 from sim_motor.brick import HIGHEST_BATTERY_V, LATE_MOST_S, SimMotor, VirtualClock
 from sim_motor.motor import SUBSTEP_S, Constants, load
@@ -30,7 +30,6 @@ SWITCHES, ROLLS, RESTS = "switches", "rolls", "rests"
 QUIET_S = 30.0
 # One run of the batch keeps the records of at most so many ticks.
 _MOST_TICKS = 2_000_000
-_LOOP_CHUNK = 1000
 _DEFAULT = Params()
 
 
@@ -126,15 +125,12 @@ def _loop_run(constants: tuple[Constants, ...], supply_v: float, params: Params,
     loop = Loop(motors, None, clock, seed)
     loop.set_params(dict(params.values()))
     loop.start()
-    records: list[tuple[tuple[float, ...], ...]] = []
-    for tick in range(ticks):
-        clock.wait(loop.deadline, lambda timeout_s: None)
-        if jump is not None and tick == jump.tick:
-            loop.kick(_request(jump))
-        loop.tick()
-        if (tick + 1) % _LOOP_CHUNK == 0 or tick + 1 == ticks:
-            records += [(record[-12:-6], record[-6:]) for record in unpack(loop.blackbox.read(len(records), _LOOP_CHUNK))]
-    return np.array(records, dtype=float).reshape(ticks, 2, len(CHANNELS)).swapaxes(0, 1)[: len(constants)]
+    records = unattended.run(loop, ticks if jump is None else jump.tick)
+    if jump is not None:
+        loop.kick(_request(jump))
+        records += unattended.run(loop, ticks - jump.tick)
+    wheels = [record[-2 * len(CHANNELS) :] for record in records]
+    return np.array(wheels, dtype=float).reshape(ticks, 2, len(CHANNELS)).swapaxes(0, 1)[: len(constants)]
 
 
 def switches(phi: Array) -> NDArray[np.int64]:

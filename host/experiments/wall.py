@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from itertools import pairwise
-from math import pi
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from host.claims import WHEEL_RADIUS_M, Claim
 from host.client import Robot
+from host.experiments import unattended
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
 from host.experiments.statistics import fraction, wilson
 from host.kicking import FORWARD
@@ -28,7 +29,6 @@ from host.motion import directions, travels
 from host.primitives import SHIFT_TOWARD
 from robot.kicks import DIRECTION_TICKS, PHASE, WHEELS
 from robot.loop import Loop
-from robot.record import unpack
 from sim_motor.brick import SimBrick
 from sim_motor.motor import GRAVITY, data
 from sim_motor.world import Scene
@@ -99,11 +99,7 @@ def _run_into_wall(cell: Cell, setting: Setting, *, stop: bool = True) -> Log:
     log = Log()
 
     def run(seconds: float) -> None:
-        first = loop.blackbox.next_tick
-        while (loop.blackbox.next_tick - first) * loop.params.tick_s < seconds:
-            loop.clock.wait(loop.deadline, lambda timeout_s: None)
-            loop.tick()
-        log.take_records(unpack(loop.blackbox.read(first, loop.blackbox.next_tick - first)))
+        log.take_records(unattended.run(loop, ceil(seconds / loop.params.tick_s)))
 
     loop.set_params({"k": 0.0})
     loop.start()
