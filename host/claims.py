@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from host.experiments.statistics import spread, wilson
+from host.experiments.statistics import fraction, spread, wilson
 from host.log import Log
 from robot.kicks import WHEELS
 
@@ -19,6 +19,10 @@ WHEEL_RADIUS_M = 0.028
 MOVING_HZ = 0.1
 # What the paper's 'always' was tried.
 ALWAYS = 50
+# What 'reliable' and 'fails' are of a quenched kick, for which lengths (ticks) it is to be reliable, and the trials that it takes to tell.
+RELIABLE, FAILS = 0.95, 0.1
+SURE_LENGTHS = (3, 4, 5)
+LEAST_TRIALS = 20
 
 
 @dataclass(frozen=True)
@@ -178,4 +182,40 @@ def inversions(reversals: Sequence[bool]) -> Claim:
         wilson(done, tried),
         tried == done and not few,
         f"{done} of {tried}{few}",
+    )
+
+
+def surest(found: Mapping[int, tuple[int, int]]) -> int:
+    """The one of SURE_LENGTHS with the highest rate, of (reversed, tried) by length; the shortest of equals."""
+    return max(SURE_LENGTHS, key=lambda ticks: fraction(*found[ticks]))
+
+
+def quenched(
+    number: str,
+    claim: str,
+    where: str,
+    least_sure: Mapping[int, tuple[int, int]],
+    rates: Mapping[int, float],
+    fewest: int,
+    too_few: str,
+) -> Claim:
+    """R9 and R10: a kick is reliable for one of SURE_LENGTHS even `where` it is least sure; it fails for 1 tick, and when long.
+
+    least_sure: (reversed, tried) there, by length. rates: what part reverses, by length, from which it is told where the kick fails.
+    fewest: how many trials this rests on where there are fewest; too_few: what to say after that number if it decides nothing.
+    """
+    best = surest(least_sure)
+    rate = fraction(*least_sure[best])
+    long = min(rates[ticks] for ticks in rates if ticks > SURE_LENGTHS[-1])
+    decides = fewest >= LEAST_TRIALS
+    return Claim(
+        number,
+        claim,
+        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
+        rate,
+        "1",
+        wilson(*least_sure[best]),
+        decides and rate >= RELIABLE and rates[1] <= FAILS and long <= FAILS,
+        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; of {SURE_LENGTHS[-1] + 1} to {max(rates)} ticks the least sure reverses"
+        f" {long:.0%}" + ("" if decides else f"; {fewest} {too_few}"),
     )

@@ -8,7 +8,7 @@ from typing import Any
 from host.client import Robot
 from host.errors import NotDone, RobotFault
 from host.log import Log
-from host.motion import heading, settled, settling_s
+from host.motion import HEADINGS, heading, settled, settling_s
 from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSED, WHEELS
 from robot.record import Record
 from sim_motor.settling import WINDOW_S
@@ -18,9 +18,9 @@ WATCH_S = 6.0
 # What `motion.settled` looks back on, and a tick or two; after a kick all of it must lie behind the kick.
 JUDGED_S = 2 * WINDOW_S + 0.1
 
-FORWARD, BACKWARD, STOPPED = "forward", "backward", "stopped"
+FORWARD, BACKWARD, STOPPED = (HEADINGS[way] for way in (1, -1, 0))
 OPPOSITE = {FORWARD: BACKWARD, BACKWARD: FORWARD}
-DIRECTIONS = {FORWARD: 1, BACKWARD: -1}
+DIRECTIONS = {word: way for way, word in HEADINGS.items() if way}
 
 
 @dataclass(frozen=True)

@@ -69,10 +69,7 @@ def tally(
     Wheels that rested before the kick are left out. Motors are specimens of `motor` within its published spread.
     """
     rng = np.random.default_rng(seed)
-    published = load(motor)
-    bounds = 1 - published.spread, 1 + published.spread
-    specimens = min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN)
-    motors = tuple(published.varied(*pair) for pair in rng.uniform(*bounds, (specimens, 2)).tolist())
+    motors = load(motor).specimens(min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN), rng)
     settle, watch = (round(min(_PATIENCE_S, time_s + _MEMORY_TAU * params.tau_s) / params.tick_s) for time_s in (_SETTLE_S, _WATCH_S))
     kick = parse({"id": "map", **request(mode, ticks, shift_of(sign))}, (0, 0), params, settle)
     whole = settle + ticks + watch

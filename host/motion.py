@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.log import Log
-from robot.kicks import DIRECTION_TICKS, direction
+from robot.kicks import DIRECTION_TICKS, REST_TRAVEL_RAD, direction
 from sim_motor.settling import BAND, COUNT_RAD, ROUNDING, WINDOW_S
 from sim_motor.settling import settling_s as rule
 
@@ -27,6 +27,19 @@ def heading_of(phi: Sequence[float]) -> str:
     if not len(phi):
         raise ValueError("a wheel's heading needs at least one angle")
     return HEADINGS[direction(phi[-1] - phi[max(0, len(phi) - 1 - DIRECTION_TICKS)])]
+
+
+def travels(phi: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far (rad) wheels at angles phi (rad), (ticks, ...), came in the DIRECTION_TICKS ticks up to each; 0 before there are so many."""
+    found = np.zeros_like(phi)
+    found[DIRECTION_TICKS:] = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
+    return found
+
+
+def directions(phi: NDArray[np.float64]) -> NDArray[np.int64]:
+    """1 forward, -1 backward, 0 at rest after each tick, by the robot's own rule; phi as for `travels`."""
+    way = travels(phi)
+    return np.where(np.abs(way) > REST_TRAVEL_RAD, np.sign(way), 0).astype(np.int64)
 
 
 def heading(log: Log, side: str, tick: int) -> str:

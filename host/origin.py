@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 import subprocess
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,7 @@ def origin(uri: str, hello: dict[str, Any], status: dict[str, Any], clock_zero_s
     }
 
 
+@cache
 def commit() -> str:
     """The commit of the checkout that this runs from, with a '+' if it was changed; empty outside of one."""
     root = Path(__file__).resolve().parent.parent

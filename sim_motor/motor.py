@@ -80,6 +80,11 @@ class Constants:
             static=self.static * strength,
         )
 
+    def specimens(self, count: int, rng: np.random.Generator) -> "tuple[Constants, ...]":
+        """So many specimens at random, within the published spread."""
+        factors = rng.uniform(1 - self.spread, 1 + self.spread, (count, 2))
+        return tuple(self.varied(*pair) for pair in factors.tolist())
+
     def scalars(self) -> Array:
         """What `advance` needs besides the tables."""
         share = self.wheel_inertia / (self.motor_inertia + self.wheel_inertia)

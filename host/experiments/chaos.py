@@ -195,16 +195,13 @@ def model_run(moment: float, friction: float, remembered: float, *, bounded: boo
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot, from a start of their own. k and tau are afterwards what they were."""
-    minutes, before = setting.options["minutes"], robot.status()["params"]
+    """Both wheels of a robot, from a start of their own."""
     robot.stop()
     robot.set(k=K, tau_s=TAU_S)
-    try:
-        first = robot.start()
-        robot.wait(60 * minutes, until=lambda: robot.newest is not None and robot.newest.tick > first and robot.newest.state != RUNNING)
-        require_running(robot)
-    finally:
-        robot.set(k=before["k"], tau_s=before["tau_s"])
+    first = robot.start()
+    seconds = 60 * setting.options["minutes"]
+    robot.wait(seconds, until=lambda: robot.newest is not None and robot.newest.tick > first and robot.newest.state != RUNNING)
+    require_running(robot)
     records = [record for record in log.records if record.tick >= first and record.state == RUNNING]
     return [
         _sample(side, record.t_s - records[0].t_s, *(getattr(record, f"{side}_{name}") for name in ("phi_rad", "force", "torque")))

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.claims import Claim
+from host.claims import Claim, quenched, surest
 from host.client import Robot
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.reliability import FAILS, LEAST_TRIALS, RELIABLE, SURE_LENGTHS, TURN_S
-from host.experiments.statistics import wilson
-from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
+from host.experiments.reliability import kick_settled
+from host.experiments.statistics import fraction, wilson
+from host.kicking import DIRECTIONS, OPPOSITE
 from host.log import Log
-from host.mapping import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, request, shift_of, tally
+from host.mapping import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, tally
 from host.planning import choose
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
 from robot.params import Params
@@ -49,17 +49,15 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot that has settled, at a random phase."""
-    wait_settled(robot)
-    robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
-    outcome = kick_and_watch(robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"])))
+    """Both wheels of a robot."""
+    outcome = kick_settled(cell, robot, log, setting)
     met = next(record for record in reversed(log.records) if record.tick == outcome.applied_tick)
     return [
         {
             "before": DIRECTIONS[outcome.before[side]],
             "phase": phase_bin(getattr(met, side + "_phi_rad")),
             "tried": 1,
-            "reversed": int(DIRECTIONS.get(outcome.after[side]) == -DIRECTIONS[outcome.before[side]]),
+            "reversed": int(outcome.after[side] == OPPOSITE[outcome.before[side]]),
         }
         for side in WHEELS
         if outcome.before[side] in DIRECTIONS
@@ -121,29 +119,18 @@ def _rate(done: float, tried: float) -> dict[str, Any]:
 
 
 def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> Claim:
-    """Reliable at some length of 3 to 5 ticks in either direction at each phase; failing at 1 tick, and again when long."""
+    """Reliable in either direction at each phase, failing in both together."""
     totals = np.concatenate([counts(rows) for rows in directions], axis=2).transpose(1, 0, 2)
-    blind = {ticks: _share(*of.sum(axis=1)) for ticks, of in zip(LENGTHS, totals, strict=True)}
-    worst = {ticks: _least_sure(totals[LENGTHS.index(ticks)]) for ticks in SURE_LENGTHS}
-    best = max(SURE_LENGTHS, key=lambda ticks: _share(*worst[ticks]))
-    rate = _share(*worst[best])
-    few = "" if worst[best][1] >= LEAST_TRIALS else f"; {worst[best][1]} kicks there decide nothing: give more --kicks"
-    long = min(blind[ticks] for ticks in LENGTHS if ticks > max(SURE_LENGTHS))
-    return Claim(
+    least_sure = {ticks: _least_sure(of) for ticks, of in zip(LENGTHS, totals, strict=True)}
+    return quenched(
         number,
         f"{what}: reliable for 3 to 5 ticks, whatever the phase",
-        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
-        rate,
-        "1",
-        wilson(*worst[best]),
-        not few and rate >= RELIABLE and blind[1] <= FAILS and long <= FAILS,
-        f"at {best} ticks, in the direction and at the phase where it is least sure; at 1 tick {blind[1]:.0%}; of 6 to {LENGTHS[-1]} ticks"
-        f" the least sure reverses {long:.0%}{few}",
+        "in the direction and at the phase where it is least sure",
+        least_sure,
+        {ticks: fraction(*of.sum(axis=1)) for ticks, of in zip(LENGTHS, totals, strict=True)},
+        least_sure[surest(least_sure)][1],
+        "kicks there decide nothing: give more --kicks",
     )
-
-
-def _share(done: float, tried: float) -> float:
-    return float(done / tried) if tried else 0.0
 
 
 def _least_sure(totals: NDArray[np.float64]) -> tuple[int, int]:

@@ -134,7 +134,6 @@ def _rest(robot: Robot, log: Log, k: float) -> Row:
     robot.wait(STAY_S)
     require_running(robot)
     stays = {heading(log, side, log.records[-1].tick) for side in WHEELS} == {STOPPED}
-    robot.set(k=K)
     return {"kind": "rest", "runs": runs, "stays": stays}
 
 

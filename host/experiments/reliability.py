@@ -7,28 +7,25 @@ directions: of the sign that the paper names for a direction, and of the other o
 from __future__ import annotations
 
 from math import isnan
-from typing import Any
 
 import numpy as np
 
-from host.claims import Claim, inversions
+from host.claims import Claim, inversions, quenched
 from host.client import Robot
 from host.errors import NotDone
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
-from host.kicking import DIRECTIONS, kick_and_watch, wait_settled
+from host.experiments.statistics import fraction
+from host.kicking import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
 from host.log import Log
+from host.mapping import request, shift_of
 from host.motion import settling_s
-from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, POSITION, WHEELS, parse
+from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
 from robot.params import Params
 from sim_motor.batch import run
 from sim_motor.motor import load
 
 LENGTHS = tuple(range(1, 11))
 TURN_S = 0.5
-RELIABLE, FAILS = 0.95, 0.1
-SURE_LENGTHS = (3, 4, 5)
-LEAST_TRIALS = 20
 # So many batches without a wheel in one of the directions, and it is no matter of chance.
 PATIENT_BATCHES = 3
 _SETTLE_TICKS, _WATCH_TICKS = 170, 130
@@ -47,17 +44,11 @@ def world(cell: Cell) -> dict[str, str]:
     return {}
 
 
-def _details(cell: Cell) -> dict[str, Any]:
-    if cell["mode"] == MEMBRANE:
-        return {}
-    shift = {"shift": cell["sign"] * DEFAULT_SHIFT_RAD} if cell["mode"] == PHASE else {}
-    return {"ticks": cell["ticks"], **shift}
-
-
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """As many wheels as it takes until so many ran in each direction."""
     rng = np.random.default_rng(setting.seed_of(cell))
-    kick = parse({"id": "reliability", "mode": cell["mode"], **_details(cell)}, (0, 0), Params(), _SETTLE_TICKS)
+    asked = request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
+    kick = parse({"id": "reliability", **asked}, (0, 0), Params(), _SETTLE_TICKS)
     published, trials = load(setting.motor), setting.options["trials"]
     rows: dict[int, list[Row]] = {1: [], -1: []}
     batches = 0
@@ -69,8 +60,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
                 "is the battery too weak for this motor?",
             )
         batches += 1
-        bounds = 1 - published.spread, 1 + published.spread
-        motors = tuple(published.varied(*pair) for pair in rng.uniform(*bounds, (3 * trials, 2)).tolist())
+        motors = published.specimens(3 * trials, rng)
         ticks = _SETTLE_TICKS + kick.ticks + _WATCH_TICKS
         result = run(len(motors), ticks, int(rng.integers(2**32)), kick=kick, motors=motors, battery_v=setting.battery_v)
         for before, reverses, settled in zip(result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True):
@@ -79,15 +69,20 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     return rows[1][:trials] + rows[-1][:trials]
 
 
-def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot that has settled, at a random phase."""
+def kick_settled(cell: Cell, robot: Robot, log: Log, setting: Setting) -> Outcome:
+    """Give a robot that has settled the cell's kick, at a random phase."""
     wait_settled(robot)
     robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
-    outcome = kick_and_watch(robot, log, cell["mode"], **_details(cell))
+    return kick_and_watch(robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"])))
+
+
+def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
+    """Both wheels of a robot."""
+    outcome = kick_settled(cell, robot, log, setting)
     return [
         {
             "before": DIRECTIONS[outcome.before[side]],
-            "reversed": outcome.after[side] in DIRECTIONS and outcome.after[side] != outcome.before[side],
+            "reversed": outcome.after[side] == OPPOSITE[outcome.before[side]],
             "settling_s": settling_s(log, side, outcome.applied_tick),
         }
         for side in WHEELS
@@ -111,8 +106,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     """R8 to R10."""
     claims = [
         inversions([row["reversed"] for row in points(rows, MEMBRANE, 1)]),
-        _quenched("R9", rows, POSITION, None),
-        _quenched("R10", rows, PHASE, named=True),
+        _quenched("R9", "inverted positions are", rows, POSITION, None),
+        _quenched("R10", "a phase shift of the named sign is", rows, PHASE, named=True),
     ]
     rates = {
         name: [[*rate(points(rows, mode, ticks, named))] for ticks in LENGTHS]
@@ -121,31 +116,18 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     return Findings(claims, {"lengths": list(LENGTHS), "reversals_of_trials": rates})
 
 
-def _quenched(number: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
-    """Reliable somewhere in 3 to 5 ticks for each direction, failing at 1 tick and, for R9, again when long."""
-
-    def of(ticks: int, before: int) -> tuple[int, int]:
-        return rate([row for row in points(rows, mode, ticks, named) if row["before"] == before])
-
-    def share(ticks: int, before: int) -> float:
-        done, tried = of(ticks, before)
-        return done / tried if tried else 0.0
-
-    best = max(SURE_LENGTHS, key=lambda ticks: min(share(ticks, 1), share(ticks, -1)))
-    worst = min((1, -1), key=lambda before: share(best, before))
-    short = max(share(1, 1), share(1, -1))
-    long = min(max(share(ticks, 1), share(ticks, -1)) for ticks in LENGTHS if ticks > max(SURE_LENGTHS))
-    fewest = min(of(ticks, before)[1] for ticks in LENGTHS for before in (1, -1))
-    few = "" if fewest >= LEAST_TRIALS else f"; {fewest} trials in a direction decide nothing: give more --trials"
-    return Claim(
+def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
+    """Reliable in the worse direction, failing in both."""
+    directions = {
+        ticks: [rate([row for row in points(rows, mode, ticks, named) if row["before"] == before]) for before in (1, -1)]
+        for ticks in LENGTHS
+    }
+    return quenched(
         number,
-        "inverted positions are reliable for 3 to 5 ticks"
-        if mode == POSITION
-        else "a phase shift of the named sign is reliable for 3 to 5 ticks",
-        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
-        share(best, worst),
-        "1",
-        wilson(*of(best, worst)),
-        not few and share(best, worst) >= RELIABLE and short <= FAILS and long <= FAILS,
-        f"at {best} ticks, in the worse direction; at 1 tick {short:.0%}; of 6 to 10 ticks the least sure reverses {long:.0%}{few}",
+        f"{what} reliable for 3 to 5 ticks",
+        "in the worse direction",
+        {ticks: min(both, key=lambda counts: fraction(*counts)) for ticks, both in directions.items()},
+        {ticks: max(fraction(*counts) for counts in both) for ticks, both in directions.items()},
+        min(tried for both in directions.values() for _, tried in both),
+        "trials in a direction decide nothing: give more --trials",
     )

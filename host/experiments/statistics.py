@@ -12,6 +12,11 @@ CONFIDENCE = 0.95
 RESAMPLES = 999
 
 
+def fraction(successes: float, trials: float) -> float:
+    """The rate; 0 if nothing was tried."""
+    return float(successes / trials) if trials else 0.0
+
+
 def wilson(successes: int, trials: int) -> tuple[float, float]:
     """The Wilson score interval (95 %) of a rate; (0, 1) if nothing was tried."""
     if trials == 0:

@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from host.experiments import unattended
 from host.experiments.experiment import Setting
-from robot.kicks import DIRECTION_TICKS, JUMP, REST_TRAVEL_RAD, parse
+from host.motion import directions
+from robot.kicks import DIRECTION_TICKS, JUMP, parse
 from robot.loop import Loop
 from robot.params import Params
-from robot.record import unpack
 from sim_motor.batch import CHANNELS, run
 from sim_motor.brick import HIGHEST_BATTERY_V, LATE_MOST_S, SimMotor, VirtualClock
 from sim_motor.motor import SUBSTEP_S, Constants, load
@@ -29,7 +30,6 @@ SWITCHES, ROLLS, RESTS = "switches", "rolls", "rests"
 QUIET_S = 30.0
 # One run of the batch keeps the records of at most so many ticks.
 _MOST_TICKS = 2_000_000
-_LOOP_CHUNK = 1000
 _DEFAULT = Params()
 
 
@@ -95,8 +95,7 @@ def wheels_run(
     ticks = round(seconds / params.tick_s)
     rng = np.random.default_rng(seed)
     published = condition.constants(setting)
-    bounds = 1 - published.spread, 1 + published.spread
-    motors = [published.varied(*pair) for pair in rng.uniform(*bounds, (wheels, 2)).tolist()]
+    motors = published.specimens(wheels, rng)
     batched = published.latency_s + LATE_MOST_S + 2 * SUBSTEP_S < params.tick_s
     group = max(1, _MOST_TICKS // ticks) if batched else 2
     for first in range(0, wheels, group):
@@ -105,9 +104,7 @@ def wheels_run(
         if batched:
             kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
             supply_v = condition.supply_v(setting)
-            yield run(
-                len(some), ticks, one_seed, params=params, kick=kick, motors=tuple(some), battery_v=supply_v, record=len(some)
-            ).records
+            yield run(len(some), ticks, one_seed, params=params, kick=kick, motors=some, battery_v=supply_v, record=len(some)).records
         else:
             yield _loop_run(some, condition.supply_v(setting), params, ticks, one_seed, jump)
 
@@ -116,7 +113,7 @@ def _request(jump: Jump) -> dict[str, object]:
     return {"id": "jump", "mode": JUMP, "variable": "x1", "delta": jump.size}
 
 
-def _loop_run(constants: list[Constants], supply_v: float, params: Params, ticks: int, seed: int, jump: Jump | None) -> Array:
+def _loop_run(constants: tuple[Constants, ...], supply_v: float, params: Params, ticks: int, seed: int, jump: Jump | None) -> Array:
     """One robot, through its whole loop."""
     rng = np.random.default_rng(seed)
     clock = VirtualClock(seed)
@@ -128,27 +125,23 @@ def _loop_run(constants: list[Constants], supply_v: float, params: Params, ticks
     loop = Loop(motors, None, clock, seed)
     loop.set_params(dict(params.values()))
     loop.start()
-    records: list[tuple[tuple[float, ...], ...]] = []
-    for tick in range(ticks):
-        clock.wait(loop.deadline, lambda timeout_s: None)
-        if jump is not None and tick == jump.tick:
-            loop.kick(_request(jump))
-        loop.tick()
-        if (tick + 1) % _LOOP_CHUNK == 0 or tick + 1 == ticks:
-            records += [(record[-12:-6], record[-6:]) for record in unpack(loop.blackbox.read(len(records), _LOOP_CHUNK))]
-    return np.array(records, dtype=float).reshape(ticks, 2, len(CHANNELS)).swapaxes(0, 1)[: len(constants)]
+    records = unattended.run(loop, ticks if jump is None else jump.tick)
+    if jump is not None:
+        loop.kick(_request(jump))
+        records += unattended.run(loop, ticks - jump.tick)
+    wheels = [record[-2 * len(CHANNELS) :] for record in records]
+    return np.array(wheels, dtype=float).reshape(ticks, 2, len(CHANNELS)).swapaxes(0, 1)[: len(constants)]
 
 
 def switches(phi: Array) -> NDArray[np.int64]:
     """The ticks in which a wheel turned around, from its angles (rad), one a tick."""
-    travel = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
-    sign = (travel > REST_TRAVEL_RAD).astype(int) - (travel < -REST_TRAVEL_RAD)
-    moving = np.flatnonzero(sign)
-    changes = np.flatnonzero(np.diff(sign[moving]))
+    way = directions(phi)
+    moving = np.flatnonzero(way)
+    changes = np.flatnonzero(np.diff(way[moving]))
     found = []
-    for first, last in zip(moving[changes], moving[changes + 1], strict=True):
-        between = phi[first : last + DIRECTION_TICKS + 1] * sign[first]
-        found.append(first + int(between.argmax()))
+    for before, after in zip(moving[changes], moving[changes + 1], strict=True):
+        first = before - DIRECTION_TICKS
+        found.append(first + int((phi[first : after + 1] * way[before]).argmax()))
     return np.array(found, dtype=np.int64)
 
 
@@ -158,4 +151,4 @@ def ending(phi: Array, tick_s: float) -> tuple[float, str]:
     until_s = float(found[-1] * tick_s) if len(found) else 0.0
     if len(phi) * tick_s - until_s < QUIET_S:
         return until_s, SWITCHES
-    return until_s, ROLLS if abs(phi[-1] - phi[-1 - DIRECTION_TICKS]) > REST_TRAVEL_RAD else RESTS
+    return until_s, ROLLS if directions(phi)[-1] else RESTS

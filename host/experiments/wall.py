@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from itertools import pairwise
-from math import pi
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
@@ -20,14 +20,15 @@ from numpy.typing import NDArray
 
 from host.claims import WHEEL_RADIUS_M, Claim
 from host.client import Robot
+from host.experiments import unattended
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
+from host.experiments.statistics import fraction, wilson
 from host.kicking import FORWARD
 from host.log import Log
+from host.motion import directions, travels
 from host.primitives import SHIFT_TOWARD
-from robot.kicks import DIRECTION_TICKS, PHASE, REST_TRAVEL_RAD, WHEELS
+from robot.kicks import DIRECTION_TICKS, PHASE, WHEELS
 from robot.loop import Loop
-from robot.record import unpack
 from sim_motor.brick import SimBrick
 from sim_motor.motor import GRAVITY, data
 from sim_motor.world import Scene
@@ -98,11 +99,7 @@ def _run_into_wall(cell: Cell, setting: Setting, *, stop: bool = True) -> Log:
     log = Log()
 
     def run(seconds: float) -> None:
-        first = loop.blackbox.next_tick
-        while (loop.blackbox.next_tick - first) * loop.params.tick_s < seconds:
-            loop.clock.wait(loop.deadline, lambda timeout_s: None)
-            loop.tick()
-        log.take_records(unpack(loop.blackbox.read(first, loop.blackbox.next_tick - first)))
+        log.take_records(unattended.run(loop, ceil(seconds / loop.params.tick_s)))
 
     loop.set_params({"k": 0.0})
     loop.start()
@@ -144,22 +141,9 @@ def _watched(log: Log, begin: int = 0) -> tuple[Array, Array, Array]:
     return log.column("t_s")[rows], angles[rows], torques[rows]
 
 
-def _travels(phi: Array) -> Array:
-    """How far each wheel came in the DIRECTION_TICKS ticks up to each; 0 before there are so many."""
-    travels = np.zeros_like(phi)
-    travels[DIRECTION_TICKS:] = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
-    return travels
-
-
-def _ways(phi: Array) -> Array:
-    """1 forward, -1 backward, 0 at rest, of each wheel in each tick, by the robot's own rule."""
-    travels = _travels(phi)
-    return np.where(np.abs(travels) > REST_TRAVEL_RAD, np.sign(travels), 0)
-
-
 def _lasting(t: Array, phi: Array, torque: Array) -> list[tuple[int, int]]:
     """(first tick, 1 or -1) of each stretch of LASTS_S or more in which both wheels run, and are driven, one way."""
-    both = np.concatenate([_ways(phi), np.sign(torque)], axis=1)
+    both = np.concatenate([directions(phi), np.sign(torque)], axis=1)
     way = np.where((both == both[:, :1]).all(axis=1), both[:, 0], 0).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), len(way)]
     return [(first, int(way[first])) for first, end in pairwise(edges) if way[first:end].any() and t[end - 1] - t[first] >= LASTS_S]
@@ -187,7 +171,7 @@ def told(t: Array, phi: Array, torque: Array) -> Row:
         return row
     apart = float(phi[wall, 1] - phi[wall, 0])
     return {
-        "ended": BOUNCED if turned else _stuck(_ways(phi)[-1].tolist()),
+        "ended": BOUNCED if turned else _stuck(directions(phi)[-1].tolist()),
         "reversed": bool(turned),
         "before": float(torque[(t < t[wall]) & (t >= t[wall] - MEAN_S)].mean()),
         "after": float(torque[t >= t[-1] - MEAN_S].mean()),
@@ -198,7 +182,7 @@ def told(t: Array, phi: Array, torque: Array) -> Row:
 
 def _wall(t: Array, phi: Array, first: int) -> int | None:
     """The last tick before a wheel, settled since tick `first`, is slowed down."""
-    speed = np.abs(_travels(phi))
+    speed = np.abs(travels(phi))
     cruising = (t >= t[first] + SETTLE_S) & (t < t[first] + 2 * SETTLE_S)
     slowed = (speed < SLOWED * np.median(speed[cruising], axis=0)).any(axis=1) if cruising.any() else np.zeros(len(t), dtype=bool)
     late = np.flatnonzero(slowed & (t >= t[first] + SETTLE_S))
@@ -229,7 +213,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     hits = of(rows, PAPER)
     done, tried = rate(hits)
     signs = [row["before"] * row["after"] < 0 for row in hits if row["reversed"]]
-    share = done / tried if tried else 0.0
+    share = fraction(done, tried)
     claim = Claim(
         "R13",
         "at k = 2 a robot that hits a wall reverses by itself, with no sensor for it",

@@ -12,11 +12,11 @@ from matplotlib.image import AxesImage
 from host.experiments.experiment import Findings, Row
 from host.experiments.kick_map import counts, of_kind, share
 from host.figures.style import SIZE, styled
+from host.kicking import DIRECTIONS
 from host.mapping import LENGTHS
 from robot.kicks import PHASE, POSITION
 
 _KINDS = {(POSITION, 0): "positions inverted", (PHASE, 1): r"phase shifted by $+3\pi/4$", (PHASE, -1): r"phase shifted by $-3\pi/4$"}
-_DIRECTIONS = {1: "forward", -1: "backward"}
 _BEST: Any = {"color": "#d55e00", "linewidth": 2.5}
 
 
@@ -26,7 +26,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**SIZE)
         panels = figure.subplots(2, 3, sharex=True, sharey=True)
-        for line, (before, direction) in zip(panels, _DIRECTIONS.items(), strict=True):
+        for line, (direction, before) in zip(panels, DIRECTIONS.items(), strict=True):
             for axes, (kind, name) in zip(line, _KINDS.items(), strict=True):
                 image = _draw_map(axes, of_kind(rows, *kind, before), maps[kind, before])
                 if before == 1:

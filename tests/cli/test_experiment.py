@@ -7,12 +7,13 @@ import subprocess
 import sys
 import time
 import types
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
 from host.claims import Claim
-from host.errors import NoLink, RobotFault
+from host.errors import NoLink, NotDone, RobotFault
 from host.experiments import run, table
 from host.experiments.experiment import Findings
 from host.experiments.run import perform
@@ -208,10 +209,11 @@ def test_a_try_in_which_the_robots_program_began_anew_does_not_count(toy, desk, 
     assert toy.done == [0, 1, 1, 2, 3, 4, 5]
 
 
-def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(toy, desk, tmp_path):
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(toy, desk, tmp_path, fails):
     from host.client import connect
 
-    own = {"k": 2.0, "tick_s": 0.02, "tau_s": 0.5}
+    own = {"k": 2.0, "tick_s": 0.02, "tau_s": 0.5, "max_duty_pct": 20.0}
     with connect(desk[0]) as robot:
         robot.set(**own)
     seen = []
@@ -219,13 +221,16 @@ def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(to
 
     def trial(cell, robot, log, setting):
         params = robot.status()["params"]
-        seen.append((params["k"], params["tick_s"], params["tau_s"]))
-        robot.set(k=1.0)  # as an experiment may
+        seen.append(tuple(params[name] for name in own))
+        robot.set(k=1.0, tau_s=1.0)  # as an experiment may
         return real(cell, robot, log, setting)
 
     toy.trial = trial
-    perform("toy", desk[0], out=tmp_path)
-    assert seen == [(8.0, 0.03, 0.25)] * COUNT
+    if fails:
+        toy.trouble = {2: [NotDone("it does not run")] * run.TRIES}
+    with pytest.raises(NotDone) if fails else nullcontext():
+        perform("toy", desk[0], out=tmp_path)
+    assert seen == [(8.0, 0.03, 0.25, 85.0)] * (2 + run.TRIES if fails else COUNT)
     with connect(desk[0]) as robot:
         params = robot.status()["params"]
     assert {name: params[name] for name in own} == own

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from host.log import Log
-from host.motion import heading, heading_of, settled, settling_of, settling_s
-from robot.kicks import WHEELS
+from host.motion import directions, heading, heading_of, settled, settling_of, settling_s
+from robot.kicks import DIRECTION_TICKS, WHEELS, direction
 from sim_motor.settling import COUNT_RAD
 from tests.fakes import Rig
 
@@ -66,6 +66,14 @@ def test_a_heading_is_what_the_robot_takes_for_the_sign_of_a_phase_kick():
 )
 def test_a_heading_is_the_travel_over_eight_ticks(degrees, word):
     assert heading_of([radians(value) for value in degrees]) == word
+
+
+def test_the_directions_of_a_series_are_the_robots_own_of_each_travel():
+    phi = encoder(np.cumsum(np.random.default_rng(1).normal(0.0, 0.02, (500, 2)), axis=0))
+    travels = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
+    assert not directions(phi)[:DIRECTION_TICKS].any()
+    assert not directions(phi[:3]).any()
+    assert directions(phi)[DIRECTION_TICKS:].tolist() == [[direction(travel) for travel in row] for row in travels.tolist()]
 
 
 def test_a_heading_needs_angles_and_a_tick_that_is_there():
