@@ -27,6 +27,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         right.axvline(0.0, color="dimgrey", linewidth=1.2)
         right.set(xlabel="real part (1/s): growth", ylabel="imaginary part (rad/s): turning")
         right.margins(0.12)
+        right.locator_params(axis="x", nbins=6)
         figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         figure.suptitle("A wheel can rest at eight angles; at odd multiples of 45° never for long", fontsize=16)
     return figure

@@ -24,7 +24,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         wide.loglog(tau, estimate, "--", color="dimgrey", label=r"$k_c = 2f/(a\tau)$")
         wide.plot(point["tau"], point["k_hopf"], "o", color=COLOURS[0], label=rf"$\tau$ = {point['tau']:g} s: $k$ = {point['k_hopf']:.4f}")
         wide.set_ylabel("spring constant $k$")
-        wide.legend(fontsize=12)
+        wide.legend(fontsize=12, loc="upper right")
         wide.text(0.05, 0.08, "rest is stable", transform=wide.transAxes)
         ratio.semilogx(tau, estimate / k, color="dimgrey")
         ratio.set(ylabel=r"$k_c$ / exact", ylim=(0.0, 1.05))

@@ -162,6 +162,6 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         abs(small["k_estimate"] / small["k_hopf"] - 1) < 0.1,
         f"at tau = {wheel.tau_s:g} s the exact k is {point['k_hopf']:.4f}, the estimate {point['k_estimate']:.4f}: it is the limit of "
         f"f tau << I, and f tau / I is {slow:.2g} here; at tau = {small['tau']:.2g} s the ratio is "
-        f"{small['k_estimate'] / small['k_hopf']:.2f}; cycles are born {'stable' if point['l1'] < 0 else 'unstable'} (l1 = {point['l1']:.3g})",
+        f"{small['k_estimate'] / small['k_hopf']:.2f}; cycles are born {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
     )
     return Findings([claim], numbers)

@@ -7,7 +7,7 @@ rods' forces, moments of inertia in these times s^2, friction in these times s. 
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,11 +31,30 @@ def rates(
     arguments are floats, or whatever the controller's functions are retold for.
     """
     actual_1, actual_2 = actual_positions(phi)
+    return seen_rates(x1, x2, omega, actual_1, actual_2, actual_1, actual_2, a, tau_s, k, inertia, friction, dry_friction)
+
+
+def seen_rates(
+    x1: Any,
+    x2: Any,
+    omega: Any,
+    actual_1: Any,
+    actual_2: Any,
+    seen_1: Any,
+    seen_2: Any,
+    a: Any,
+    tau_s: Any,
+    k: Any,
+    inertia: Any,
+    friction: Any,
+    dry_friction: Any,
+) -> tuple[Any, Any, Any, Any]:
+    """The same of a wheel whose neurons see the positions (seen_1, seen_2), which a kick may have altered."""
     force_1 = rod_force(target_position(x1, a), actual_1, k)
     force_2 = rod_force(target_position(x2, a), actual_2, k)
     force = tangential_force(force_1, force_2, actual_1, actual_2)
     acceleration = (force - friction * omega - dry_friction) / inertia
-    return membrane_rate(x1, actual_1, tau_s), membrane_rate(x2, actual_2, tau_s), omega, acceleration
+    return membrane_rate(x1, seen_1, tau_s), membrane_rate(x2, seen_2, tau_s), omega, acceleration
 
 
 class Wheel(NamedTuple):
@@ -68,4 +87,23 @@ def resting(phi: Array) -> Array:
     return np.array([*_actual_positions(phi), phi, np.zeros_like(phi)])
 
 
-_actual_positions: Any = retold(actual_positions, {"cos": np.cos, "sin": np.sin})
+def constant_velocity(wheel: Wheel) -> float:
+    """The speed (rad/s) of a wheel whose neurons' transfer is linear and whose speed does not vary; 0 if it does not roll.
+
+    Eq. F_tan_ana.
+    """
+    drive = wheel.a * wheel.k * wheel.tau_s - 2 * wheel.friction
+    return sqrt(drive / (2 * wheel.friction)) / wheel.tau_s if drive > 0.0 and wheel.friction > 0.0 else 0.0
+
+
+def rolling(wheel: Wheel) -> tuple[float, float, float, float]:
+    """The state, at angle 0, of a wheel that turns with the constant velocity. Eq. x-t."""
+    omega = constant_velocity(wheel)
+    turned = omega * wheel.tau_s
+    return 1.0 / (1.0 + turned**2), -turned / (1.0 + turned**2), 0.0, omega
+
+
+_NUMPY = {"cos": np.cos, "sin": np.sin, "exp": np.exp}
+_actual_positions: Any = retold(actual_positions, _NUMPY)
+# `rates` of arrays.
+numpy_rates: Any = retold(rates, _NUMPY)
