@@ -96,11 +96,17 @@ def constant_velocity(wheel: Wheel) -> float:
     return sqrt(drive / (2 * wheel.friction)) / wheel.tau_s if drive > 0.0 and wheel.friction > 0.0 else 0.0
 
 
+def turning(phi: Array, omega: Array, wheel: Wheel) -> Array:
+    """States of wheels whose potentials are those of wheels that have always turned with their present speed, (4, wheels). Eq. x-t."""
+    (cosine, sine), turned = _actual_positions(phi), omega * wheel.tau_s
+    share = 1.0 / (1.0 + turned**2)
+    return np.array([share * (cosine + turned * sine), share * (sine - turned * cosine), phi, omega])
+
+
 def rolling(wheel: Wheel) -> tuple[float, float, float, float]:
     """The state, at angle 0, of a wheel that turns with the constant velocity. Eq. x-t."""
-    omega = constant_velocity(wheel)
-    turned = omega * wheel.tau_s
-    return 1.0 / (1.0 + turned**2), -turned / (1.0 + turned**2), 0.0, omega
+    state = turning(np.array([0.0]), np.array([constant_velocity(wheel)]), wheel)[:, 0].tolist()
+    return state[0], state[1], state[2], state[3]
 
 
 _NUMPY = {"cos": np.cos, "sin": np.sin, "exp": np.exp}
