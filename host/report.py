@@ -23,8 +23,9 @@ dt { font-weight: bold; }
 
 def write(path: Path, claims: Sequence[Claim], summaries: Sequence[dict[str, Any]], skipped: dict[str, str]) -> Path:
     """Write the file. summaries: of the experiments, as host.experiments.run.perform returns them; skipped: why a claim was not tried."""
-    first = summaries[0] if summaries else {"brick": "none", "seed": "none", "version": ""}
-    facts = {"robot": first["brick"], "seed": first["seed"], "kickctl": first["version"]}
+    first = summaries[0] if summaries else {"seed": "none", "version": ""}
+    robots = sorted({summary["brick"] for summary in summaries if "brick" in summary})
+    facts = {"robot": ", ".join(robots) or "none", "seed": first["seed"], "kickctl": first["version"]}
     body = "".join(f"<dt>{escape(name)}</dt><dd>{escape(str(value))}</dd>" for name, value in facts.items())
     parts = [
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Kick control: the paper\'s claims, measured</title>\n',
@@ -71,5 +72,5 @@ def _experiment(summary: dict[str, Any]) -> str:
     return (
         f"<h2>{name}</h2>\n<p>{summary['trials']} rows ({escape(options)}){spoiled}; table, logs and summary in"
         f" <code>{escape(summary['folder'])}</code></p>\n"
-        f'<img alt="figure of the experiment {name}" src="data:image/png;base64,{figure}">\n'
+        f'<img alt="figure of {name}" src="data:image/png;base64,{figure}">\n'
     )

@@ -8,12 +8,12 @@ from host.terminal import say, show
 if TYPE_CHECKING:
     from host.claims import Claim
 
-HELP = "all of the paper's claims about the robot, measured: a table and a report with figures"
+HELP = "all of the paper's claims about the robot and its model, measured: a table and a report with figures"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Which claims, and where to."""
-    parser.add_argument("--only", metavar="IDS", help="only these claims, as R5,R6")
+    parser.add_argument("--only", metavar="IDS", help="only these claims, as R5,M7")
     parser.add_argument("--out", default="results", metavar="FOLDER", help="where results go (default %(default)s)")
 
 

@@ -1,20 +1,25 @@
-"""All of the robot's claims in one go: the experiments that settle them, and a report."""
+"""All of the paper's claims in one go, about the robot and about the model: what settles them, and a report."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from host import report
 from host.claims import Claim
+from host.entries import Entry
 from host.errors import WrongUse
 from host.experiments.run import RESULTS, address, perform
 from host.experiments.table import TABLE
 from host.links import sim_options
+from host.theory.run import perform as study
+from host.theory.table import TABLE as STUDIES
 
 # What a robot on a table does not have around it; asked for by name, it is taken to be there.
 NEEDS = {"R13": "needs two walls, a robot's length and more apart: build them, and ask for it by name (--only R13)"}
+
+OF_MODEL = "is about the paper's model and needs no robot: ask for it by name, or without --brick"
 
 
 class Reproduction(NamedTuple):
@@ -26,8 +31,12 @@ class Reproduction(NamedTuple):
 
 
 def known() -> list[str]:
-    """The ids of all claims that an experiment settles."""
-    return sorted((number for entry in TABLE.values() for number in entry.claims), key=lambda number: int(number[1:]))
+    """The ids of all claims that are settled here, R of the robot and M of the model."""
+    return sorted((number for entry in (*TABLE.values(), *STUDIES.values()) for number in entry.claims), key=_place)
+
+
+def _place(number: str) -> tuple[int, int]:
+    return "RM".index(number[0]), int(number[1:])
 
 
 def reproduce(
@@ -41,7 +50,7 @@ def reproduce(
 ) -> Reproduction:
     """Run what settles the claims `only`, by default all that the robot can do, and write OUT/report.html.
 
-    The report of some claims has their names in its own, as report-R5-R6.html. Each experiment goes on where it was cut short. Raises
+    The report of some claims has their names in its own, as report-R5-R6.html. Each piece of work goes on where it was cut short. Raises
     KickctlError.
     """
     unknown = [number for number in only if number not in known()]
@@ -49,16 +58,20 @@ def reproduce(
         raise WrongUse(f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(known()))
     uri = address(uri)
     simulated = sim_options(uri) is not None
-    skipped = {} if simulated or only else NEEDS
+    skipped = {} if simulated or only else NEEDS | {number: OF_MODEL for number in known() if number[0] == "M"}
     wanted = [number for number in known() if number not in skipped and (not only or number in only)]
     summaries: list[dict[str, Any]] = []
     claims: dict[str, Claim] = {}
-    for name, entry in TABLE.items():
-        if any(number in wanted for number in entry.claims):
-            summary = perform(name, uri, seed, token=token, out=out, say=say)
-            summaries.append(summary)
-            found = [Claim.from_dict(claim) for claim in summary["claims"]]
-            claims.update((claim.id, claim) for claim in found if claim.id in entry.claims and claim.id in wanted)
+
+    def run(table: Mapping[str, Entry], perform: Callable[[str], dict[str, Any]]) -> None:
+        for name, entry in table.items():
+            if any(number in wanted for number in entry.claims):
+                summaries.append(summary := perform(name))
+                found = [Claim.from_dict(claim) for claim in summary["claims"]]
+                claims.update((claim.id, claim) for claim in found if claim.id in entry.claims and claim.id in wanted)
+
+    run(TABLE, lambda name: perform(name, uri, seed, token=token, out=out, say=say))
+    run(STUDIES, lambda name: study(name, seed, out=out, say=say))
     name = "-".join(["report", *(wanted if only else [])])
     page = report.write(Path(out) / f"{name}.html", [claims[number] for number in wanted], summaries, skipped)
     return Reproduction([claims[number] for number in wanted], skipped, page)

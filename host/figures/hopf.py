@@ -32,7 +32,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             if mask.any():
                 coefficient.semilogx(tau[mask], l1[mask], ".", color=colour, label=words)
         coefficient.axhline(0.0, color="dimgrey", linewidth=1.2)
-        coefficient.set(ylabel="first Lyapunov\ncoefficient $l_1$ (1/s)", xlabel=r"time constant $\tau$ (s)")
+        coefficient.set(ylabel="first Lyapunov\ncoefficient $l_1$", xlabel=r"time constant $\tau$ (s)")
         coefficient.legend(fontsize=12)
         frequency.loglog(tau, omega / (2 * pi), color=COLOURS[0])
         frequency.set(ylabel="frequency (Hz)", xlabel=r"time constant $\tau$ (s)")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from host.experiments.experiment import Findings, Row
 from host.figures.style import SIZE, styled
-from host.theory.hopf import estimate, hopf
+from host.theory.hopf import critical_k, estimate
 from host.theory.model import Array, Wheel
 from host.theory.phase_diagram import phases
 
@@ -68,7 +68,7 @@ def _draw(axes: Axes, rows: list[Row], quantity: str) -> Any:
 def _draw_lines(axes: Axes, wheel: Wheel) -> None:
     (_, k_to), (_, tau_to) = axes.get_xlim(), axes.get_ylim()
     taus = np.geomspace(tau_to / 1000, tau_to, 400)
-    lines = ((lambda own: hopf(own).k, "whitesmoke", "rest becomes unstable, exactly"), (estimate, "darkgrey", r"$k_c = 2f/(a\tau)$"))
+    lines = ((critical_k, "whitesmoke", "rest becomes unstable, exactly"), (estimate, "darkgrey", r"$k_c = 2f/(a\tau)$"))
     for line, colour, label in lines:
         axes.plot([line(wheel._replace(tau_s=float(tau))) for tau in taus], taus, "--", color=colour, linewidth=1.5, label=label)
     axes.set(xlim=(0.0, k_to), ylim=(0.0, tau_to))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import pairwise, product
-from math import cos, sin, sqrt
+from math import cos, inf, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,8 +31,9 @@ LINE = 101
 class Hopf(NamedTuple):
     """A Hopf bifurcation. k: where; omega: of the swinging (rad/s).
 
-    l1: the first Lyapunov coefficient (Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.39, with eigenvectors of length 1);
-    cycles are born stable, supercritically, if it is negative.
+    l1: the first Lyapunov coefficient (1; Kuznetsov, Elements of Applied Bifurcation Theory, section 5.4, with eigenvectors of length
+    1); cycles are born stable, supercritically, if it is negative. Above k, while mu is the real part of the eigenvalues there, they
+    are states z q + its conjugate with |z|^2 = mu / (-l1 omega).
     """
 
     k: float
@@ -48,12 +49,17 @@ def hopf(wheel: Wheel) -> Hopf:
     if wheel.friction == 0.0 or wheel.a == 0.0:
         why = "without friction every k makes a resting wheel swing" if wheel.a else "with a = 0 the rods do not pull"
         raise WrongUse(f"there is no Hopf bifurcation: {why}", f"give {'f' if wheel.a else 'a'} above 0")
-    saturation = float(target_position(1.0, wheel.a))
-    tau_s, inertia, friction = wheel.tau_s, wheel.inertia, wheel.friction
-    k = friction * (inertia + friction * tau_s) / (tau_s * (saturation * friction * tau_s + inertia * wheel.a / 2))
+    k = critical_k(wheel)
     # omega^2 = (f - k S tau) / (I tau), without the difference, which nearly vanishes for small tau.
-    omega = sqrt(k * (wheel.a / 2 - saturation) / (inertia + friction * tau_s))
+    omega = sqrt(k * (wheel.a / 2 - float(target_position(1.0, wheel.a))) / (wheel.inertia + wheel.friction * wheel.tau_s))
     return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega))
+
+
+def critical_k(wheel: Wheel) -> float:
+    """The k above which rest is unstable, in closed form: 0 without friction, infinite with a = 0."""
+    tau_s, inertia, friction = wheel.tau_s, wheel.inertia, wheel.friction
+    pull = tau_s * (target_position(1.0, wheel.a) * friction * tau_s + inertia * wheel.a / 2)
+    return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
 
 
 @cache
@@ -86,8 +92,8 @@ def _lyapunov_coefficient(wheel: Wheel, omega: float) -> float:
 
 
 def estimate(wheel: Wheel) -> float:
-    """The paper's critical k = 2 f / (a tau). Eq. k_critical."""
-    return 2 * wheel.friction / (wheel.a * wheel.tau_s)
+    """The paper's critical k = 2 f / (a tau), infinite with a = 0. Eq. k_critical."""
+    return 2 * wheel.friction / (wheel.a * wheel.tau_s) if wheel.a else inf
 
 
 def adaptive_friction(phi: float, wheel: Wheel) -> float:

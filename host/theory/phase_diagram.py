@@ -12,7 +12,7 @@ import numpy as np
 from host.claims import Claim
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory.ensemble import FINE, Averages, averages
-from host.theory.hopf import estimate, hopf
+from host.theory.hopf import critical_k, estimate
 from host.theory.model import PHI, Array, Wheel, resting, rolling
 from host.theory.run import wheel_of
 
@@ -145,7 +145,7 @@ def phase(row: Row, k_hopf: float) -> str:
 
 def phases(rows: list[Row], options: dict[str, Any]) -> list[str]:
     """The phase of each row."""
-    lines = {tau: hopf(_wheel(options, tau)).k for tau in {row["tau"] for row in rows}}
+    lines = {tau: critical_k(_wheel(options, tau)) for tau in {row["tau"] for row in rows}}
     return [phase(row, lines[row["tau"]]) for row in rows]
 
 
@@ -168,7 +168,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             numbers["rest_misjudged"][f"{panel}, {way}"] = {
                 name: sum((row["k"] < k) != (of_row[id(row)] == "S") for row, k in zip(own, line, strict=True)) / len(own)
                 for name, line in (
-                    ("by the Hopf line", [hopf(_wheel(options, row["tau"])).k for row in own]),
+                    ("by the Hopf line", [critical_k(_wheel(options, row["tau"])) for row in own]),
                     ("by 2 f / (a tau)", [estimate(_wheel(options, row["tau"])) for row in own]),
                 )
             }

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from host.claims import Claim
 from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory.ensemble import FINE, advance
+from host.theory.ensemble import advance
 from host.theory.fixpoints import fixpoint, fixpoints
-from host.theory.hopf import hopf
+from host.theory.flow import FINENESS, plain, run, steps_for
+from host.theory.hopf import critical_k
 from host.theory.model import OMEGA, PHI, Array, Wheel, turning
 from host.theory.run import wheel_of
 
@@ -38,21 +39,20 @@ ROLLING_MEAN = 0.1
 QUARTER = pi / 2
 
 
-def path(states: Array, wheel: Wheel, seconds: float, step_s: float = SAMPLE_S, fineness: float = FINE) -> Array:
-    """States every step_s, (samples, 4, wheels), the first included."""
-    parameters = wheel.columns(states.shape[1])
-    found = [np.asarray(states, dtype=np.float64)]
-    for _ in range(round(seconds / step_s)):
-        found.append(advance(found[-1], parameters, step_s, fineness))
-    return np.array(found)
+def path(state: Array, wheel: Wheel, seconds: float, fineness: float = FINENESS) -> Array:
+    """States every SAMPLE_S, (samples, 4), `state` (4,) included."""
+    samples = round(seconds / SAMPLE_S)
+    each = -(-steps_for(seconds, wheel, fineness) // samples)
+    found: Array = run(plain, np.array(state)[:, None], tuple(wheel), samples * SAMPLE_S, samples * each)[::each, :, 0]
+    return found
 
 
-def unstable_manifolds(phi: float, wheel: Wheel, seconds: float = FOLLOWED_S, fineness: float = FINE) -> Array:
-    """Both branches of a saddle's unstable manifold, (samples, 4, 2): first the one that leaves it forward."""
+def unstable_manifolds(phi: float, wheel: Wheel, seconds: float = FOLLOWED_S, fineness: float = FINENESS) -> Array:
+    """Both branches of a saddle's unstable manifold, (2, samples, 4): first the one that leaves it forward."""
     saddle = fixpoint(phi, wheel)
     vector = saddle.eigenvectors[:, 0].real
     vector = vector * np.sign(vector[PHI])
-    return path(saddle.state[:, None] + NEAR * np.outer(vector, (1.0, -1.0)), wheel, seconds, fineness=fineness)
+    return np.array([path(saddle.state + sign * NEAR * vector, wheel, seconds, fineness) for sign in (1.0, -1.0)])
 
 
 def fates(phi: Array, omega: Array, wheel: Wheel) -> NDArray[np.int64]:
@@ -89,11 +89,10 @@ def stable_manifolds(wheel: Wheel, fastest: float) -> Array:
     return np.asarray((one + other) / 2)
 
 
-def cycle(wheel: Wheel, fineness: float = FINE) -> Array | None:
+def cycle(wheel: Wheel) -> Array | None:
     """The limit cycle, (samples, 4), that a wheel pushed off the angle 0 comes to; of none samples if it rests, None if it is irregular."""
     start = turning(np.array([0.01]), np.array([0.0]), wheel)
-    settled = advance(start, wheel.columns(1), SETTLED_S, fineness)
-    states = path(settled, wheel, WATCHED_S, fineness=fineness)[:, :, 0]
+    states = path(advance(start, wheel.columns(1), SETTLED_S)[:, 0], wheel, WATCHED_S)
     x1, x2, phi, omega = states.T
     seen = np.array([x1, x2, np.cos(phi), np.sin(phi), omega / np.abs(omega).max(initial=SLOWEST)])
     distance = np.abs(seen - seen[:, :1]).max(axis=0)
@@ -128,18 +127,18 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     wheel = wheel_of(setting.options)._replace(k=cell["k"])
     rows: list[Row] = [{"part": point.kind, "line": n, "phi": point.phi, "omega": 0.0} for n, point in enumerate(fixpoints(wheel))]
     unstable = unstable_manifolds(-QUARTER / 2, wheel)
-    finer = unstable_manifolds(-QUARTER / 2, wheel, fineness=2 * FINE)
-    off = float(np.abs(unstable - finer)[: len(unstable) // 2, PHI].max())
-    for line, states in enumerate(np.moveaxis(unstable, 2, 0)):
+    finer = unstable_manifolds(-QUARTER / 2, wheel, fineness=2 * FINENESS)
+    off = float(np.abs(unstable - finer)[:, : unstable.shape[1] // 2, PHI].max())
+    for line, states in enumerate(unstable):
         rows += _points("unstable manifold", line, states[:, [PHI, OMEGA]])
-    fastest = REACH * float(np.abs(unstable[:, OMEGA]).max())
+    fastest = REACH * float(np.abs(unstable[:, :, OMEGA]).max())
     found = cycle(wheel)
     if found is not None:  # between irregular wheels' fates there are no lines
         rows += _points("limit cycle", 0, found[:, [PHI, OMEGA]])
         rows += _points("stable manifold", 0, stable_manifolds(wheel, fastest).T)
     phi, omega = np.array(TRAJECTORIES).T
-    for line, states in enumerate(np.moveaxis(path(turning(phi, fastest * omega, wheel), wheel, FOLLOWED_S), 2, 0)):
-        rows += _points("trajectory", line, states[:, [PHI, OMEGA]])
+    for line, state in enumerate(turning(phi, fastest * omega, wheel).T):
+        rows += _points("trajectory", line, path(state, wheel, FOLLOWED_S)[:, [PHI, OMEGA]])
     rows += [{"part": "found", "kind": kind_of(found), "fastest": fastest, "manifold_off_by": off, "crosses": _crosses(unstable)}]
     return rows
 
@@ -150,14 +149,14 @@ def _points(part: str, line: int, points: Array) -> list[Row]:
 
 def _crosses(unstable: Array) -> bool:
     """Whether the saddle's forward branch passes the next saddle."""
-    return bool(unstable[:, PHI, 0].max() > QUARTER / 2)
+    return bool(unstable[0, :, PHI].max() > QUARTER / 2)
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
     """M4."""
     wheel = wheel_of(setting.options)
     found = [row for row in rows if row["part"] == "found"]
-    k_hopf = hopf(wheel).k if wheel.friction and wheel.a else 0.0
+    k_hopf = critical_k(wheel)
     numbers = {
         "portraits": [
             {"k": row["k"], "phase": row["kind"], "k_hopf": k_hopf, "unstable_manifold_passes_the_next_saddle": row["crosses"]}

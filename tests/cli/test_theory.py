@@ -1,0 +1,48 @@
+"""kickctl theory: what its commands answer, and how they refuse."""
+
+from __future__ import annotations
+
+import json
+from math import pi
+
+import pytest
+
+from host.theory.hopf import hopf
+from host.theory.model import Wheel
+
+
+def test_the_command_lists_eight_fixpoints(kickctl):
+    status, out, _ = kickctl("theory", "fixpoints", "--k", "1.4", "--tau", "0.25", "--json")
+    points = json.loads(out)
+    assert status == 0
+    assert [point["phi"] for point in points] == pytest.approx([n * pi / 4 for n in range(8)])
+    assert [point["stable"] for point in points] == [True, False] * 4
+    assert all(len(point["eigenvalues"]) == 4 for point in points)
+    assert sum(re for re, _ in points[3]["eigenvalues"]) == pytest.approx(-2 / 0.25 - 0.5 / 0.05)
+
+
+def test_two_wheels_have_sixteen_stable_states_below_the_line_and_none_above(kickctl):
+    for k, stable in (("1.4", 16), ("1.85", 0)):
+        _, out, _ = kickctl("theory", "fixpoints", "--k", k)
+        assert f"M2 holds: two wheels have 16 non-moving states: {stable} stable states" in out
+
+
+def test_the_command_gives_the_hopf_point(kickctl):
+    status, out, _ = kickctl("theory", "hopf", "--tau", "1", "--json")
+    found = json.loads(out)
+    assert status == 0
+    assert found["k_hopf"] == pytest.approx(0.4725, abs=5e-5)  # AUTO's
+    assert found["k_estimate"] == 0.25
+    assert found["l1"] < 0
+    assert found["accuracy"]["closed_form_against_eigenvalues"] < 1e-10
+    assert found["omega_hopf"] == pytest.approx(hopf(Wheel(tau_s=1.0)).omega)
+
+
+@pytest.mark.parametrize(
+    "arguments", [("hopf", "--f", "0"), ("hopf", "--tau", "0"), ("fixpoints", "--k", "nan"), ("fixpoints", "--I", "0")]
+)
+def test_degenerate_input_is_refused_in_words(kickctl, arguments):
+    status, _, err = kickctl("theory", *arguments)
+    assert status == 2
+    assert "Traceback" not in err
+    assert err.count("kickctl:") == 1

@@ -1,0 +1,147 @@
+"""M4 and M7: portraits and the phase diagram."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from host.experiments.experiment import Setting
+from host.theory import phase_diagram, portrait
+from host.theory.ensemble import advance
+from host.theory.fixpoints import fixpoint
+from host.theory.hopf import critical_k
+from host.theory.model import OMEGA, PHI, Wheel, constant_velocity, rolling, turning
+
+OPTIONS = {"a": 4.0, "f": 0.5, "I": 0.05, "points": 10, "k_to": 20.0, "tau_to": 1.5, "start": "sweep", "transient": 60.0, "seconds": 40.0}
+
+
+@pytest.fixture(scope="module")
+def diagram():
+    """A coarse diagram's rows, and what they come to."""
+    setting = Setting(1, OPTIONS)
+    rows = [{**cell, **row} for cell in phase_diagram.cells(OPTIONS) for row in phase_diagram.simulate(cell, setting)]
+    return rows, phase_diagram.report(rows, setting)
+
+
+def at(rows, panel, way, tau, k):
+    """The row nearest to a point."""
+    own = [row for row in rows if row["panel"] == panel and row["way"] == way]
+    return min(own, key=lambda row: abs(row["tau"] - tau) + abs(row["k"] - k) / 10)
+
+
+def test_every_point_is_there_once_each_way(diagram):
+    rows, _ = diagram
+    for panel in ("plane", "inset"):
+        for way in ("up", "down"):
+            points = [(row["tau"], row["k"]) for row in rows if row["panel"] == panel and row["way"] == way]
+            assert len(points) == len(set(points)) == OPTIONS["points"] ** 2
+
+
+def test_the_four_phases_are_where_the_paper_has_them(diagram):
+    rows, _ = diagram
+    expected = {("plane", 0.08, 1.0): "S", ("plane", 0.2, 9.0): "LLM", ("plane", 1.4, 15.0): "C", ("inset", 0.12, 3.2): "FB"}
+    for (panel, tau, k), name in expected.items():
+        row = at(rows, panel, "up", tau, k)
+        assert phase_diagram.phase(row, critical_k(Wheel(tau_s=row["tau"]))) == name, row
+
+
+def test_far_from_the_line_a_wheel_rests_exactly_below_it(diagram):
+    rows, _ = diagram
+    for row in rows:
+        if row["panel"] == "accuracy":
+            continue
+        line = critical_k(Wheel(tau_s=row["tau"]))
+        if row["way"] == "up" and not 0.8 < row["k"] / line < 1.2:
+            rests = abs(row["omega_mean"]) < phase_diagram.STILL and row["omega_std"] < phase_diagram.STILL
+            assert rests == (row["k"] < line), row
+
+
+def test_locomotion_that_is_fast_has_the_constant_velocity(diagram):
+    rows, _ = diagram
+    row = at(rows, "plane", "up", 0.2, 9.0)
+    expected = constant_velocity(Wheel(tau_s=row["tau"], k=row["k"]))
+    assert abs(row["omega_mean"]) == pytest.approx(expected, rel=0.1)
+
+
+def test_locomotion_goes_on_into_chaos_with_k_going_up_only(diagram):
+    _, findings = diagram
+    shares = findings.numbers["hysteresis"]["plane"]
+    assert shares["LLM up, C down"] > 0.0
+    assert "C up, LLM down" not in shares
+
+
+def test_points_out_of_chaos_do_not_depend_on_the_step(diagram):
+    _, findings = diagram
+    found = findings.numbers["accuracy"]
+    assert found["points"] > 50
+    assert found["p90_rad_s"] < 1e-6
+
+
+def test_a_cell_done_twice_is_the_same_bits():
+    options = {**OPTIONS, "points": 6, "transient": 5.0, "seconds": 5.0}
+    cell = {"panel": "plane", "first": 0, "end": 6}
+    assert phase_diagram.simulate(cell, Setting(1, options)) == phase_diagram.simulate(cell, Setting(2, options))
+
+
+@pytest.mark.parametrize("change", [{"f": 0.0}, {"a": 0.0}, {"I": 1e-3}])
+def test_degenerate_wheels_have_a_diagram_without_gaps(change):
+    options = {**OPTIONS, **change, "points": 4, "start": "rest", "transient": 2.0, "seconds": 2.0}
+    setting = Setting(1, options)
+    rows = [{**cell, **row} for cell in phase_diagram.cells(options) for row in phase_diagram.simulate(cell, setting)]
+    found = phase_diagram.report(rows, setting)
+    assert np.isfinite([row["omega_std"] for row in rows]).all()
+    assert sum(found.numbers["shares"]["plane, rest"].values()) == pytest.approx(1.0)
+
+
+def test_the_state_of_a_turning_wheel_is_that_of_its_equations():
+    """Eq. x-t solves tau dx/dt = x_a - x along phi = omega t."""
+    wheel, omega, step = Wheel(), 5.0, 1e-5
+    before, now, after = (turning(np.array([omega * t]), np.array([omega]), wheel)[:, 0] for t in (0.7 - step, 0.7, 0.7 + step))
+    for row, seen in ((0, np.cos(0.7 * omega)), (1, np.sin(0.7 * omega))):
+        assert (after[row] - before[row]) / (2 * step) == pytest.approx((seen - now[row]) / wheel.tau_s, abs=1e-8)
+    assert rolling(wheel)[3] == constant_velocity(wheel)
+
+
+@pytest.mark.parametrize(("k", "kind"), [(1.4, "S"), (1.65, "FB"), (1.85, "LLM"), (8.0, "LLM")])
+def test_portraits_show_what_the_paper_shows(k, kind):
+    assert portrait.kind_of(portrait.cycle(Wheel(k=k))) == kind
+
+
+def test_chaos_is_no_cycle():
+    assert portrait.kind_of(portrait.cycle(Wheel(k=15.0, tau_s=1.0))) == "C"
+
+
+def test_a_limit_cycle_closes_and_attracts():
+    wheel = Wheel(k=1.65)
+    loop = portrait.cycle(wheel)
+    period = (len(loop) - 1) * portrait.SAMPLE_S
+    assert np.abs(loop[-1] - loop[0]).max() < 0.06
+    start = loop[0] + np.array([0.0, 0.0, 0.05, 0.0])
+    later = advance(start[:, None], wheel.columns(1), 60 * period)[:, 0]
+    swings = [np.ptp(portrait.path(state, wheel, period)[:, PHI]) for state in (start, later)]
+    assert abs(swings[1] - np.ptp(loop[:, PHI])) < 0.3 * abs(swings[0] - np.ptp(loop[:, PHI]))
+
+
+def test_the_unstable_manifold_leaves_the_saddle_as_its_eigenvalue_says_and_symmetrically():
+    wheel = Wheel(k=1.85)
+    rate = fixpoint(-pi / 4, wheel).eigenvalues[0].real
+    branches = portrait.unstable_manifolds(-pi / 4, wheel, 4.0)
+    away = np.log(np.abs(branches[0, :, PHI] + pi / 4))
+    early = (away > np.log(1e-4)) & (away < np.log(1e-2))
+    slope = np.polyfit(np.flatnonzero(early) * portrait.SAMPLE_S, away[early], 1)[0]
+    assert slope == pytest.approx(rate, rel=1e-2)
+    assert branches[0, :, PHI] + branches[1, :, PHI] == pytest.approx(-pi / 2, abs=1e-9)
+    assert branches[0, :, OMEGA] == pytest.approx(-branches[1, :, OMEGA], abs=1e-9)
+
+
+def test_wheels_on_either_side_of_a_stable_manifold_have_other_fates():
+    wheel = Wheel(k=1.65)
+    phi, omega = portrait.stable_manifolds(wheel, 1.2)
+    assert len(phi) > 100
+    fates = {tuple(portrait.fates(phi + dx, omega + dy, wheel)) for dx, dy in ((1e-6, 0.0), (-1e-6, 0.0), (0.0, 1e-6), (0.0, -1e-6))}
+    sides = np.array(list(fates))
+    assert (np.ptp(sides, axis=0) > 0).all()
+    # A well's neighbour is the fate beyond its saddle, which lies on the edge.
+    assert np.hypot(phi - pi / 4, omega).min() < 0.02
