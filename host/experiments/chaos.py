@@ -38,6 +38,7 @@ from host.experiments.switching import (
 )
 from host.kicking import require_running
 from host.log import Log
+from host.theory.model import acceleration
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS
 from robot.params import Params
@@ -188,7 +189,7 @@ def model_run(moment: float, friction: float, remembered: float, *, bounded: boo
     for _ in range(round(MODEL_S / MODEL_STEP_S)):
         seen_1, seen_2 = actual_positions(angle)
         x1, x2, force, torque = step_wheel(x1, x2, seen_1, seen_2, seen_1, seen_2, MODEL_STEP_S, a, TAU_S, K, 2)
-        speed += MODEL_STEP_S * ((torque if bounded else force) - friction * speed) / moment
+        speed += MODEL_STEP_S * acceleration(torque if bounded else force, speed, moment, friction, 0.0)
         angle += MODEL_STEP_S * speed
         angles.append(angle)
     return np.array(angles)

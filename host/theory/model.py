@@ -53,8 +53,13 @@ def seen_rates(
     force_1 = rod_force(target_position(x1, a), actual_1, k)
     force_2 = rod_force(target_position(x2, a), actual_2, k)
     force = tangential_force(force_1, force_2, actual_1, actual_2)
-    acceleration = (force - friction * omega - dry_friction) / inertia
-    return membrane_rate(x1, seen_1, tau_s), membrane_rate(x2, seen_2, tau_s), omega, acceleration
+    faster = acceleration(force, omega, inertia, friction, dry_friction)
+    return membrane_rate(x1, seen_1, tau_s), membrane_rate(x2, seen_2, tau_s), omega, faster
+
+
+def acceleration(force: Any, omega: Any, inertia: Any, friction: Any, dry_friction: Any) -> Any:
+    """domega/dt (rad/s^2) of a wheel that is driven by a force. Eq. dot_x_phi."""
+    return (force - friction * omega - dry_friction) / inertia
 
 
 class Wheel(NamedTuple):
