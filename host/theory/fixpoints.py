@@ -70,8 +70,9 @@ def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
     leading, vector = found.eigenvalues[0], found.eigenvectors[:, 0]
     left = np.linalg.inv(found.eigenvectors)[0]
     seconds = np.log(FACTOR) / abs(leading.real) if leading.real else 1.0 / abs(leading)
+    constants = list(wheel)
     start = found.state + NEAR * (vector / np.abs(vector).max()).real
-    run = solve_ivp(lambda _, state: rates(*state, *wheel), (0.0, seconds), start, method="LSODA", rtol=1e-11, atol=1e-15)
+    run = solve_ivp(lambda _, state: rates(*state, *constants), (0.0, seconds), start, method="LSODA", rtol=1e-11, atol=1e-15)
     along = [abs(left @ (state - found.state)) for state in (start, run.y[:, -1])]
     return float(np.log(along[1] / along[0]) / seconds)
 

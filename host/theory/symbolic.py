@@ -49,10 +49,10 @@ def jacobian_at(state: Sequence[float], wheel: Wheel) -> Array:
 
 def jacobian_by_differences(state: Sequence[float], wheel: Wheel, step: float = 1e-5) -> Array:
     """The Jacobian, (4, 4), by central differences of the rates: a check, good to about step^2."""
-    columns = []
+    columns, constants = [], list(wheel)
     for index in range(4):
         ahead, behind = (list(state) for _ in range(2))
         ahead[index] += step
         behind[index] -= step
-        columns.append((np.array(rates(*ahead, *wheel)) - np.array(rates(*behind, *wheel))) / (2 * step))
+        columns.append((np.array(rates(*ahead, *constants)) - np.array(rates(*behind, *constants))) / (2 * step))
     return np.array(columns).T
