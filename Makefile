@@ -9,13 +9,15 @@ LOCKER := uv==0.13.9
 # Neither is the mutator, nor what it runs the tests of one small file with.
 MUTATOR := mutmut==3.8.1 coverage hypothesis pytest pytest-timeout
 MUTANTS := build/mutants
+# Nor are the engines that the analytic model's own is measured against.
+PEERS := build/peers
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm faults soak mutants lock clean
+.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak mutants lock clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 11
+	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
 	@echo 'PYTHON=... chooses the interpreter that .venv is made with (now: $(PYTHON); 3.11 or newer).'
 
 setup: $(STAMP) ## make .venv with the locked dependencies and kickctl in it
@@ -52,6 +54,9 @@ bench: $(STAMP) ## measure the speed of what has to be fast
 
 bench-arm: $(STAMP) ## count what a tick costs on an emulated ARM926 (needs qemu-user and, the first time, root and debootstrap)
 	$(BIN)/python -m tests.bench_arm
+
+bench-theory: $(PEERS)/.complete ## measure the analytic model's engine against heyoka, diffrax, numba and scipy
+	$(PEERS)/bin/python -m tests.bench_theory
 
 faults: $(STAMP) ## try every fault twenty times on live motors, and print how long they ran on
 	$(BIN)/python -m tests.faults
@@ -90,4 +95,11 @@ $(STAMP): requirements.lock pyproject.toml
 $(MUTANTS)/.complete: Makefile
 	$(PYTHON) -m venv --clear $(MUTANTS)
 	$(MUTANTS)/bin/python -m pip install --quiet --disable-pip-version-check $(MUTATOR)
+	@touch $@
+
+# Our own dependencies as locked, so that all engines run with the same numba, numpy and scipy.
+$(PEERS)/.complete: Makefile requirements.lock tests/bench_theory/requirements.txt
+	$(PYTHON) -m venv --clear $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/bench_theory/requirements.txt
 	@touch $@

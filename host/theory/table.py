@@ -71,7 +71,7 @@ TABLE = {
             K._replace(default=15.0),
             F,
             I,
-            Option("seconds", 2000.0, 50.0, 1e6, "how long to follow a wheel for the spectrum, s"),
+            Option("seconds", 2000.0, 50.0, 1e6, "how long to follow each of 64 wheels for the spectrum, s; beyond 2000 s, more wheels"),
         ),
         ("M8",),
     ),

@@ -1,0 +1,113 @@
+"""Basins of starts in (phi, omega), and of kicks in phase and length, of the continuous model and of the sampled one."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from host.experiments.experiment import Findings, Row
+from host.figures.style import COLOURS, styled
+from host.theory.basins import CONTINUOUS, LENGTHS_S, MODELS, SAMPLED, of_kick, part_of, reversals
+from host.theory.fates import BACK, BACKWARD, FORWARD, REST
+from robot.kicks import MEMBRANE, PHASE, POSITION
+
+_KINDS = {(POSITION, 0): "positions inverted", (PHASE, 1): r"phase shifted $+3\pi/4$", (PHASE, -1): r"phase shifted $-3\pi/4$"}
+# Wells, by their angle within the turn; then directions; then what is neither.
+_WELLS = ("#009e73", "#f0e442", "#cc79a7", "#e5e5e5")
+_SHADES = (*_WELLS, COLOURS[0], COLOURS[1], "#555555", COLOURS[5])
+_FORWARD, _BACKWARD, _OTHER, _BOUND = range(4, 8)
+_CURVES: dict[str, Any] = {CONTINUOUS: {"color": "black"}, SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 6}}
+_MAP = ListedColormap(_SHADES)
+
+
+def draw(rows: list[Row], findings: Findings) -> Figure:
+    """The figure of the study's rows."""
+    with styled():
+        figure = Figure(figsize=(12.0, 9.0), dpi=1600 / 12, layout="constrained")
+        panels: Any = figure.subplots(3, 4, width_ratios=(1.7, 1, 1, 1))
+        used: set[int] = set()
+        for line, model in zip(panels, MODELS, strict=False):
+            used |= _draw_starts(line[0], part_of(rows, "starts", model))
+            line[0].set_title(f"starts, {model} model" if model == CONTINUOUS else _sampled(findings), fontsize=13)
+            for axes, kind in zip(line[1:], _KINDS, strict=True):
+                used |= _draw_kicks(axes, of_kick(rows, model, *kind), model)
+            line[1].set_ylabel(f"length of the kick (ms)\n{model}")
+        panels[1, 0].set_xlabel(r"angle $\varphi$ at the start")
+        for axes, name in zip(panels[0, 1:], _KINDS.values(), strict=True):
+            axes.set_title(name, fontsize=12)
+        for axes in panels[1, 1:]:
+            axes.set_xlabel("phase of rolling (°)")
+        for axes, kind in zip(panels[2, 1:], _KINDS, strict=True):
+            _draw_shares(axes, rows, kind)
+        panels[2, 1].set_ylabel("reversed (%)")
+        _explain(panels[2, 0], used, rows)
+        figure.suptitle("Which start, and which kick of a wheel that rolls forward, leads where", fontsize=17)
+    return figure
+
+
+def _sampled(findings: Findings) -> str:
+    return f"starts, sampled every {1000 * findings.numbers['tick_s']:g} ms"
+
+
+def _shade(row: Row) -> int:
+    if row["outcome"] in (REST, BACK) and row.get("quarters") is not None:
+        return int(row["quarters"] % 4)
+    return {FORWARD: _FORWARD, BACKWARD: _BACKWARD, REST: _BOUND, BACK: _BOUND}.get(row["outcome"], _OTHER)
+
+
+def _draw_starts(axes: Axes, starts: list[Row]) -> set[int]:
+    points = int(len(starts) ** 0.5)
+    shades = np.array([_shade(row) for row in starts]).reshape(points, points)
+    greatest = abs(starts[0]["omega"]) * points / (points - 1) / (2 * pi)
+    axes.imshow(shades, extent=(-pi, pi, -greatest, greatest), vmin=-0.5, vmax=7.5, **_image())
+    axes.set_xticks([-pi, -pi / 2, 0, pi / 2, pi], ["$-\\pi$", "$-\\pi/2$", "0", "$\\pi/2$", "$\\pi$"])
+    axes.set_ylabel(r"$\omega/2\pi$ at the start (Hz)")
+    return set(shades.ravel().tolist())
+
+
+def _image() -> dict[str, Any]:
+    return {"origin": "lower", "aspect": "auto", "cmap": _MAP, "interpolation": "nearest"}
+
+
+def _draw_kicks(axes: Axes, kicks: list[Row], model: str) -> set[int]:
+    """Lines of a continuous length, or bars of whole ticks, over phases that need not be evenly spaced."""
+    lengths_ms = 1000 * np.array(LENGTHS_S[model])
+    axes.set(xlim=(0, 90), ylim=(0, 400), xticks=(0, 30, 60, 90))
+    if not kicks:
+        axes.text(45, 200, "no wheel rolls here", ha="center")
+        return set()
+    phases = np.array([row["phase_deg"] for row in kicks[: len(kicks) // len(lengths_ms)]])
+    shades = np.array([_shade(row) for row in kicks]).reshape(len(lengths_ms), -1)
+    half = (lengths_ms[1] - lengths_ms[0]) / 2
+    sides = np.concatenate([[0.0], (phases[1:] + phases[:-1]) / 2, [90.0]])
+    axes.pcolormesh(sides, np.append(lengths_ms - half, lengths_ms[-1] + half), shades, cmap=_MAP, vmin=-0.5, vmax=7.5, rasterized=True)
+    return set(shades.ravel().tolist())
+
+
+def _draw_shares(axes: Axes, rows: list[Row], kind: tuple[str, int]) -> None:
+    for model, style in _CURVES.items():
+        shares = reversals(of_kick(rows, model, *kind))
+        axes.plot([1000 * length_s for length_s in shares], [100 * share for share in shares.values()], **style)
+    axes.set(xlabel="length of the kick (ms)", xlim=(0, 400), ylim=(-3, 103))
+
+
+def _explain(axes: Axes, used: set[int], rows: list[Row]) -> None:
+    """What the colours and the curves mean, and what the kick without a length does."""
+    names = [f"bound to $\\varphi$ = {name}" for name in ("0", "$\\pi/2$", "$\\pi$", "$-\\pi/2$")]
+    names += ["rolls forward", "rolls backward", "has not settled", "rests, or goes forth and back"]
+    handles: list[Artist] = [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
+    handles += [Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items()]
+    shares = {model: reversals(of_kick(rows, model, MEMBRANE, 0)).values() for model in MODELS}
+    lines = [f"{model}: at {100 * share:.0f} % of phases" for model, of_model in shares.items() for share in of_model]
+    title = "\n".join(["Inverted potentials reverse a wheel", *lines, ""]) if lines else None
+    axes.set_axis_off()
+    legend = axes.legend(handles=handles, loc="upper left", title=title, fontsize=12, title_fontsize=12, alignment="left")
+    legend.set_in_layout(False)

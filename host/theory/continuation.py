@@ -1,0 +1,96 @@
+"""Curves of solutions followed around folds: pseudo-arclength continuation (Keller), and the points on them where something vanishes.
+
+A problem is a function of n + 1 unknowns, the last of which is the followed constant, that gives n residuals and their Jacobian
+(n, n + 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from host.errors import NotDone
+from host.theory.model import Array
+
+Problem = Callable[[Array], tuple[Array, Array]]
+
+# Newton's method converges quadratically: the step after one of this size (relative) is rounding.
+_CLOSE, _MOST_ITERATIONS = 1e-11, 12
+# How far (rad) a curve may turn within a step.
+_MOST_TURN = 0.15
+_GROWTH = 1.4
+
+
+class Point(NamedTuple):
+    """A solution (n + 1,), and the direction in which its curve goes on, of length 1 in the scaled unknowns."""
+
+    unknowns: Array
+    tangent: Array
+
+
+class Curve(NamedTuple):
+    """A problem with its unknowns' scales (n + 1,), in which lengths are measured."""
+
+    problem: Problem
+    scales: Array
+
+    def _jacobian(self, unknowns: Array) -> tuple[Array, Array]:
+        residual, jacobian = self.problem(unknowns)
+        return residual, jacobian * self.scales
+
+    def solve(self, guess: Array, direction: Array) -> Point:
+        """The solution on the plane through a guess at right angles to a direction. Raises NotDone if Newton's method finds none."""
+        unknowns = guess.copy()
+        for _ in range(_MOST_ITERATIONS):
+            residual, jacobian = self._jacobian(unknowns)
+            off = direction @ ((unknowns - guess) / self.scales)
+            matrix = np.vstack([jacobian, direction])
+            if not np.isfinite(matrix).all():
+                break
+            try:
+                change = np.linalg.solve(matrix, -np.append(residual, off))
+            except np.linalg.LinAlgError:
+                break
+            unknowns = unknowns + self.scales * change
+            if np.abs(change).max() < _CLOSE:
+                return Point(unknowns, self.tangent(unknowns, direction))
+        raise NotDone("no solution was found near a guess", "try shorter steps")
+
+    def tangent(self, unknowns: Array, like: Array) -> Array:
+        """The direction of the curve, of its two the one that is like another."""
+        _, jacobian = self._jacobian(unknowns)
+        along: Array = np.linalg.svd(jacobian)[2][-1]
+        return along if along @ like >= 0.0 else -along
+
+    def ahead(self, point: Point, length: float) -> Point:
+        """The point of the curve at this distance along another's tangent. Raises NotDone."""
+        return self.solve(point.unknowns + length * self.scales * point.tangent, point.tangent)
+
+    def follow(self, first: Point, shortest: float, longest: float) -> Iterator[tuple[float, Point]]:
+        """Yields the points of the curve from the first on, each with its distance from the one before. Raises NotDone where it is lost."""
+        yield 0.0, first
+        point, length = first, 10 * shortest
+        while True:
+            try:
+                following = self.ahead(point, length)
+                turn = float(np.arccos(min(1.0, float(following.tangent @ point.tangent))))
+                aside = following.unknowns - point.unknowns - length * self.scales * point.tangent
+                near = turn < _MOST_TURN and np.linalg.norm(aside / self.scales) < _MOST_TURN * length
+            except NotDone:
+                near = False
+            if not near:
+                length /= 2
+                if length < shortest:
+                    raise NotDone("the curve could not be followed further", "its solutions change too fast there, or cease to exist")
+                continue
+            yield length, following
+            point = following
+            length = min(longest, length * (_GROWTH if turn < _MOST_TURN / 3 else 1.0))
+
+    def locate(self, point: Point, length: float, vanishing: Callable[[Point], float]) -> Point:
+        """The point up to this distance from another where a function vanishes that has different signs at both ends."""
+        found = brentq(lambda distance: vanishing(self.ahead(point, distance)), 0.0, length, xtol=1e-13, rtol=1e-13)
+        return self.ahead(point, float(found))

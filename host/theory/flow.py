@@ -1,0 +1,89 @@
+"""One wheel at a time, step by step, with the derivatives of where it gets to: what shooting and bisection need.
+
+The method is Runge and Kutta's of order 8 with fixed steps, as in host.theory.ensemble, which is for many wheels.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numba
+import numpy as np
+import sympy
+from scipy.integrate import DOP853
+
+from host.errors import WrongUse
+from host.theory.ensemble import MOST_STEPS, rate_per_s
+from host.theory.model import Array, Wheel, rates
+from host.theory.symbolic import CONSTANTS, field, function, jacobian
+from sim_motor.compiled import assembled, compiled, retold
+
+# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is the step's own.
+_TABLEAU = np.vstack([DOP853.A, DOP853.B]).astype(np.float64)
+_STAGES = len(DOP853.B)
+# Steps per unit of a wheel's rate (see host.theory.ensemble); at this, the error of a period is of the order of rounding.
+FINENESS = 3.0
+_LEAST_STEPS = 16
+
+_rates: Any = compiled(rates)
+_jacobian: Any = retold(jacobian(), {}, numba.njit)
+
+
+def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
+    """How many steps this time takes. Raises WrongUse if the wheel is too stiff."""
+    needed = float(np.ceil(seconds * fineness * rate_per_s(np.array(wheel)[:, None])[0]))
+    if not needed <= MOST_STEPS:
+        raise WrongUse(f"{seconds:g} s of {wheel} would take {needed:.1e} steps", "choose a larger tau or I, a smaller k")
+    return max(_LEAST_STEPS, int(needed))
+
+
+# Loops over rows and columns instead of slices: these take the compiler ten times as long.
+@assembled
+def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: int) -> Array:
+    """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns). own_rates: `plain` or one of `varied`."""
+    columns, step_s = states.shape[1], seconds / count
+    path, stages, at = np.empty((count + 1, 4, columns)), np.empty((_STAGES, 4, columns)), states.copy()
+    for index in range(count + 1):
+        for row in range(4):
+            for column in range(columns):
+                path[index, row, column] = at[row, column]
+        for stage in range(1, _STAGES + 1):
+            own_rates(at, constants, stages[stage - 1])
+            for row in range(4):
+                for column in range(columns):
+                    total = 0.0
+                    for earlier in range(stage):
+                        total += _TABLEAU[stage, earlier] * stages[earlier, row, column]
+                    at[row, column] = path[index, row, column] + step_s * total
+    return path
+
+
+@assembled
+def plain(states: Array, constants: Any, out: Array) -> None:
+    """Rates of a state alone, (4, 1)."""
+    out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(states[0, 0], states[1, 0], states[2, 0], states[3, 0], *constants)
+
+
+@cache
+def varied(followed: int) -> Any:
+    """The rates of a state, of its derivatives by the initial state, and of that by the constant of this number, (4, 1 + 4 + 1)."""
+    by_constant: Any = retold(function([sympy.diff(rate, CONSTANTS[followed]) for rate in field()]), {}, numba.njit)
+
+    def own_rates(states: Array, constants: Any, out: Array) -> None:
+        x1, x2, phi, omega = states[0, 0], states[1, 0], states[2, 0], states[3, 0]
+        out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(x1, x2, phi, omega, *constants)
+        m = _jacobian(x1, x2, phi, omega, *constants)
+        for column in range(1, 6):
+            u, v, w, z = states[0, column], states[1, column], states[2, column], states[3, column]
+            out[0, column] = m[0] * u + m[1] * v + m[2] * w + m[3] * z
+            out[1, column] = m[4] * u + m[5] * v + m[6] * w + m[7] * z
+            out[2, column] = m[8] * u + m[9] * v + m[10] * w + m[11] * z
+            out[3, column] = m[12] * u + m[13] * v + m[14] * w + m[15] * z
+        direct = by_constant(x1, x2, phi, omega, *constants)
+        out[0, 5] += direct[0]
+        out[1, 5] += direct[1]
+        out[2, 5] += direct[2]
+        out[3, 5] += direct[3]
+
+    return assembled(own_rates)

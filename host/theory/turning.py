@@ -1,0 +1,44 @@
+"""A wheel that turns at constant angular velocity: its neurons' potentials (eq. x-t), and the speed at which it goes on (eq. F_tan_ana)."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from host.theory.model import Array, Wheel
+from robot.controller import actual_positions, membrane_rate
+
+# After so many time constants nothing is left of how the neurons began.
+_SETTLED = 40.0
+
+
+def potentials(phi: Any, omega: float, tau_s: float) -> tuple[Any, Any]:
+    """(x1, x2) of neurons that see the wheel turn at omega, when it is at phi. Eq. x-t."""
+    cosine, sine, lag = np.cos(phi), np.sin(phi), omega * tau_s
+    return (cosine + lag * sine) / (1 + lag**2), (sine - lag * cosine) / (1 + lag**2)
+
+
+def speed(wheel: Wheel) -> float | None:
+    """The paper's omega (rad/s) of locomotion, for neurons in their linear range; None where it has none. Eq. F_tan_ana."""
+    drive, brake = wheel.a * wheel.k * wheel.tau_s, 2 * wheel.friction
+    return sqrt((drive - brake) / brake) / wheel.tau_s if drive > brake > 0.0 else None
+
+
+def driven(phi: Array, omega: float, tau_s: float) -> Array:
+    """The same potentials, (2, angles), by numbers: the robot's two neurons, fed from rest with the turning wheel's positions.
+
+    phi: ascending, from 0 or more.
+    """
+
+    def rate(time_s: float, x: Array) -> list[float]:
+        seen = actual_positions(omega * time_s)
+        return [float(membrane_rate(x[i], seen[i], tau_s)) for i in range(2)]
+
+    turns = np.ceil(_SETTLED * tau_s * abs(omega) / (2 * np.pi))
+    times = (2 * np.pi * turns + phi) / omega
+    solved = solve_ivp(rate, (0.0, times[-1]), [0.0, 0.0], method="DOP853", t_eval=times, rtol=1e-11, atol=1e-13)
+    found: Array = solved.y
+    return found

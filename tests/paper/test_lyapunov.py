@@ -1,0 +1,240 @@
+"""Exponents against eigenvalues, symmetries and a second algorithm; kinds of attractors; transients against lives made up."""
+
+import json
+
+import numpy as np
+import pytest
+
+import host.theory.lyapunov as study
+from host.claims import Claim
+from host.errors import WrongUse
+from host.experiments.experiment import Setting
+from host.theory.attractors import BACK, CHAOS, REST, ROLL, settled, starts, watch
+from host.theory.model import PHI, Wheel, rates, resting, rolling
+from host.theory.route import rolling_end
+from host.theory.run import perform
+from host.theory.symbolic import jacobian_at
+from host.theory.tangent import divergence, growth, kaplan_yorke, pair_growth, smooth_mean, tangent_rates
+from host.theory.transients import crisis, lives, sample
+
+RESTING, SWINGING, ROLLING, CHAOTIC = Wheel(k=1.4), Wheel(k=1.65), Wheel(k=8.0), Wheel(k=15.0, tau_s=1.0)
+OPTIONS = {"a": 4.0, "tau": 1.0, "k": 15.0, "f": 0.5, "I": 0.05, "seconds": 2000.0}
+
+
+def _chance():
+    return np.random.default_rng(11)
+
+
+@pytest.fixture(scope="module")
+def chaotic():
+    """Chaotic wheels on their attractor."""
+    parameters = CHAOTIC.columns(64)
+    return settled(starts(64, _chance()), parameters, 60.0), parameters
+
+
+def test_a_vector_is_driven_as_a_small_difference_is():
+    rng, step = _chance(), 1e-6
+    state, vector = starts(1, rng)[:, 0], rng.normal(size=4)
+    out = np.empty((8, 1))
+    tangent_rates(np.concatenate([state, vector])[:, None], CHAOTIC.columns(1), out)
+    ahead, behind = (np.array(rates(*(state + sign * step * vector), *CHAOTIC)) for sign in (1, -1))
+    assert out[:4, 0] == pytest.approx(rates(*state, *CHAOTIC), rel=1e-12)
+    assert out[4:, 0] == pytest.approx((ahead - behind) / (2 * step), rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("wheel", [RESTING, Wheel(k=0.3), Wheel(k=0.0), Wheel(a=0.0)])
+def test_at_rest_exponents_are_the_real_parts_of_the_eigenvalues(wheel):
+    found = smooth_mean(growth(resting(np.zeros(1)), wheel.columns(1), 200.0, 4).rates)[:, 0]
+    exact = np.sort(np.linalg.eigvals(jacobian_at((1.0, 0.0, 0.0, 0.0), wheel)).real)[::-1]
+    assert found == pytest.approx(exact, abs=2e-3)
+
+
+def test_a_wheel_that_balances_is_not_chaotic_though_what_is_near_it_parts():
+    state, parameters = resting(np.zeros(1)), CHAOTIC.columns(1)
+    assert smooth_mean(growth(state, parameters, 20.0).rates)[0, 0] > 1.0
+    assert watch(state, parameters, 20.0).kinds()[0] == REST
+
+
+def test_along_a_cycle_one_exponent_is_0_and_the_others_are_negative():
+    parameters = ROLLING.columns(1)
+    begin = settled(np.array(rolling(ROLLING))[:, None], parameters, 60.0)
+    found = growth(begin, parameters, 100.0, 4)
+    exponents = smooth_mean(found.rates)[:, 0]
+    assert exponents[0] == pytest.approx(0.0, abs=1e-3)
+    assert (exponents[1:] < -0.1).all()
+    assert kaplan_yorke(exponents, 0.01) == 1.0
+
+
+def test_the_sum_of_the_exponents_is_the_divergence_at_every_moment(chaotic):
+    states, parameters = chaotic
+    assert divergence(CHAOTIC) == pytest.approx(-2 / CHAOTIC.tau_s - CHAOTIC.friction / CHAOTIC.inertia, abs=1e-12)
+    sums = growth(states, parameters, 10.0, 4).rates.sum(axis=1)
+    assert np.abs(sums - divergence(CHAOTIC)).max() < 1e-6
+
+
+def test_both_algorithms_find_the_same_positive_exponent(chaotic):
+    states, parameters = chaotic
+    vectors = growth(states, parameters, 120.0).rates[5:, 0].mean(axis=0)
+    pairs = pair_growth(states, parameters, 120.0)[10:].mean(axis=0)
+    errors = [own.std() / np.sqrt(own.size) for own in (vectors, pairs)]
+    assert vectors.mean() == pytest.approx(pairs.mean(), abs=4 * np.hypot(*errors))
+    assert vectors.mean() - 5 * errors[0] > 0.7
+
+
+def test_neither_algorithm_finds_growth_on_a_cycle():
+    parameters = ROLLING.columns(1)
+    begin = settled(np.array(rolling(ROLLING))[:, None], parameters, 60.0)
+    assert smooth_mean(pair_growth(begin, parameters, 100.0)) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_vectors_in_the_mirror_grow_alike():
+    mirror = np.array([1.0, -1.0, -1.0, -1.0])[:, None]
+    state, parameters = starts(1, _chance()), CHAOTIC.columns(1)
+    vector = _chance().normal(size=(1, 4, 1))
+    plain, other = (
+        growth(sign * state, parameters, 4.0, vectors=vector * sign.reshape(1, 4, 1)).rates for sign in (np.ones((4, 1)), mirror)
+    )
+    assert other == pytest.approx(plain, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("exponents", "dimension"),
+    [((-1.0, -2.0), 0.0), ((0.0, -1.0, -2.0), 1.0), ((0.0, 0.0, -1.0), 2.0), ((0.906, 0.0, -14.572), 2.0622), ((1.0, -0.5), 2.0)],
+)
+def test_dimensions(exponents, dimension):
+    assert kaplan_yorke(np.array(exponents)) == pytest.approx(dimension, abs=1e-4)
+
+
+@pytest.mark.parametrize(("wheel", "kind"), [(RESTING, REST), (SWINGING, BACK), (ROLLING, ROLL), (CHAOTIC, CHAOS)])
+def test_kinds_at_the_papers_points(wheel, kind):
+    parameters = wheel.columns(16)
+    seen = watch(settled(starts(16, _chance()), parameters, 150.0), parameters, 100.0)
+    assert (seen.kinds() == kind).all()
+    assert ((seen.apart > 1e-3) == (kind == CHAOS)).all()
+
+
+def test_what_still_settles_is_not_called_chaos():
+    """Just above the Hopf point a cycle takes very long to grow to its size."""
+    parameters = RESTING._replace(k=1.55).columns(8)
+    for seconds in (1.0, 5.0, 20.0):
+        seen = watch(settled(resting(np.full(8, 0.02)), parameters, seconds), parameters, 20.0)
+        assert np.isin(seen.kinds(), (REST, BACK)).all()
+
+
+def test_smooth_averages_are_the_plain_ones_of_long_times():
+    parameters, seconds = ROLLING.columns(1), 1000.0
+    begin = settled(np.array(rolling(ROLLING))[:, None], parameters, 60.0)
+    plain = (settled(begin, parameters, seconds)[PHI] - begin[PHI]) / seconds
+    assert watch(begin, parameters, 60.0).omega_mean == pytest.approx(plain, rel=1e-5)
+
+
+def test_lives_are_those_of_switching_only():
+    wheel = Wheel(k=4.4, tau_s=1.0)
+    begin = np.hstack([starts(31, _chance()), np.array(rolling(wheel))[:, None]])
+    found = lives(begin, wheel.columns(32), 1000.0, 0.6)
+    assert found.ended.all()
+    assert found.life_s[-1] == 0.0
+    assert found.life_s.max() > 20.0
+
+
+def test_means_of_lives_take_those_that_did_not_end_into_account():
+    whole = 20.0 + _chance().exponential(100.0, 4000)
+    cut = sample(1.0, np.minimum(whole, 170.0), whole < 170.0)
+    assert cut.mean_s == pytest.approx(100.0, rel=0.06)
+    assert cut.likeness is None
+
+
+def test_lives_that_are_not_exponential_are_told_apart():
+    rng, ended = _chance(), np.ones(200, dtype=bool)
+    assert sample(1.0, 20.0 + rng.exponential(100.0, 200), ended).likeness > 0.01
+    assert sample(1.0, 20.0 + rng.uniform(50.0, 150.0, 200), ended).likeness < 0.01
+
+
+def test_a_crisis_is_found_where_lives_have_no_bound():
+    rng, ended = _chance(), np.ones(400, dtype=bool)
+    ks = 5.0 - np.array([0.6, 0.4, 0.3, 0.2, 0.1, 0.05, 0.02])
+    samples = [sample(k, 20.0 + rng.exponential(30.0 * (5.0 - k) ** -1.3, 400), ended) for k in ks]
+    found = crisis(samples)
+    assert found.k == pytest.approx(5.0, abs=0.01)
+    assert found.k_interval[0] <= 5.0 <= found.k_interval[1]
+    assert found.power == pytest.approx(1.3, abs=0.15)
+    assert crisis(samples[:3]) is None
+
+
+def test_rolling_ends_where_its_damping_does():
+    rows = [
+        {"k": k, "kind": "rolling" if k < 5.2 else "chaotic", "apart": 1e-9, "pair": 0.1 * (k - 5.1), "exponent_2": 0.0, "exponent_3": 0.0}
+        for k in np.arange(4.0, 6.0, 0.02).tolist()
+    ]
+    found = rolling_end(rows)
+    assert found["k"] == pytest.approx(5.1, abs=1e-9)
+    assert found["leaves_by"] == pytest.approx(5.2, abs=0.021)
+    assert rolling_end([row for row in rows if row["k"] < 5.0]) is None
+
+
+def test_rolling_loses_its_stability_where_its_floquet_multipliers_say():
+    """By shooting, a complex pair of multipliers has the modulus 1 at k = 5.1680780."""
+    rows = study.simulate({"part": "rolling"}, Setting(1, OPTIONS))
+    assert rolling_end(rows)["k"] == pytest.approx(5.168078, abs=5e-5)
+
+
+@pytest.mark.parametrize("wrong", [{"I": 1e-9}, {"tau": 1e-6}, {"f": 1e3}, {"f": 0.0}])
+def test_wheels_that_are_too_fast_are_refused(wrong):
+    with pytest.raises(WrongUse, match="too long"):
+        study.cells({**OPTIONS, **wrong})
+
+
+def test_longer_runs_are_more_pieces_of_the_same_length():
+    points = [cell for cell in study.cells({**OPTIONS, "seconds": 5000.0}) if cell["part"] == "point"]
+    assert [cell["batch"] for cell in points] == [0, 1, 2]
+    assert sum(cell["seconds"] for cell in points) == pytest.approx(5000.0)
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """A study that takes seconds."""
+    for name, value in {
+        "WHEELS": 8,
+        "LINE_KS": 8,
+        "LINE_WHEELS": 2,
+        "LINE_BAND": 8,
+        "PLANE": 4,
+        "ROLLING_KS": 8,
+        "LIVES_AT": (0.0,),
+        "LIVES_WHEELS": 8,
+        "LIVES_S": 70.0,
+        "CHECKED": 8,
+        "SERIES_S": 60.0,
+        "SETTLE_S": 60.0,
+        "MEASURE_S": 20.0,
+    }.items():
+        monkeypatch.setattr(study, name, value)
+    monkeypatch.setattr("host.theory.transients.SEARCH_STEPS", 4)
+    monkeypatch.setattr("host.theory.transients.SEARCH_S", 60.0)
+
+
+@pytest.mark.parametrize(("options", "kind"), [({"k": 8.0, "tau": 0.25}, "rolling"), ({"k": 0.0}, "at rest")])
+def test_where_there_is_no_chaos_the_study_says_so(small, options, kind):
+    summary = perform("lyapunov", 3, out="here", seconds=50.0, **options)
+    numbers = summary["numbers"]
+    assert numbers["point"]["kind"] == kind
+    assert len(numbers["exponents"]) == len(numbers["standard_errors"]) == 4
+    assert numbers["exponents"][0] == pytest.approx(0.0, abs=0.05)
+    assert numbers["exponents"] == sorted(numbers["exponents"], reverse=True)
+    assert sum(numbers["exponents"]) == pytest.approx(numbers["accuracy"]["sum_of_exponents_exact"], abs=1e-4)
+    assert summary["claims"] == []
+    json.dumps(summary, allow_nan=False)
+
+
+def test_the_papers_point_is_judged(small):
+    claims = [Claim.from_dict(claim) for claim in perform("lyapunov", 3, out="here", seconds=50.0)["claims"]]
+    assert [claim.id for claim in claims] == ["M8", "M8"]
+    assert claims[0].holds
+    assert not claims[1].holds  # too few wheels to say
+
+
+def test_the_same_seed_gives_the_same_rows(small):
+    cell = {"part": "line", "first": 0}
+    first, again, other = (study.simulate(cell, Setting(seed, OPTIONS)) for seed in (1, 1, 2))
+    assert first == again
+    assert first != other
