@@ -92,7 +92,7 @@ def _mark(axes: Axes, row: Row, height: float) -> None:
     style: Any = {"linestyle": "", "marker": _MARK[row["type"]], "color": _COLOUR[row["part"]], "markerfacecolor": "white"}
     size = 13 if row["type"] == "merging" else 8
     label = _TYPE[row["type"]] + (", dry friction" if row["part"] == "dry" else "")
-    axes.plot([row["value"]], [height], label=label, zorder=4, markersize=size, clip_on=False, **style)
+    axes.plot([row["value"]], [height], label=label, zorder=4, markersize=size, **style)
 
 
 def _draw_formula(axes: Axes, rows: list[Row]) -> None:
@@ -121,7 +121,7 @@ def _rest_name(stable: bool) -> str:
 
 def _zoom(rows: list[Row], near: Axes, swing: Axes, period: Axes) -> None:
     """The three panels of the onset show where bifurcations crowd; if there are none, all of the branches."""
-    places = [row["value"] for row in rows if row["kind"] == "special" and row["type"] != "neimark-sacker"]
+    places = [row["value"] for row in rows if row["kind"] == "special" and row["type"] in ("hopf", "merging", "fold")]
     swinging = [row["value"] for row in rows if row["kind"] == "cycle" and row["part"] == "FB"]
     if not places:
         return
@@ -133,7 +133,8 @@ def _zoom(rows: list[Row], near: Axes, swing: Axes, period: Axes) -> None:
         row for row in rows if row["kind"] == "cycle" and row["part"] in ("LLM", "dry") and begin - margin < row["value"] < end + margin
     ]
     if inside:
-        near.set_ylim(0.0, 1.08 * max(row["omega_mean"] for row in inside))
+        most = max(row["omega_mean"] for row in inside)
+        near.set_ylim(-0.06 * most, 1.08 * most)
     longest = [row["period"] for row in rows if row["kind"] == "cycle" and begin - margin < row["value"] < end + margin]
     if longest:
         period.set_ylim(0.9 * min(longest), 1.2 * max(longest))

@@ -20,6 +20,14 @@ SHOWN_S = 40.0
 _COLOUR = {KINDS[REST]: COLOURS[6], KINDS[BACK]: COLOURS[4], KINDS[ROLL]: COLOURS[0], KINDS[CHAOS]: COLOURS[1]}
 _MARKER = {KINDS[REST]: "s", KINDS[BACK]: "^", KINDS[ROLL]: "o", KINDS[CHAOS]: "."}
 _SMALL = 11
+_ABOVE: Any = {
+    "loc": "lower left",
+    "bbox_to_anchor": (0.0, 1.0),
+    "fontsize": _SMALL,
+    "borderaxespad": 0.1,
+    "handlelength": 1.0,
+    "columnspacing": 1.0,
+}
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -46,7 +54,12 @@ def _title(numbers: dict[str, Any]) -> str:
     constants, point = numbers["constants"], numbers["point"]
     rate, error = numbers["exponents"][0], numbers["standard_errors"][0]
     where = f"$k$ = {constants['k']:g}, $\\tau$ = {constants['tau']:g} s"
-    return f"{where}: {point['kind']}, $\\lambda_1$ = {rate:.3f} ± {error:.3f} /s, dimension {point['dimension']:.2f}"
+    return f"{where}: {point['kind']}, $\\lambda_1$ = {_rounded(rate)} ± {_rounded(error)} /s, dimension {point['dimension']:.2f}"
+
+
+def _rounded(value: float) -> str:
+    """With three digits after the point, and no sign before zero."""
+    return f"{round(value, 3) + 0.0:.3f}"
 
 
 def _draw_series(axes: Axes, series: list[Row], numbers: dict[str, Any]) -> None:
@@ -56,7 +69,9 @@ def _draw_series(axes: Axes, series: list[Row], numbers: dict[str, Any]) -> None
     axes.set_xlim(0, SHOWN_S)
     axes.set_xlabel("time (s)")
     axes.set_ylabel(r"torque $F_\mathrm{tan}$")
-    spectrum = ", ".join(f"{rate:.3f} ± {error:.3f}" for rate, error in zip(numbers["exponents"], numbers["standard_errors"], strict=True))
+    spectrum = ", ".join(
+        f"{_rounded(rate)} ± {_rounded(error)}" for rate, error in zip(numbers["exponents"], numbers["standard_errors"], strict=True)
+    )
     axes.set_title(f"spectrum: {spectrum} /s", fontsize=12, loc="left")
 
 
@@ -109,8 +124,8 @@ def _draw_planes(figure: Figure, panels: list[Axes], rows: list[Row], constants:
 def _draw_survival(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None:
     """What part of the wheels still switches, with the exponential of the same mean."""
     shown = [entry for entry in numbers["lives"] if entry["ended"] >= FEWEST][-4:]
-    axes.set_title("chaotic transients", fontsize=13, loc="left")
     if not shown:
+        axes.set_title("chaotic transients", fontsize=13, loc="left")
         _say_none(axes)
         return
     longest = 0.0
@@ -126,7 +141,8 @@ def _draw_survival(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None
     axes.set_xlim(0, longest)
     axes.set_xlabel("time (s)")
     axes.set_ylabel("share that still switches")
-    axes.legend(title="$k$ (dotted: exponential)", fontsize=_SMALL, title_fontsize=_SMALL, loc="lower right", frameon=True)
+    words = "chaotic transients at $k$ = (dotted: exponential)"
+    axes.legend(title=words, ncols=len(shown), title_fontsize=12, alignment="left", **_ABOVE)
     axes.xaxis.set_major_locator(MaxNLocator(5))
 
 

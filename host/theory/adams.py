@@ -13,13 +13,11 @@ from typing import Any
 import numba
 import numpy as np
 
+from host.theory import runge_kutta
 from host.theory.elementary import OPTIONS
 from host.theory.model import Array
-from host.theory.runge_kutta import runge_kutta
 
 ORDER = 10
-# How often a step evaluates the rates.
-EVALUATIONS = 2
 
 
 def weights(nodes: list[int]) -> tuple[float, ...]:
@@ -72,10 +70,10 @@ def _correct(states: Array, lost: Array, step_s: float, new: Array) -> None:
 
 
 @numba.njit(**OPTIONS)
-def adams(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
+def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
     """Take `count` steps of step_s: states, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
 
-    The first are of runge_kutta, for want of earlier rates. What rounding takes from a step is given to the next one, as there.
+    The first are of Runge and Kutta's method, for want of earlier rates. What rounding takes from a step is given to the next, as there.
     """
     # The latest rates stand first, from `newest` on; there is room for as many steps more, before they are moved.
     rates = np.zeros((2 * ORDER, *states.shape))
@@ -87,7 +85,7 @@ def adams(rates_of: Any, states: Array, parameters: Array, step_s: float, count:
     rates_of(states, parameters, rates[newest])
     for step in range(count):
         if step < ORDER - 1:
-            runge_kutta(rates_of, states, parameters, step_s, 1)
+            runge_kutta.steps(rates_of, states, parameters, step_s, 1)
         else:
             if newest == 0:
                 rates[ORDER:] = rates[:ORDER]

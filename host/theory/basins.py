@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from host.errors import WrongUse
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory import fates
-from host.theory.ensemble import FINE
-from host.theory.fates import BACK, BACKWARD, FORWARD, OUTCOMES, QUARTER, REST, mirrored, started, watched
+from host.theory.ensemble import FINE, rate_per_s
+from host.theory.fates import BACK, BACKWARD, FORWARD, OUTCOMES, QUARTER, REST, SETTLED, WATCHED, mirrored, started, watched
 from host.theory.kicked import KICKS, Continuous, Model, Sampled, memory_s
 from host.theory.model import PHI, Array, Wheel, numpy_rates
 from host.theory.run import wheel_of
@@ -33,11 +34,20 @@ FASTEST = 2.0
 # Grid lines in a cell; wheels of a check, and those of them that another method follows, for how many of the wheel's memories.
 BAND, CHECKED, FOLLOWED, FOLLOWED_FOR = 16, 400, 12, 4.0
 PHASES = 180
+# At the paper's constants it takes 2000 to see what becomes of a wheel, and a minute for all of them.
+MOST_STEPS = 200_000
 LENGTHS_S = {CONTINUOUS: [round(0.005 * number, 3) for number in range(81)], SAMPLED: [CLOCK.tick_s * ticks for ticks in range(13)]}
 
 
 def cells(options: dict[str, Any]) -> list[Cell]:
-    """Bands of the grid of starts, kinds of kicks, and a check, of either model."""
+    """Bands of the grid of starts, kinds of kicks, and a check, of either model. Raises WrongUse of wheels that take too long."""
+    wheel = wheel_of(options)
+    steps = memory_s(wheel) * (SETTLED + 2 * WATCHED) * float(rate_per_s(wheel.columns(1))[0])
+    if not steps <= MOST_STEPS:
+        raise WrongUse(
+            f"to see what becomes of one such wheel takes {steps:.1e} steps: it is too stiff, or settles too slowly",
+            "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
+        )
     found: list[Cell] = []
     for model in MODELS:
         found += [{"part": "starts", "model": model, "band": band} for band in range(0, options["points"], BAND)]

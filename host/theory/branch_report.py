@@ -163,8 +163,8 @@ def findings(rows: list[Row], setting: Setting) -> Findings:
             "product_of_multipliers": max((row["off_by"] for row in rows if row["kind"] == "cycle"), default=None),
         },
     }
-    claims = [] if along != "k" or not (merge and hopfs) else [_m5(rows, merge, hopfs[0], second, numbers)]
-    if deviations:
+    claims = [_m5(rows, merge, hopfs[0], second, numbers)] if along == "k" and merge and hopfs else []
+    if along == "k" and deviations:
         claims.append(_m6(deviations, turning, numbers, along, wheel))
     return Findings([*claims, _m9(turning)], numbers)
 

@@ -13,14 +13,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from host.errors import NotDone
+from host.errors import NotDone, WrongUse
 from host.theory.flow import FINENESS, plain, run, steps_for, varied
 from host.theory.model import OMEGA, PHI, Array, Wheel, rates
 
 # The coordinates of the section phi = 0.
 SECTION = [0, 1, OMEGA]
-# How many quarter turns a wheel is given to settle in a rotation, in chunks of steps, and how many of those it may take.
-_QUARTERS, _CHUNK, _PATIENCE = 60, 100, 4000
+# More steps than this are taken by a search that has lost its way, or by a wheel too stiff for these methods.
+_MOST_STEPS = 500_000
+# A wheel has settled in a rotation when its state changes so little in a quarter turn, or after so many; it is given so many steps.
+_SETTLED, _QUARTERS, _CHUNK, _PATIENCE = 1e-4, 60, 100, 20_000
 
 
 class Family(NamedTuple):
@@ -60,8 +62,12 @@ class Shooting:
         if not (np.isfinite(unknowns).all() and seconds > 0.0 and constant >= 0.0 and abs(omega) < 1e6):
             raise NotDone("the search for a cycle left the range of possible ones", "begin nearer to a cycle")
         wheel = self.wheel_at(unknowns)
+        try:
+            count = steps_for(seconds, wheel, self.fineness, _MOST_STEPS)
+        except WrongUse as stiff:
+            raise NotDone(f"the search for a cycle came to where {stiff}", "begin nearer to a cycle") from stiff
         states = np.hstack([np.array([[x1], [x2], [0.0], [omega]]), np.eye(4), np.zeros((4, 1))])
-        found: Array = run(varied(Wheel._fields.index(self.along)), states, tuple(wheel), seconds, steps_for(seconds, wheel, self.fineness))
+        found: Array = run(varied(Wheel._fields.index(self.along)), states, tuple(wheel), seconds, count)
         return found
 
     def _rates(self, state: Array, unknowns: Array) -> Array:
@@ -103,21 +109,22 @@ def rolling(wheel: Wheel, state: Array) -> tuple[Array, float]:
 
     Raises NotDone if it turns back instead.
     """
-    steps_s = 1.0 / steps_for(1.0, wheel)
-    at, now_s, crossings = np.array(state, dtype=np.float64), 0.0, []
+    step_s = 1.0 / steps_for(1.0, wheel)
+    at, now_s, crossings = np.array(state, dtype=np.float64), 0.0, 0
+    section, since_s = np.full(4, np.inf), 0.0
     for _ in range(_PATIENCE):
-        path = run(plain, at[:, None], tuple(wheel), _CHUNK * steps_s, _CHUNK)[:, :, 0]
+        path = run(plain, at[:, None], tuple(wheel), _CHUNK * step_s, _CHUNK)[:, :, 0]
         quarters = np.floor(path[:, PHI] / ROTATION.turn)
         for index in np.flatnonzero(np.diff(quarters) > 0):
             part = (ROTATION.turn * quarters[index + 1] - path[index, PHI]) / (path[index + 1, PHI] - path[index, PHI])
             there = path[index] + part * (path[index + 1] - path[index])
-            crossings.append((now_s + (index + part) * steps_s, there, int(quarters[index + 1])))
+            before, before_s = section, since_s
+            section, since_s = np.linalg.matrix_power(ROTATION.back, int(quarters[index + 1]) % 4) @ there, now_s + (index + part) * step_s
+            section[PHI] = 0.0
+            crossings += 1
+            if np.abs(section - before).max() < _SETTLED * np.abs(section).max() or crossings > _QUARTERS:
+                return section, since_s - before_s
         if path[:, OMEGA].min() < 0.0:
             break
-        if len(crossings) > _QUARTERS:
-            seconds, there, quarter = crossings[-1]
-            section = np.linalg.matrix_power(ROTATION.back, quarter % 4) @ there
-            section[PHI] = 0.0
-            return section, seconds - crossings[-2][0]
-        at, now_s = path[-1], now_s + _CHUNK * steps_s
+        at, now_s = path[-1], now_s + _CHUNK * step_s
     raise NotDone(f"a wheel with k = {wheel.k:g}, tau = {wheel.tau_s:g} s does not go on rolling", "begin with another k")

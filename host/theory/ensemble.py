@@ -1,4 +1,4 @@
-"""Many wheels of the analytic model at once: Runge and Kutta's method of order 8 with fixed steps, over all cores and vector units.
+"""Many wheels of the analytic model at once, with fixed steps, over all cores and vector units.
 
 The rates are host.theory.model.rates, and through it robot/controller.py, compiled with sin, cos and exp of host.theory.elementary.
 Wheels stand side by side in memory, so that the compiler lets one instruction do several of them.
@@ -23,6 +23,9 @@ LANES = 64
 _GOLDEN = 0.6180339887498949
 # Steps per unit of a wheel's rate (see `rate_per_s`): at FINE, averages of regular motion have nine digits.
 FINE = 1.0
+# Beyond that averages are by Adams's method, which then needs less work for the same error. Its steps are shorter; with less than five
+# for one of Runge and Kutta's it would not be stable.
+_ADAMS_STEPS = 5
 # A wheel that needs more is stiff: an explicit method is the wrong one.
 MOST_STEPS = 20_000_000
 # A wheel without friction gets faster and faster; for so long its steps are short enough.
@@ -61,13 +64,13 @@ def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
 
 
 @numba.njit(parallel=True, error_model="numpy")
-def _advance_all(rates_of: Any, states: Array, parameters: Array, seconds: float, counts: Any, edges: Any, order: Any) -> None:
+def _advance_all(steps: Any, rates_of: Any, states: Array, parameters: Array, seconds: float, counts: Any, edges: Any, order: Any) -> None:
     """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each. Each core does a run of `order`."""
     for place in prange(len(order)):
         block = order[place]
         first, end = edges[block], edges[block + 1]
         own = states[:, first:end].copy()
-        _advance(rates_of, own, parameters[:, first:end].copy(), seconds / counts[block], counts[block])
+        steps(rates_of, own, parameters[:, first:end].copy(), seconds / counts[block], counts[block])
         states[:, first:end] = own
 
 
@@ -84,14 +87,21 @@ def rate_per_s(parameters: Array) -> Array:
 
 
 def advance(states: Array, parameters: Array, seconds: float, fineness: float = FINE, rates_of: Any = wheel_rates) -> Array:
-    """The states of wheels after some time.
+    """The states of wheels after some time, by Runge and Kutta's method of order 8.
 
-    states: (rows, wheels), of which rates_of gives the rates; parameters: (6, wheels). fineness: steps per unit of `rate_per_s`. The
-    work is done in blocks of wheels that need about the same step, whatever the number of cores, so that the same call gives the same
-    bits. Raises WrongUse of a wheel that is too stiff.
+    states: (rows, wheels), of which rates_of gives the rates; parameters: (6 or more, wheels). fineness: steps per unit of `rate_per_s`.
+    The work is done in blocks of wheels that need about the same step, whatever the number of cores, so that the same call gives the
+    same bits; who stands beside a wheel matters to it by the block's step, and in the last digits. Raises WrongUse of a wheel that is
+    too stiff.
     """
-    order = np.argsort(rate_per_s(parameters), kind="stable")
-    needed = np.ceil(seconds * fineness * rate_per_s(parameters)[order])
+    return _advanced(runge_kutta.steps, states, parameters, seconds, fineness, rates_of)
+
+
+def _advanced(steps: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any) -> Array:
+    """The same by any method."""
+    rate = rate_per_s(parameters)
+    order = np.argsort(rate, kind="stable")
+    needed = np.ceil(seconds * fineness * rate[order])
     if len(order) and not needed[-1] <= MOST_STEPS:
         stiff = dict(zip(("a", "tau_s", "k", "I", "f"), parameters[:, order[-1]].tolist(), strict=False))
         words = ", ".join(f"{name} = {value:g}" for name, value in stiff.items())
@@ -100,11 +110,9 @@ def advance(states: Array, parameters: Array, seconds: float, fineness: float = 
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
     # Neighbours cost about the same, so a core must not get neighbours only.
     blocks = np.argsort(np.arange(len(counts)) * _GOLDEN % 1.0)
-    sorted_states = np.ascontiguousarray(states[:, order], dtype=np.float64)
-    _advance_all(rates_of, sorted_states, np.ascontiguousarray(parameters[:, order]), float(seconds), counts, edges, blocks)
-    found = np.empty_like(sorted_states)
-    found[:, order] = sorted_states
-    return found
+    found = np.ascontiguousarray(states[:, order], dtype=np.float64)
+    _advance_all(steps, rates_of, found, np.ascontiguousarray(parameters[:, order]), float(seconds), counts, edges, blocks)
+    return found[:, np.argsort(order)]
 
 
 class Averages(NamedTuple):
@@ -118,14 +126,23 @@ class Averages(NamedTuple):
 def averages(states: Array, parameters: Array, transient_s: float, measured_s: float, fineness: float = FINE) -> Averages:
     """Mean and standard deviation of omega over measured_s, after transient_s.
 
+    With a fineness beyond FINE they are by another method, so that a finer run checks more than the step.
+
     Raises WrongUse of a wheel that is too stiff, and of one that cannot be followed.
     """
-    begun = advance(states, parameters, transient_s, fineness) if transient_s > 0.0 else np.asarray(states, dtype=np.float64)
-    around = begun[OMEGA]
-    measured = np.vstack([begun, np.zeros_like(around)]), np.vstack([parameters, around])
-    ended = advance(*measured, measured_s, fineness, _averaged_rates)
+    steps, fineness = (adams.steps, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta.steps, fineness)
+
+    def after(seconds: float, begun: Array) -> Array:
+        given = np.vstack([begun, np.zeros(begun.shape[1])]), np.vstack([parameters, begun[OMEGA]])
+        return _advanced(steps, *given, seconds, fineness, _averaged_rates)
+
+    begun = np.asarray(states, dtype=np.float64)
+    if transient_s > 0.0:
+        # What is averaged on the way is thrown away: that costs less than to compile the rates without it.
+        begun = after(transient_s, begun)[: OMEGA + 1]
+    ended = after(measured_s, begun)
     mean = (ended[PHI] - begun[PHI]) / measured_s
-    variance = ended[4] / measured_s - (mean - around) ** 2
+    variance = ended[4] / measured_s - (mean - begun[OMEGA]) ** 2
     if not np.isfinite(ended).all():
         lost = int(np.flatnonzero(~np.isfinite(ended).all(axis=0))[0])
         raise WrongUse(

@@ -30,10 +30,10 @@ _rates: Any = compiled(rates)
 _jacobian: Any = retold(jacobian(), {}, numba.njit)
 
 
-def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
-    """How many steps this time takes. Raises WrongUse if the wheel is too stiff."""
+def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS, most: int = MOST_STEPS) -> int:
+    """How many steps this time takes. Raises WrongUse if they are too many: the wheel is too stiff."""
     needed = float(np.ceil(seconds * fineness * rate_per_s(np.array(wheel)[:, None])[0]))
-    if not needed <= MOST_STEPS:
+    if not needed <= most:
         raise WrongUse(f"{seconds:g} s of {wheel} would take {needed:.1e} steps", "choose a larger tau or I, a smaller k")
     return max(_LEAST_STEPS, int(needed))
 

@@ -6,6 +6,7 @@ Both are robot/kicks.py's.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any, NamedTuple, Protocol
 
 import numba
@@ -23,8 +24,6 @@ from sim_motor.compiled import retold
 
 # Mode, and sign of the shift.
 KICKS = ((MEMBRANE, 0), (POSITION, 0), (PHASE, 1), (PHASE, -1))
-# Nobody waits longer for what hardly changes any more.
-LONGEST_MEMORY_S = 1.5
 
 
 class Model(Protocol):
@@ -79,9 +78,8 @@ def seen_in(mode: str, sign: int) -> Seen:
 
 
 def memory_s(wheel: Wheel) -> float:
-    """For how long a wheel remembers: its neurons' time constant and its friction's. At most LONGEST_MEMORY_S."""
-    coasting_s = wheel.inertia / wheel.friction if wheel.friction else LONGEST_MEMORY_S
-    return min(LONGEST_MEMORY_S, wheel.tau_s + coasting_s)
+    """For how long a wheel remembers: its neurons' time constant and its friction's; for ever, without friction."""
+    return wheel.tau_s + (wheel.inertia / wheel.friction if wheel.friction else inf)
 
 
 def inverted(states: Array) -> Array:

@@ -17,8 +17,7 @@ _ROWS = [[(j, factor) for j, factor in enumerate(row) if factor != 0.0] for row 
 _FIRST = np.cumsum([0, *(-(-len(row) // 4) for row in _ROWS)])
 _PASSES = [(row[i : i + 4] + 3 * [(0, 0.0)])[:4] for row in _ROWS for i in range(0, len(row), 4)]
 _WHICH, _FACTORS = (np.array([[term[part] for term in terms] for terms in _PASSES]) for part in range(2))
-# How often a step evaluates the rates.
-EVALUATIONS = len(DOP853.A)
+_STAGES = len(DOP853.A)
 
 
 @numba.njit(**OPTIONS)
@@ -40,22 +39,22 @@ def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
 
 
 @numba.njit(**OPTIONS)
-def runge_kutta(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
+def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
     """Take `count` steps of step_s: states, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
 
     What rounding takes from a step is given to the next one (Kahan's summation), as an angle grows large by small steps.
     """
-    rates, at, lost = np.zeros((EVALUATIONS, *states.shape)), np.empty_like(states), np.zeros(states.size)
+    rates, at, lost = np.zeros((_STAGES, *states.shape)), np.empty_like(states), np.zeros(states.size)
     # The same memory without rows, for loops as long as can be.
-    flat_rates, flat_at, flat_states = rates.reshape((EVALUATIONS, states.size)), at.reshape(states.size), states.reshape(states.size)
+    flat_rates, flat_at, flat_states = rates.reshape((_STAGES, states.size)), at.reshape(states.size), states.reshape(states.size)
     for _ in range(count):
         rates_of(states, parameters, rates[0])
-        for stage in range(1, EVALUATIONS):
+        for stage in range(1, _STAGES):
             _begin(flat_at, flat_states, step_s, _FIRST[stage], flat_rates)
             for turn in range(_FIRST[stage] + 1, _FIRST[stage + 1]):
                 _add(flat_at, step_s, turn, flat_rates)
             rates_of(at, parameters, rates[stage])
-        for turn in range(_FIRST[EVALUATIONS], _FIRST[EVALUATIONS + 1]):
+        for turn in range(_FIRST[_STAGES], _FIRST[_STAGES + 1]):
             _add(lost, step_s, turn, flat_rates)
         for i in range(len(lost)):
             before = flat_states[i]

@@ -34,8 +34,9 @@ SHORT = tuple(1.0 / (25 * 2**number) for number in range(8))
 GROWTH_POINTS = 81
 # The paper's robot runs at this k.
 RUNNING_K = 8.0
-# How long motions are followed at each k, in memories of the wheel, and how far rolling is looked for, in parts of k_c.
-FOLLOWED, LEAST, MOST = 300.0, 0.2, 5.0
+# How long motions are followed at each k, in memories of the wheel, but at most so many seconds; how far rolling is looked for, in parts
+# of k_c.
+FOLLOWED, LONGEST_S, LEAST, MOST = 300.0, 600.0, 0.2, 5.0
 # A small swing is watched so near k_c, for so many ticks.
 NEAR, PATIENCE = 1e-5, 1_000_000
 _SWING_RAD = 1e-4
@@ -93,7 +94,7 @@ def lines(wheel: Wheel, clock: Clock) -> Row:
 
 
 def _behaviour(model: Model, wheel: Wheel, k_c: float, followed: float = FOLLOWED) -> Row:
-    seconds = followed * memory_s(wheel)
+    seconds = min(followed * memory_s(wheel), LONGEST_S)
     return {
         "k_rolls": swinging_ends(model, wheel, k_c, MOST * k_c, seconds),
         "k_stops": rolling_ends(model, wheel, MOST * k_c, LEAST * k_c, seconds),

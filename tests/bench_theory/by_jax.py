@@ -60,4 +60,4 @@ def contestants():
     """Two of diffrax's explicit solvers. In lockstep, all points of a device do as many steps as the slowest, so they are not too many."""
     for solver, tolerances in ((diffrax.Tsit5(), (1e-6,)), (diffrax.Dopri8(), (1e-6, 1e-9))):
         for tolerance in tolerances:
-            yield Contestant("diffrax", f"{type(solver).__name__} {tolerance:g}", 16, partial(prepared, solver, tolerance))
+            yield Contestant("diffrax", f"{type(solver).__name__} {tolerance:g}", 8, partial(prepared, solver, tolerance))

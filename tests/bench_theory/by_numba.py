@@ -59,4 +59,4 @@ def prepared(step_s, parameters):
 def contestants():
     """numba with all steps."""
     for step_s in STEPS_S:
-        yield Contestant("numba RK4", f"step {1000 * step_s:g} ms", int(max(8, 0.032 / step_s)), partial(prepared, step_s))
+        yield Contestant("numba RK4", f"step {1000 * step_s:g} ms", int(max(4, 0.016 / step_s)), partial(prepared, step_s))

@@ -193,11 +193,16 @@ def test_slow_wheels_rest_where_they_are_and_fast_ones_wells_further_on(model):
 
 
 @NAMED
-def test_without_springs_a_wheel_rests_anywhere_and_without_friction_rolls_on(model):
-    for wheel, expected in ((WHEEL._replace(k=0.0), REST), (WHEEL._replace(k=0.0, friction=0.0), FORWARD)):
-        (row,) = basins._starts(model, wheel, np.array([0.5]), np.array([3.0]))
-        assert (row["outcome"], row["quarters"]) == (expected, None)
+def test_without_springs_a_wheel_rests_anywhere_and_none_rolls(model):
+    (row,) = basins._starts(model, WHEEL._replace(k=0.0), np.array([0.5]), np.array([3.0]))
+    assert (row["outcome"], row["quarters"]) == (REST, None)
     assert rolling(model, WHEEL._replace(k=0.0), 4) is None
+
+
+@pytest.mark.parametrize("changed", [{"f": 0.0}, {"f": 1e-3}, {"I": 1e-6}])
+def test_wheels_that_hardly_settle_or_are_stiff_are_refused(changed):
+    with pytest.raises(WrongUse, match="settles too slowly"):
+        basins.cells(OPTIONS | changed)
 
 
 def test_a_tau_too_short_for_the_tick_is_refused():

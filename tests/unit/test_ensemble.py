@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
 from host.theory import elementary
-from host.theory.ensemble import LANES, advance, averages, rate_per_s
+from host.theory.adams import ORDER, weights
+from host.theory.ensemble import FINE, LANES, advance, averages, rate_per_s
 from host.theory.model import OMEGA, PHI, Wheel, rates
 
 # At rest, forth and back, rolling slowly and fast, and with a short memory.
@@ -91,6 +92,38 @@ def test_averages_agree_with_scipy():
         gained = (theirs.y[:, 1] - theirs.y[:, 0]) / 5.0
         assert found.omega_mean[i] == pytest.approx(gained[PHI], abs=1e-11)
         assert found.omega_std[i] == pytest.approx(math.sqrt(gained[4] - gained[PHI] ** 2), abs=1e-10)
+
+
+def test_adams_weights_are_those_of_the_textbook():
+    assert weights([0, -1]) == (1.5, -0.5)
+    assert weights([0, -1, -2, -3]) == (55 / 24, -59 / 24, 37 / 24, -9 / 24)
+    assert weights([1, 0, -1]) == (5 / 12, 8 / 12, -1 / 12)
+
+
+@pytest.mark.parametrize("power", range(ORDER))
+def test_adams_weights_integrate_polynomials_exactly(power):
+    nodes = [-age for age in range(ORDER)]
+    integral = math.fsum(weight * node**power for weight, node in zip(weights(nodes), nodes, strict=True))
+    assert integral == pytest.approx(1 / (power + 1), rel=1e-15 * (1 + 300 * ORDER**power))
+
+
+@pytest.mark.parametrize(
+    "wheel",
+    [
+        Wheel(tau_s=1e-3, k=20.0),
+        Wheel(tau_s=1e-3, k=0.0),
+        Wheel(tau_s=1.5, k=1000.0, friction=30.0),
+        Wheel(inertia=1e-4, k=0.5),
+        Wheel(a=100.0, tau_s=0.01, k=0.2),
+        Wheel(a=0.0, k=20.0),
+        Wheel(friction=50.0, k=5.0),
+    ],
+)
+def test_the_longest_steps_of_adams_are_stable(wheel):
+    """Where only the method's stability limits them, he must agree with Runge and Kutta: at the same fineness, but for a hair."""
+    runge_kutta, adams = (averages(starts(1), columns([wheel]), 5.0, 5.0, fineness) for fineness in (FINE, 1.0001 * FINE))
+    assert adams.omega_mean[0] == pytest.approx(runge_kutta.omega_mean[0], abs=1e-8)
+    assert adams.omega_std[0] == pytest.approx(runge_kutta.omega_std[0], abs=1e-8)
 
 
 def test_a_wheel_without_springs_runs_down_as_the_formula_says():
