@@ -102,7 +102,7 @@ def _draw_shares(axes: Axes, rows: list[Row], kind: tuple[str, int]) -> None:
 def _explain(axes: Axes, used: set[int], rows: list[Row]) -> None:
     """What the colours and the curves mean, and what the kick without a length does."""
     names = [f"bound to $\\varphi$ = {name}" for name in ("0", "$\\pi/2$", "$\\pi$", "$-\\pi/2$")]
-    names += ["rolls forward", "rolls backward", "has not settled", "rests, or goes forth and back"]
+    names += ["rolls forward", "rolls backward", "irregular, or not settled", "rests, or goes forth and back"]
     handles: list[Artist] = [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
     handles += [Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items()]
     shares = {model: reversals(of_kick(rows, model, MEMBRANE, 0)).values() for model in MODELS}

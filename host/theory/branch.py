@@ -6,13 +6,15 @@ smooth. Backward rotations are the mirror image of those forward, the other fort
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from itertools import pairwise
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from host.errors import NotDone
+from host.errors import NotDone, WrongUse
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory.branch_report import findings
 from host.theory.branches import FIELDS, Branch, hopf_values, rotation, rotations, swings, turned, with_constant
@@ -21,7 +23,7 @@ from host.theory.cycles import ROTATION, Shooting
 from host.theory.fixpoints import fixpoint
 from host.theory.flow import FINENESS
 from host.theory.hopf import hopf
-from host.theory.merging import NEAR, Merging, merging_line, mergings, neutral_tau_s
+from host.theory.merging import NEAR, Merging, merging, mergings, neutral_tau_s
 from host.theory.model import OMEGA, PHI, Array, Wheel
 from host.theory.run import wheel_of
 from host.theory.turning import driven, potentials, speed
@@ -57,10 +59,10 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     if part == "fixpoints":
         return [*_fixpoints(wheel, *along), *_hopf_rows(wheel, *along)]
     if part == "FB":
-        return _cycles(swings(wheel, *along))
+        return _cycles(swings, wheel, along)
     if part == "dry":
         wheel = wheel._replace(dry_friction=options["dry"])
-    return [*(_merging_rows(wheel, *along) if part != "LLM" else []), *(_rotations(wheel, *along) if part != "merging" else [])]
+    return [*(_merging_rows(wheel, *along) if part != "LLM" else []), *(_cycles(rotations, wheel, along) if part != "merging" else [])]
 
 
 def _fixpoints(wheel: Wheel, field: str, low: float, high: float) -> list[Row]:
@@ -119,14 +121,11 @@ def _merging_row(found: Merging, value: float) -> Row:
     }
 
 
-def _rotations(wheel: Wheel, field: str, low: float, high: float) -> list[Row]:
+def _cycles(find: Callable[..., list[Branch]], wheel: Wheel, along: tuple[str, float, float]) -> list[Row]:
     try:
-        return _cycles(rotations(wheel, field, low, high))
+        branches = find(wheel, *along)
     except NotDone as lost:
         return [{"kind": "end", "type": "none", "why": str(lost)}]
-
-
-def _cycles(branches: list[Branch]) -> list[Row]:
     return [
         {"way": name, **row}
         for branch in branches
@@ -137,10 +136,13 @@ def _cycles(branches: list[Branch]) -> list[Row]:
 
 def _line(wheel: Wheel) -> list[Row]:
     """The merging over tau, and where its saddle quantity vanishes."""
-    rows: list[Row] = [
-        {"kind": "line", "tau": tau_s, "k": found.k, "k_hopf": hopf(found.wheel).k, "saddle_quantity": found.saddle_quantity}
-        for tau_s, found in merging_line(wheel, wheel.tau_s * np.geomspace(0.1, 10.0, _TAUS))
-    ]
+    rows: list[Row] = []
+    for tau_s in (wheel.tau_s * np.geomspace(0.1, 10.0, _TAUS)).tolist():
+        with suppress(WrongUse, NotDone):  # where the wheel is too stiff there is no line
+            found = merging(wheel._replace(tau_s=tau_s))
+            rows.append(
+                {"kind": "line", "tau": tau_s, "k": found.k, "k_hopf": hopf(found.wheel).k, "saddle_quantity": found.saddle_quantity}
+            )
     changes = [(row["tau"], then["tau"]) for row, then in pairwise(rows) if (row["saddle_quantity"] < 0) != (then["saddle_quantity"] < 0)]
     return [*rows, *({"kind": "neutral", "tau": neutral_tau_s(wheel, *ends)} for ends in changes)]
 

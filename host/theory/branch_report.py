@@ -200,8 +200,8 @@ def _m5(rows: list[Row], merge: Row, first: Row, second: dict[str, float | None]
         None,
         first["l1"] < 0.0 and joined,
         f"cycles are born {'stable' if first['l1'] < 0 else 'unstable'} at k = {k_hopf:.9g} and grow to {amplitude:.4f} rad "
-        f"(pi/4: 0.7854); they and the rotations reach k_merge = {k_merge:.12g} from both sides; the connection is heteroclinic, a ring of four "
-        f"saddles of saddle quantity {merge['saddle_quantity']:.3g}/s, {hysteresis}{paper}",
+        f"(pi/4: 0.7854); they and the rotations reach k_merge = {k_merge:.12g} from both sides; the connection is heteroclinic, a ring of "
+        f"four saddles of saddle quantity {merge['saddle_quantity']:.3g}/s, {hysteresis}{paper}",
     )
 
 

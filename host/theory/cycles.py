@@ -19,8 +19,6 @@ from host.theory.model import OMEGA, PHI, Array, Wheel, rates
 
 # The coordinates of the section phi = 0.
 SECTION = [0, 1, OMEGA]
-# More steps than this are taken by a search that has lost its way, or by a wheel too stiff for these methods.
-_MOST_STEPS = 500_000
 # A wheel has settled in a rotation when its state changes so little in a quarter turn, or after so many; it is given so many steps.
 _SETTLED, _QUARTERS, _CHUNK, _PATIENCE = 1e-4, 60, 100, 20_000
 
@@ -63,7 +61,7 @@ class Shooting:
             raise NotDone("the search for a cycle left the range of possible ones", "begin nearer to a cycle")
         wheel = self.wheel_at(unknowns)
         try:
-            count = steps_for(seconds, wheel, self.fineness, _MOST_STEPS)
+            count = steps_for(seconds, wheel, self.fineness)
         except WrongUse as stiff:
             raise NotDone(f"the search for a cycle came to where {stiff}", "begin nearer to a cycle") from stiff
         states = np.hstack([np.array([[x1], [x2], [0.0], [omega]]), np.eye(4), np.zeros((4, 1))])

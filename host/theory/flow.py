@@ -14,7 +14,7 @@ import sympy
 from scipy.integrate import DOP853
 
 from host.errors import WrongUse
-from host.theory.ensemble import MOST_STEPS, rate_per_s
+from host.theory.ensemble import rate_per_s
 from host.theory.model import Array, Wheel, rates
 from host.theory.symbolic import CONSTANTS, field, function, jacobian
 from sim_motor.compiled import assembled, compiled, retold
@@ -25,15 +25,17 @@ _STAGES = len(DOP853.B)
 # Steps per unit of a wheel's rate (see host.theory.ensemble); at this, the error of a period is of the order of rounding.
 FINENESS = 3.0
 _LEAST_STEPS = 16
+# A piece of a period that takes more is that of a stiff wheel, for which an explicit method is the wrong one.
+MOST_STEPS = 40_000
 
 _rates: Any = compiled(rates)
 _jacobian: Any = retold(jacobian(), {}, numba.njit)
 
 
-def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS, most: int = MOST_STEPS) -> int:
+def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
     """How many steps this time takes. Raises WrongUse if they are too many: the wheel is too stiff."""
     needed = float(np.ceil(seconds * fineness * rate_per_s(np.array(wheel)[:, None])[0]))
-    if not needed <= most:
+    if not needed <= MOST_STEPS:
         raise WrongUse(f"{seconds:g} s of {wheel} would take {needed:.1e} steps", "choose a larger tau or I, a smaller k")
     return max(_LEAST_STEPS, int(needed))
 
