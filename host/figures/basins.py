@@ -29,32 +29,40 @@ _MAP = ListedColormap(_SHADES)
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
-    """The figure of the study's rows."""
+    """The figure of the study's rows; without the kicks, if no wheel rolls."""
     with styled():
         figure = Figure(figsize=(12.0, 9.0), dpi=1600 / 12, layout="constrained")
-        panels: Any = figure.subplots(3, 4, width_ratios=(1.7, 1, 1, 1))
-        used: set[int] = set()
+        if len(findings.numbers["no_wheel_rolls"]) == len(MODELS):
+            panels: Any = figure.subplots(1, 2, sharey=True)
+            used = _draw_basins(panels, rows, findings)
+            figure.legend(handles=_patches(used), loc="outside lower center", ncols=4)
+            figure.suptitle("Which start leads where; at these constants no wheel rolls that could be kicked", fontsize=17)
+            return figure
+        panels = figure.subplots(3, 4, width_ratios=(1.7, 1, 1, 1))
+        used = _draw_basins(panels[:2, 0], rows, findings)
         for line, model in zip(panels, MODELS, strict=False):
-            used |= _draw_starts(line[0], part_of(rows, "starts", model))
-            line[0].set_title(f"starts, {model} model" if model == CONTINUOUS else _sampled(findings), fontsize=13)
             for axes, kind in zip(line[1:], _KINDS, strict=True):
                 used |= _draw_kicks(axes, of_kick(rows, model, *kind), model)
             line[1].set_ylabel(f"length of the kick (ms)\n{model}")
-        panels[1, 0].set_xlabel(r"angle $\varphi$ at the start")
-        for axes, name in zip(panels[0, 1:], _KINDS.values(), strict=True):
-            axes.set_title(name, fontsize=12)
-        for axes in panels[1, 1:]:
-            axes.set_xlabel("phase of rolling (°)")
-        for axes, kind in zip(panels[2, 1:], _KINDS, strict=True):
-            _draw_shares(axes, rows, kind)
+        for (top, middle, bottom), (kind, name) in zip(panels[:, 1:].T, _KINDS.items(), strict=True):
+            top.set_title(name, fontsize=12)
+            middle.set_xlabel("phase of rolling (°)")
+            _draw_shares(bottom, rows, kind)
         panels[2, 1].set_ylabel("reversed (%)")
         _explain(panels[2, 0], used, rows)
         figure.suptitle("Which start, and which kick of a wheel that rolls forward, leads where", fontsize=17)
     return figure
 
 
-def _sampled(findings: Findings) -> str:
-    return f"starts, sampled every {1000 * findings.numbers['tick_s']:g} ms"
+def _draw_basins(panels: Any, rows: list[Row], findings: Findings) -> set[int]:
+    """The starts of both models; returns the shades that were used."""
+    titles = {CONTINUOUS: "starts, continuous model", SAMPLED: f"starts, sampled every {1000 * findings.numbers['tick_s']:g} ms"}
+    used: set[int] = set()
+    for axes, (model, title) in zip(panels, titles.items(), strict=True):
+        used |= _draw_starts(axes, part_of(rows, "starts", model))
+        axes.set_title(title, fontsize=13)
+        axes.set(xlabel=r"angle $\varphi$ at the start", ylabel=r"$\omega/2\pi$ at the start (Hz)")
+    return used
 
 
 def _shade(row: Row) -> int:
@@ -69,7 +77,6 @@ def _draw_starts(axes: Axes, starts: list[Row]) -> set[int]:
     greatest = abs(starts[0]["omega"]) * points / (points - 1) / (2 * pi)
     axes.imshow(shades, extent=(-pi, pi, -greatest, greatest), vmin=-0.5, vmax=7.5, **_image())
     axes.set_xticks([-pi, -pi / 2, 0, pi / 2, pi], ["$-\\pi$", "$-\\pi/2$", "0", "$\\pi/2$", "$\\pi$"])
-    axes.set_ylabel(r"$\omega/2\pi$ at the start (Hz)")
     return set(shades.ravel().tolist())
 
 
@@ -99,15 +106,19 @@ def _draw_shares(axes: Axes, rows: list[Row], kind: tuple[str, int]) -> None:
     axes.set(xlabel="length of the kick (ms)", xlim=(0, 400), ylim=(-3, 103))
 
 
-def _explain(axes: Axes, used: set[int], rows: list[Row]) -> None:
-    """What the colours and the curves mean, and what the kick without a length does."""
+def _patches(used: set[int]) -> list[Artist]:
+    """What the shades mean."""
     names = [f"bound to $\\varphi$ = {name}" for name in ("0", "$\\pi/2$", "$\\pi$", "$-\\pi/2$")]
     names += ["rolls forward", "rolls backward", "irregular, or not settled", "rests, or goes forth and back"]
-    handles: list[Artist] = [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
-    handles += [Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items()]
+    return [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
+
+
+def _explain(axes: Axes, used: set[int], rows: list[Row]) -> None:
+    """What the shades and the curves mean, and what the kick without a length does."""
+    handles = [*_patches(used), *(Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items())]
     shares = {model: reversals(of_kick(rows, model, MEMBRANE, 0)).values() for model in MODELS}
     lines = [f"{model}: at {100 * share:.0f} % of phases" for model, of_model in shares.items() for share in of_model]
-    title = "\n".join(["Inverted potentials reverse a wheel", *lines, ""]) if lines else None
+    title = "\n".join(["Inverted potentials reverse a wheel", *lines, ""])
     axes.set_axis_off()
     legend = axes.legend(handles=handles, loc="upper left", title=title, fontsize=12, title_fontsize=12, alignment="left")
     legend.set_in_layout(False)

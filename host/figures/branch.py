@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import groupby
+from itertools import groupby, pairwise
 from math import degrees, pi
 from typing import Any
 
@@ -102,21 +102,18 @@ def _draw_formula(axes: Axes, rows: list[Row]) -> None:
 
 def _draw_rest(axes: Axes, rows: list[Row]) -> None:
     """The fixpoint at 0, and the saddle at pi/4."""
-    hopfs = [row["value"] for row in rows if row["kind"] == "special" and row["type"] == "hopf"]
+    hopfs = [(row["value"], None) for row in rows if row["kind"] == "special" and row["type"] == "hopf"]
     rest = [(row["value"], bool(row["stable"])) for row in rows if row["kind"] == "fixpoint" and row["phi"] == 0.0]
-    for stable, group in groupby(rest, key=lambda point: point[1]):
-        values = [value for value, _ in group]
-        step = (values[-1] - values[0]) / len(values)
-        values = sorted([*values, *(value for value in hopfs if values[0] - 2 * step < value < values[-1] + 2 * step)])
-        axes.plot(values, [0.0] * len(values), color=_COLOUR["fixpoints"], linestyle="-" if stable else _DASHED, label=_rest_name(stable))
+    points = sorted([*rest, *hopfs], key=lambda point: float(point[0]))
+    for (begin, before), (end, after) in pairwise(points):
+        stable = before if after is None else after
+        label = "rest" if stable else "rest, unstable"
+        axes.plot([begin, end], [0.0, 0.0], color=_COLOUR["fixpoints"], linestyle="-" if stable else _DASHED, label=label)
     axes.axhline(pi / 4, color=_COLOUR["fixpoints"], linestyle=_DASHED)
+    axes.text(0.02, pi / 4 - 0.02, "saddle", transform=axes.get_yaxis_transform(), va="top", fontsize=11)
     for row in rows:
         if row["kind"] == "special" and row["type"] == "hopf":
             _mark(axes, row, 0.0)
-
-
-def _rest_name(stable: bool) -> str:
-    return "rest" if stable else "rest, unstable"
 
 
 def _zoom(rows: list[Row], near: Axes, swing: Axes, period: Axes) -> None:
@@ -159,7 +156,8 @@ def _draw_line(axes: Axes, rows: list[Row]) -> None:
     axes.set(xscale="log")
     axes.set_xlabel(r"time constant $\tau$ (s)", fontsize=12)
     axes.set_ylabel("$k$ of the merging / $k$ of Hopf", fontsize=12)
-    axes.legend(fontsize=10.5, title="near the merging:", title_fontsize=10.5)
+    if line:
+        axes.legend(fontsize=10.5, title="near the merging:", title_fontsize=10.5, loc="upper right", handlelength=1.0)
 
 
 def _draw_turning(axes: Axes, rows: list[Row]) -> None:
@@ -174,12 +172,8 @@ def _draw_turning(axes: Axes, rows: list[Row]) -> None:
         axes.plot([degrees(row["phi"]) for row in dots], [row["x1_numeric"] for row in dots], color=colour, **dotted)
         if own[0]["x1_rolling"] is not None:
             axes.plot(angles, [row["x1_rolling"] for row in own], color=colour, linestyle=_DASHED)
-    axes.plot([], [], color="black", label="turned, formula")
-    axes.plot([], [], color="black", label="turned, numbers", **dotted)
-    axes.plot([], [], color="black", linestyle=_DASHED, label="rolling")
-    axes.set_title("membrane potentials", fontsize=12)
+    axes.set_title("potentials: formula, numbers ($\\bullet$),\nand of a rolling wheel (dashed)", fontsize=12)
     axes.set_xlabel(r"angle $\varphi$ (°)", fontsize=12)
     axes.set_ylabel("$x_1$", fontsize=12)
     axes.set_xticks((0, 90, 180, 270, 360))
-    axes.set_ylim(-1.05, 2.3)
-    axes.legend(fontsize=10, ncols=2, loc="upper center", columnspacing=0.8, handlelength=1.2, borderaxespad=0.0)
+    axes.legend(fontsize=10.5, loc="upper center", handlelength=1.0)

@@ -7,14 +7,13 @@ smooth. Backward rotations are the mirror image of those forward, the other fort
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from itertools import pairwise
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from host.errors import NotDone, WrongUse
+from host.errors import NotDone
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory.branch_report import findings
 from host.theory.branches import FIELDS, Branch, hopf_values, rotation, rotations, swings, turned, with_constant
@@ -23,7 +22,7 @@ from host.theory.cycles import ROTATION, Shooting
 from host.theory.fixpoints import fixpoint
 from host.theory.flow import FINENESS
 from host.theory.hopf import hopf
-from host.theory.merging import NEAR, Merging, merging, mergings, neutral_tau_s
+from host.theory.merging import NEAR, Merging, merging_line, mergings, neutral_tau_s
 from host.theory.model import OMEGA, PHI, Array, Wheel
 from host.theory.run import wheel_of
 from host.theory.turning import driven, potentials, speed
@@ -136,13 +135,10 @@ def _cycles(find: Callable[..., list[Branch]], wheel: Wheel, along: tuple[str, f
 
 def _line(wheel: Wheel) -> list[Row]:
     """The merging over tau, and where its saddle quantity vanishes."""
-    rows: list[Row] = []
-    for tau_s in (wheel.tau_s * np.geomspace(0.1, 10.0, _TAUS)).tolist():
-        with suppress(WrongUse, NotDone):  # where the wheel is too stiff there is no line
-            found = merging(wheel._replace(tau_s=tau_s))
-            rows.append(
-                {"kind": "line", "tau": tau_s, "k": found.k, "k_hopf": hopf(found.wheel).k, "saddle_quantity": found.saddle_quantity}
-            )
+    rows: list[Row] = [
+        {"kind": "line", "tau": tau_s, "k": found.k, "k_hopf": hopf(found.wheel).k, "saddle_quantity": found.saddle_quantity}
+        for tau_s, found in merging_line(wheel, wheel.tau_s * np.geomspace(0.1, 10.0, _TAUS))
+    ]
     changes = [(row["tau"], then["tau"]) for row, then in pairwise(rows) if (row["saddle_quantity"] < 0) != (then["saddle_quantity"] < 0)]
     return [*rows, *({"kind": "neutral", "tau": neutral_tau_s(wheel, *ends)} for ends in changes)]
 

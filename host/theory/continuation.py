@@ -91,6 +91,11 @@ class Curve(NamedTuple):
             length = min(longest, length * (_GROWTH if turn < _MOST_TURN / 3 else 1.0))
 
     def locate(self, point: Point, length: float, vanishing: Callable[[Point], float]) -> Point:
-        """The point up to this distance from another where a function vanishes that has different signs at both ends."""
-        found = brentq(lambda distance: vanishing(self.ahead(point, distance)), 0.0, length, xtol=1e-13, rtol=1e-13)
-        return self.ahead(point, float(found))
+        """The point up to this distance from another where a function vanishes. Raises NotDone if it has one sign at both ends."""
+
+        def at(distance: float) -> float:
+            return vanishing(self.ahead(point, distance) if distance else point)
+
+        if at(0.0) * at(length) > 0.0:
+            raise NotDone("a function does not change its sign between two points", "take them further apart")
+        return self.ahead(point, float(brentq(at, 0.0, length, xtol=1e-13, rtol=1e-13)))

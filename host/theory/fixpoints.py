@@ -7,7 +7,7 @@ and falls with |u|.
 from __future__ import annotations
 
 from itertools import product
-from math import pi
+from math import e, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,7 +25,7 @@ NDComplex = NDArray[np.complex128]
 
 ANGLES = tuple(n * pi / 4 for n in range(8))
 # The time course that is held against the eigenvalues begins so near to the fixpoint, and grows or shrinks by this factor.
-NEAR, FACTOR = 1e-6, np.e
+NEAR, FACTOR = 1e-6, e
 
 
 class Fixpoint(NamedTuple):

@@ -7,6 +7,7 @@ turn on, and swings; on the other it passes, and rolls. At the merging it ends i
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import pairwise
 from math import ceil, log, pi
 from typing import Any, NamedTuple
@@ -14,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from host.errors import NotDone
+from host.errors import NotDone, WrongUse
 from host.theory.fixpoints import Fixpoint, NDComplex, fixpoint
 from host.theory.flow import FINENESS, plain, run, steps_for
 from host.theory.hopf import hopf
@@ -126,8 +127,12 @@ def merging(wheel: Wheel) -> Merging:
 
 
 def merging_line(wheel: Wheel, taus_s: Any) -> list[tuple[float, Merging]]:
-    """(tau, merging) at each of these time constants."""
-    return [(tau_s, merging(wheel._replace(tau_s=tau_s))) for tau_s in map(float, taus_s)]
+    """(tau, merging) at these time constants, without those at which the wheel is too stiff to be followed."""
+    found = []
+    for tau_s in map(float, taus_s):
+        with suppress(NotDone, WrongUse):
+            found.append((tau_s, merging(wheel._replace(tau_s=tau_s))))
+    return found
 
 
 def neutral_tau_s(wheel: Wheel, low: float, high: float) -> float | None:

@@ -92,7 +92,7 @@ def follow(curve: Curve, first: Point, low: float, high: float) -> Followed:
     shooting = curve.problem
     assert isinstance(shooting, Shooting)
     tests = _tests(shooting)
-    finer = curve._replace(problem=Shooting(shooting.wheel, shooting.family, shooting.along, _FINER * shooting.fineness))
+    finer = curve._replace(problem=type(shooting)(shooting.wheel, shooting.family, shooting.along, _FINER * shooting.fineness))
     points: list[Point] = []
     specials: list[Special] = []
     values: dict[str, float] = {}
@@ -105,8 +105,7 @@ def follow(curve: Curve, first: Point, low: float, high: float) -> Followed:
                     there = curve.locate(points[-1], length, tests[kind])
                     if _sure(kind, shooting.multipliers(there.unknowns)):
                         again = finer.locate(points[-1], length, _tests(finer.problem)[kind])
-                        off_by = abs(again.unknowns[4] / there.unknowns[4] - 1)
-                        specials.append(Special(kind, there, len(points), float(off_by)))
+                        specials.append(Special(kind, there, len(points), abs(float(again.unknowns[4] / there.unknowns[4]) - 1)))
             end = _end(shooting, point, low, high, smallest)
             if end == RANGE and points:
                 points.append(curve.locate(points[-1], length, _beyond(low if point.unknowns[4] <= low else high)))

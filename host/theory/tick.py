@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from host.errors import WrongUse
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory import sampled
+from host.theory.ensemble import rate_per_s
 from host.theory.hopf import estimate, hopf
 from host.theory.kicked import Continuous, Model, Sampled, memory_s
 from host.theory.model import PHI, Wheel, resting
@@ -37,6 +37,8 @@ RUNNING_K = 8.0
 # How long motions are followed at each k, in memories of the wheel, but at most so many seconds; how far rolling is looked for, in parts
 # of k_c.
 FOLLOWED, LONGEST_S, LEAST, MOST = 300.0, 600.0, 0.2, 5.0
+# A wheel that takes more steps for that is too stiff to be followed as often as it has to be.
+MOST_STEPS = 1e6
 # A small swing is watched so near k_c, for so many ticks.
 NEAR, PATIENCE = 1e-5, 1_000_000
 _SWING_RAD = 1e-4
@@ -74,10 +76,15 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 
 def _limit(wheel: Wheel) -> Row:
     k_c = hopf(wheel).k
-    try:
-        return {"k_c": k_c, **_behaviour(Continuous(), wheel, k_c), "note": None}
-    except WrongUse as error:  # too stiff
-        return {"k_c": k_c, "k_rolls": None, "k_stops": None, "hz": None, "note": error.message}
+    steps = followed_s(wheel) * float(rate_per_s(wheel._replace(k=MOST * k_c).columns(1))[0])
+    if steps > MOST_STEPS:
+        return {"k_c": k_c, "k_rolls": None, "k_stops": None, "hz": None, "note": f"too stiff to follow: a wheel takes {steps:.1e} steps"}
+    return {"k_c": k_c, **_behaviour(Continuous(), wheel, k_c, followed_s(wheel)), "note": None}
+
+
+def followed_s(wheel: Wheel) -> float:
+    """For how long a motion of the wheel is followed at each k."""
+    return min(FOLLOWED * memory_s(wheel), LONGEST_S)
 
 
 def lines(wheel: Wheel, clock: Clock) -> Row:
@@ -90,11 +97,15 @@ def lines(wheel: Wheel, clock: Clock) -> Row:
     if not k_c:
         return {"k_c": k_c, "modulus": None, "angle": None, "k_rolls": None, "k_stops": None, "hz": None}
     multiplier = leading(wheel._replace(k=k_c), clock)
-    return {"k_c": k_c, "modulus": abs(multiplier), "angle": float(np.angle(multiplier)), **_behaviour(Sampled(clock), wheel, k_c)}
+    return {
+        "k_c": k_c,
+        "modulus": abs(multiplier),
+        "angle": float(np.angle(multiplier)),
+        **_behaviour(Sampled(clock), wheel, k_c, followed_s(wheel)),
+    }
 
 
-def _behaviour(model: Model, wheel: Wheel, k_c: float, followed: float = FOLLOWED) -> Row:
-    seconds = min(followed * memory_s(wheel), LONGEST_S)
+def _behaviour(model: Model, wheel: Wheel, k_c: float, seconds: float) -> Row:
     return {
         "k_rolls": swinging_ends(model, wheel, k_c, MOST * k_c, seconds),
         "k_stops": rolling_ends(model, wheel, MOST * k_c, LEAST * k_c, seconds),
@@ -135,7 +146,7 @@ def _check(wheel: Wheel, clock: Clock) -> Row:
     k_c = critical_k(wheel, clock)
     if not k_c:
         return {"jacobian_off": None, "k_c_off": None, "onset_off": None}
-    row, again = lines(wheel, clock), _behaviour(Sampled(clock), wheel, k_c, 2 * FOLLOWED)
+    row, again = lines(wheel, clock), _behaviour(Sampled(clock), wheel, k_c, 2 * followed_s(wheel))
     offs = [abs(row[name] / again[name] - 1) for name in ("k_rolls", "k_stops") if row[name] and again[name]]
     return {
         "jacobian_off": _jacobian_off(wheel._replace(k=k_c), clock),

@@ -260,4 +260,16 @@ def test_where_no_wheel_rolls_the_study_says_so_and_still_draws(run):
     assert findings.numbers["kicks"] == []
     assert findings.numbers["basins"]["sampled"]["wells"] == {"1": 1.0}
     assert isinstance(findings, Findings)
-    assert any("no wheel rolls" in text.get_text() for text in draw(rows, findings).axes[1].texts)
+    figure = draw(rows, findings)
+    assert len(figure.axes) == 2
+    assert "no wheel rolls" in figure.get_suptitle()
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"bound to $\varphi$ = $\pi/2$"]
+
+
+def test_where_only_one_models_wheel_rolls_the_other_panels_say_so(run):
+    rows = [row for row in run[0] if (row["part"], row["model"]) != ("kicks", "sampled")]
+    findings = basins.report(rows, Setting(1, OPTIONS))
+    assert findings.numbers["no_wheel_rolls"] == ["sampled"]
+    assert [kick["model"] for kick in findings.numbers["kicks"]] == ["continuous"] * 4
+    assert findings.numbers["kicks_that_end_otherwise_if_sampled"] == []
+    assert any("no wheel rolls" in text.get_text() for text in draw(rows, findings).axes[5].texts)

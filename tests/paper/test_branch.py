@@ -1,0 +1,125 @@
+"""The study `branch`: what it tells, its two methods against each other, its claims, and what it says where there is nothing to find."""
+
+import json
+
+import pytest
+
+from host.entries import checked
+from host.experiments.experiment import Setting
+from host.figures.branch import draw
+from host.theory import branch
+from host.theory.table import TABLE
+
+
+def setting(**options):
+    return Setting(1, checked("study", TABLE, "branch", options))
+
+
+def rows_of(own, parts=None):
+    cells = [cell for cell in branch.cells(own.options) if parts is None or cell["part"] in parts]
+    return [{**cell, **row} for cell in cells for row in json.loads(json.dumps(branch.simulate(cell, own), allow_nan=False))]
+
+
+PAPER = setting(to=3.0)
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return rows_of(PAPER, ("fixpoints", "merging", "FB", "LLM", "dry", "turning"))
+
+
+@pytest.fixture(scope="module")
+def found(rows):
+    return branch.report(rows, PAPER)
+
+
+def claim(found, number):
+    return next(claim for claim in found.claims if claim.id == number)
+
+
+def test_the_contract_has_the_merging_and_the_special_points_in_plain_data(found):
+    numbers = json.loads(json.dumps(found.numbers, allow_nan=False))
+    assert numbers["k_merge"] == pytest.approx(1.77731184665692, rel=1e-12)
+    points = {(point["type"], point["branch"]): point for point in numbers["special_points"]}
+    assert set(points) == {
+        ("hopf", "rest"),
+        ("merging", "saddles"),
+        ("fold", "rotation with dry friction"),
+        ("merging", "rotation with dry friction"),
+    }
+    assert all({"type", "k", "omega_mean", "multipliers"} <= set(point) for point in points.values())
+    assert points["hopf", "rest"]["multipliers"][0] == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert points["fold", "rotation with dry friction"]["multipliers"][0] == pytest.approx([1.0, 0.0], abs=1e-9)
+
+
+def test_two_methods_agree_in_each_number(found, rows):
+    accuracy = found.numbers["accuracy"]
+    assert max(accuracy["merging_against_extrapolated_branches"].values()) < 1e-9
+    assert set(accuracy["merging_against_extrapolated_branches"]) == {"FB", "LLM"}
+    assert accuracy["merging_with_other_begin_and_shorter_steps"] < 1e-12
+    assert accuracy["bifurcations_of_cycles_with_shorter_steps"] < 1e-10
+    assert accuracy["hopf_closed_form_against_eigenvalues"] < 1e-12
+    assert accuracy["cycles_against_time_stepping_rad_per_s"] < 1e-6
+    assert accuracy["product_of_multipliers"] < 1e-12
+    assert {row["part"] for row in rows if row["kind"] == "check"} == {"FB", "LLM", "dry"}
+
+
+def test_rest_swings_and_rotations_are_stable_where_the_paper_finds_them(rows):
+    for k, part, stable in ((1.4, "fixpoints", True), (1.65, "fixpoints", False), (1.65, "FB", True), (1.85, "LLM", True)):
+        near = min(
+            (row for row in rows if row["part"] == part and row["kind"] in ("cycle", "fixpoint")), key=lambda row: abs(row["value"] - k)
+        )
+        assert near["value"] == pytest.approx(k, rel=0.07)
+        assert near["stable"] is stable
+    assert all(not row["stable"] for row in rows if row["kind"] == "fixpoint" and row["phi"] > 0.0)
+    amplitudes = [row["amplitude"] for row in rows if row["part"] == "FB" and row["kind"] == "cycle"]
+    assert amplitudes == sorted(amplitudes)
+    assert 0.785 < amplitudes[-1] < 0.7854
+
+
+def test_the_claims_hold_and_say_where_the_formula_does_not(found):
+    assert claim(found, "M5").holds
+    assert "no hysteresis" in claim(found, "M5").note
+    assert claim(found, "M9").holds
+    assert not claim(found, "M6").holds  # up to k = 3
+    assert claim(found, "M6").measured > 0.2
+    assert found.numbers["formula_within_5_percent"] == []
+
+
+def test_m5_does_not_hold_if_a_branch_does_not_reach_the_merging_or_cycles_are_born_unstable(rows):
+    without = [row for row in rows if not (row["part"] == "FB" and row["kind"] == "cycle" and row["period"] > 4.0)]
+    assert not claim(branch.report(without, PAPER), "M5").holds
+    unstable = [{**row, "l1": 0.1} if row.get("type") == "hopf" else row for row in rows]
+    assert not claim(branch.report(unstable, PAPER), "M5").holds
+
+
+def test_the_branch_with_dry_friction_ends_in_a_fold_below_its_merging(found):
+    dry = found.numbers["dry"]
+    (fold,) = dry["folds"]
+    assert found.numbers["k_merge"] < fold["value"] < dry["merging"]
+    assert fold["omega_mean"] > 0.5
+    assert dry["merging_by_extrapolation"] == pytest.approx(dry["merging"], rel=1e-8)
+
+
+def test_the_figure_shows_stable_and_unstable_parts(found, rows):
+    figure = draw(rows, found)
+    labels = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"rotation with dry friction, unstable", "fold, dry friction", "Hopf", "merging", "rest", "rest, unstable"} <= labels
+
+
+def test_nothing_to_find_is_said_and_drawn():
+    low = setting(to=1.0)
+    rows = rows_of(low, ("fixpoints", "merging", "FB", "LLM", "turning"))
+    found = branch.report(rows, low)
+    assert found.numbers["k_merge"] is None
+    assert found.numbers["special_points"] == []
+    assert "rolling" in found.numbers["ends"][0]["end"]
+    assert [claim.id for claim in found.claims] == ["M9"]
+    draw(rows, found).canvas.draw()
+
+
+def test_another_constant_is_followed_to_the_same_merging():
+    along = setting(along="f", k=1.77731184665692)
+    rows = rows_of(along, ("merging",))
+    (point,) = branch.report([*rows, *rows_of(along, ("turning",))], along).numbers["special_points"]
+    assert (point["type"], point["f"], point["k"]) == ("merging", pytest.approx(0.5, rel=1e-10), 1.77731184665692)
