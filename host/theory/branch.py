@@ -25,7 +25,7 @@ from host.theory.hopf import hopf
 from host.theory.merging import NEAR, Merging, merging_line, mergings, neutral_tau_s
 from host.theory.model import OMEGA, PHI, Array, Wheel
 from host.theory.run import wheel_of
-from host.theory.turning import driven, potentials, speed
+from host.theory.turning import constant_velocity, driven, potentials
 
 # The constant is followed from this part of the end's value on.
 _SPAN = 1e-3
@@ -71,7 +71,7 @@ def _fixpoints(wheel: Wheel, field: str, low: float, high: float) -> list[Row]:
         for phi in (0.0, pi / 4):
             found = fixpoint(phi, there)
             row = {"kind": "fixpoint", "value": value, "phi": phi, "stable": found.stable, "eigenvalues": pairs(found.eigenvalues)}
-            rows.append({**row, "formula": speed(there)})
+            rows.append({**row, "formula": constant_velocity(there)})
     return rows
 
 

@@ -11,7 +11,7 @@ from host.experiments.experiment import Findings, Row, Setting
 from host.theory.hopf import hopf
 from host.theory.model import Wheel
 from host.theory.run import wheel_of
-from host.theory.turning import speed
+from host.theory.turning import constant_velocity
 
 # How many reduced maps make a period; mergings are extrapolated from so many cycles before the end of a branch.
 _POWER, _LAST = {"FB": 2, "LLM": 4, "dry": 4}, 25
@@ -210,7 +210,7 @@ def _m6(deviations: list[tuple[float, float]], turning: list[dict[str, Any]], nu
     value, last = deviations[-1]
     where = " and ".join(f"{begin:.4g} to {end:.4g}" for begin, end in near) or "nowhere"
     shown = ", ".join(
-        f"{(speed(wheel._replace(k=entry['k'])) or 0.0) / entry['omega'] - 1:+.1%} at k = {entry['k']:g}"
+        f"{(constant_velocity(wheel._replace(k=entry['k'])) or 0.0) / entry['omega'] - 1:+.1%} at k = {entry['k']:g}"
         for entry in turning
         if entry["rolling_wheel_off_by"] is not None
     )

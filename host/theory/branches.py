@@ -19,7 +19,7 @@ from host.theory.hopf import hopf
 from host.theory.merging import course, mergings
 from host.theory.model import OMEGA, PHI, Array, Wheel
 from host.theory.special import MERGING, Followed, follow
-from host.theory.turning import potentials, speed
+from host.theory.turning import constant_velocity, turning
 
 # The fields of Wheel by the paper's letters.
 FIELDS = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
@@ -93,8 +93,7 @@ def _both_ways(wheel: Wheel, field: str, state: Array, low: float, high: float) 
 
 def turned(wheel: Wheel) -> Array:
     """The state (4,), at phi = 0, of a wheel that has been turned for long at the paper's speed of locomotion, or at 1/tau."""
-    omega = speed(wheel) or 1.0 / wheel.tau_s
-    return np.array([*potentials(0.0, omega, wheel.tau_s), 0.0, omega])
+    return turning(np.zeros(1), np.array([constant_velocity(wheel) or 1.0 / wheel.tau_s]), wheel)[:, 0]
 
 
 def rotation(wheel: Wheel, state: Array, field: str = "k") -> Point:

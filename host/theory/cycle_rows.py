@@ -13,7 +13,7 @@ from host.theory.cycles import Shooting
 from host.theory.ensemble import averages
 from host.theory.model import OMEGA, PHI
 from host.theory.special import Followed
-from host.theory.turning import speed
+from host.theory.turning import constant_velocity
 
 # A disturbance is given until it has died out so far.
 _DIED = 1e-11
@@ -45,7 +45,7 @@ def cycle_row(shooting: Shooting, point: Point) -> Row:
         "omega_std": float(np.sqrt(max(0.0, np.mean(omega[:-1] ** 2) - mean**2))),
         "omega_min": float(omega.min() if family.turn else -np.abs(omega).max()),
         "omega_max": float(np.abs(omega).max()),
-        "formula": speed(shooting.wheel_at(unknowns)),
+        "formula": constant_velocity(shooting.wheel_at(unknowns)),
         "amplitude": float(np.abs(swing(turns)).max()) if turns and not family.turn else None,
         "stable": bool(np.abs(reduced[0]) < 1.0),
         "reduced_multipliers": pairs(reduced),

@@ -86,6 +86,12 @@ def rate_per_s(parameters: Array) -> Array:
     return np.asarray(np.hypot(0.9 * relaxing, 3.4 * turning))
 
 
+def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
+    """What to raise if so many seconds of a wheel with these constants would take so many steps."""
+    words = ", ".join(f"{name} = {value:g}" for name, value in zip(("a", "tau", "k", "I", "f"), constants.tolist(), strict=False))
+    return WrongUse(f"{seconds:g} s of a wheel with {words} would take {steps:.1e} steps", "choose a larger tau or I, a smaller k")
+
+
 def advance(states: Array, parameters: Array, seconds: float, fineness: float = FINE, rates_of: Any = wheel_rates) -> Array:
     """The states of wheels after some time, by Runge and Kutta's method of order 8.
 
@@ -103,9 +109,7 @@ def _advanced(steps: Any, states: Array, parameters: Array, seconds: float, fine
     order = np.argsort(rate, kind="stable")
     needed = np.ceil(seconds * fineness * rate[order])
     if len(order) and not needed[-1] <= MOST_STEPS:
-        stiff = dict(zip(("a", "tau_s", "k", "I", "f"), parameters[:, order[-1]].tolist(), strict=False))
-        words = ", ".join(f"{name} = {value:g}" for name, value in stiff.items())
-        raise WrongUse(f"{seconds:g} s of a wheel with {words} would take {needed[-1]:.1e} steps", "choose a larger tau or I, a smaller k")
+        raise too_stiff(seconds, parameters[:, order[-1]], needed[-1])
     edges = np.append(np.arange(0, len(order), LANES), len(order))
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
     # Neighbours cost about the same, so a core must not get neighbours only.
@@ -145,7 +149,5 @@ def averages(states: Array, parameters: Array, transient_s: float, measured_s: f
     variance = ended[4] / measured_s - (mean - begun[OMEGA]) ** 2
     if not np.isfinite(ended).all():
         lost = int(np.flatnonzero(~np.isfinite(ended).all(axis=0))[0])
-        raise WrongUse(
-            f"the wheel with constants {parameters[:, lost].tolist()} ran away", "these equations are too stiff; ask for more steps"
-        )
+        raise WrongUse(f"the wheel with constants {parameters[:, lost].tolist()} ran away", "choose a larger tau or I, a smaller k")
     return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), ended[: OMEGA + 1])

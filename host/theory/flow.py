@@ -13,8 +13,7 @@ import numpy as np
 import sympy
 from scipy.integrate import DOP853
 
-from host.errors import WrongUse
-from host.theory.ensemble import rate_per_s
+from host.theory.ensemble import rate_per_s, too_stiff
 from host.theory.model import Array, Wheel, rates
 from host.theory.symbolic import CONSTANTS, field, function, jacobian
 from sim_motor.compiled import assembled, compiled, retold
@@ -36,7 +35,7 @@ def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
     """How many steps this time takes. Raises WrongUse if they are too many: the wheel is too stiff."""
     needed = float(np.ceil(seconds * fineness * rate_per_s(np.array(wheel)[:, None])[0]))
     if not needed <= MOST_STEPS:
-        raise WrongUse(f"{seconds:g} s of {wheel} would take {needed:.1e} steps", "choose a larger tau or I, a smaller k")
+        raise too_stiff(seconds, np.array(wheel), needed)
     return max(_LEAST_STEPS, int(needed))
 
 

@@ -23,11 +23,12 @@ from host.errors import WrongUse
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory.attractors import KINDS, ROLL, settled, starts, watch
 from host.theory.ensemble import rate_per_s
-from host.theory.model import Array, Wheel, numpy_rates, rolling
+from host.theory.model import Array, Wheel, numpy_rates
 from host.theory.route import along, checked, of_series, rolling_end, route_claim, spectrum, spectrum_claim, tally
 from host.theory.run import wheel_of
 from host.theory.tangent import divergence, growth, pair_growth, smooth_mean
 from host.theory.transients import crisis, least_chaotic_k, lives, sample
+from host.theory.turning import begun_rolling
 
 PARTS = ("point", "series", "line", "plane", "rolling", "lives", "check")
 PAPER_K, PAPER_TAU_S = 15.0, 1.0
@@ -148,15 +149,11 @@ def _columns(wheel: Wheel, ks: Array, taus: Array | None = None) -> Array:
     return parameters
 
 
-def _rolling_states(parameters: Array) -> Array:
-    return np.array([rolling(Wheel(*column)) for column in parameters.T.tolist()]).T
-
-
 def _both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -> list[Row]:
     """Measure each column from so many starts of either kind."""
     columns = np.repeat(parameters, wheels, axis=1)
     count = columns.shape[1]
-    begin = np.hstack([starts(count, rng), _rolling_states(columns) + 1e-3 * rng.normal(size=(4, count))])
+    begin = np.hstack([starts(count, rng), begun_rolling(columns) + 1e-3 * rng.normal(size=(4, count))])
     found = _measured(np.tile(columns, (1, 2)), begin)
     taus, ks = (columns[Wheel._fields.index(name)].tolist() for name in ("tau_s", "k"))
     labels = [{"tau": tau, "k": k, "start": start} for start in (ANY, ROLLS) for tau, k in zip(taus, ks, strict=True)]
@@ -190,7 +187,7 @@ def _damping(wheel: Wheel, ks: Array) -> list[Row]:
     They are known together from the fast one and the sum of all, and far better so than one by one if they are a complex pair.
     """
     parameters = _columns(wheel, ks)
-    seen = watch(settled(_rolling_states(parameters), parameters, 2 * _settle_s(wheel)), parameters, WATCH_S)
+    seen = watch(settled(begun_rolling(parameters), parameters, 2 * _settle_s(wheel)), parameters, WATCH_S)
     exponents = smooth_mean(growth(seen.states, parameters, MEASURE_S, 4).rates)
     pairs = (divergence(wheel) - exponents[3]) / 2
     values = (ks.tolist(), seen.kinds().tolist(), seen.apart.tolist(), pairs.tolist(), exponents[1].tolist(), exponents[2].tolist())

@@ -7,7 +7,7 @@ rods' forces, moments of inertia in these times s^2, friction in these times s. 
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from math import isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -89,32 +89,10 @@ class Wheel(NamedTuple):
 
 def resting(phi: Array) -> Array:
     """States of wheels that rest at these angles (rad) with the potentials that belong to them, (4, wheels)."""
-    return np.array([*_actual_positions(phi), phi, np.zeros_like(phi)])
-
-
-def constant_velocity(wheel: Wheel) -> float:
-    """The speed (rad/s) of a wheel whose neurons' transfer is linear and whose speed does not vary; 0 if it does not roll.
-
-    Eq. F_tan_ana.
-    """
-    drive = wheel.a * wheel.k * wheel.tau_s - 2 * wheel.friction
-    return sqrt(drive / (2 * wheel.friction)) / wheel.tau_s if drive > 0.0 and wheel.friction > 0.0 else 0.0
-
-
-def turning(phi: Array, omega: Array, wheel: Wheel) -> Array:
-    """States of wheels whose potentials are those of wheels that have always turned with their present speed, (4, wheels). Eq. x-t."""
-    (cosine, sine), turned = _actual_positions(phi), omega * wheel.tau_s
-    share = 1.0 / (1.0 + turned**2)
-    return np.array([share * (cosine + turned * sine), share * (sine - turned * cosine), phi, omega])
-
-
-def rolling(wheel: Wheel) -> tuple[float, float, float, float]:
-    """The state, at angle 0, of a wheel that turns with the constant velocity. Eq. x-t."""
-    state = turning(np.array([0.0]), np.array([constant_velocity(wheel)]), wheel)[:, 0].tolist()
-    return state[0], state[1], state[2], state[3]
+    return np.array([*numpy_positions(phi), phi, np.zeros_like(phi)])
 
 
 _NUMPY = {"cos": np.cos, "sin": np.sin, "exp": np.exp}
-_actual_positions: Any = retold(actual_positions, _NUMPY)
-# `rates` of arrays.
+# The functions of arrays.
+numpy_positions: Any = retold(actual_positions, _NUMPY)
 numpy_rates: Any = retold(rates, _NUMPY)

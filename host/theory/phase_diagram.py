@@ -13,8 +13,9 @@ from host.claims import Claim
 from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory.ensemble import FINE, Averages, averages
 from host.theory.hopf import critical_k, estimate
-from host.theory.model import PHI, Array, Wheel, resting, rolling
+from host.theory.model import PHI, Array, Wheel, resting
 from host.theory.run import wheel_of
+from host.theory.turning import begun_rolling
 
 # The paper's inset.
 INSET_K, INSET_TAU = 5.0, 0.5
@@ -70,7 +71,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     ks, all_taus = planes(options)[cell["panel"]]
     taus = all_taus[cell["first"] : cell["end"]]
     count = len(taus)
-    begin = {"up": _at_rest, "down": _rolling, "rest": _at_rest, "roll": _rolling}
+    begin = {"up": _at_rest, "down": begun_rolling, "rest": _at_rest, "roll": begun_rolling}
     found: list[tuple[str, float, Averages]] = []
     if options["start"] != "sweep":
         way = options["start"]
@@ -120,10 +121,6 @@ def _parameters(options: dict[str, Any], taus: Array, ks: Array) -> Array:
 
 def _at_rest(parameters: Array) -> Array:
     return resting(np.full(parameters.shape[1], PUSH))
-
-
-def _rolling(parameters: Array) -> Array:
-    return np.array([rolling(Wheel(*column)) for column in parameters.T.tolist()]).T
 
 
 def _averages(states: Array, parameters: Array, options: dict[str, Any], fineness: float = FINE) -> Averages:

@@ -19,8 +19,9 @@ from host.theory.ensemble import advance
 from host.theory.fixpoints import fixpoint, fixpoints
 from host.theory.flow import FINENESS, plain, run, steps_for
 from host.theory.hopf import critical_k
-from host.theory.model import OMEGA, PHI, Array, Wheel, turning
+from host.theory.model import OMEGA, PHI, Array, Wheel
 from host.theory.run import wheel_of
+from host.theory.turning import turning
 
 PAPERS_K = {1.4: "S", 1.65: "FB", 1.85: "LLM"}
 # Unstable manifolds begin so far from the saddle (in its eigenvector's units) and are followed for so long, sampled so often.

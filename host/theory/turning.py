@@ -8,23 +8,34 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from host.theory.model import Array, Wheel
+from host.theory.model import Array, Wheel, numpy_positions
 from robot.controller import actual_positions, membrane_rate
 
 # After so many time constants nothing is left of how the neurons began.
 _SETTLED = 40.0
 
 
-def potentials(phi: Any, omega: float, tau_s: float) -> tuple[Any, Any]:
-    """(x1, x2) of neurons that see the wheel turn at omega, when it is at phi. Eq. x-t."""
-    cosine, sine, lag = np.cos(phi), np.sin(phi), omega * tau_s
+def potentials(phi: Any, omega: Any, tau_s: float) -> tuple[Any, Any]:
+    """(x1, x2) of neurons that see the wheel turn at omega (rad/s), when it is at phi (rad). Eq. x-t."""
+    (cosine, sine), lag = numpy_positions(phi), omega * tau_s
     return (cosine + lag * sine) / (1 + lag**2), (sine - lag * cosine) / (1 + lag**2)
 
 
-def speed(wheel: Wheel) -> float | None:
+def turning(phi: Array, omega: Array, wheel: Wheel) -> Array:
+    """States of wheels whose potentials are those of wheels that have always turned with their present speed, (4, wheels)."""
+    return np.array([*potentials(phi, omega, wheel.tau_s), phi, omega])
+
+
+def constant_velocity(wheel: Wheel) -> float | None:
     """The paper's omega (rad/s) of locomotion, for neurons in their linear range; None where it has none. Eq. F_tan_ana."""
     drive, brake = wheel.a * wheel.k * wheel.tau_s, 2 * wheel.friction
     return sqrt((drive - brake) / brake) / wheel.tau_s if drive > brake > 0.0 else None
+
+
+def begun_rolling(parameters: Array) -> Array:
+    """States, at angle 0, of wheels with these constants that turn with the constant velocity, or rest if there is none, (4, wheels)."""
+    wheels = [Wheel(*column) for column in parameters[: len(Wheel._fields)].T.tolist()]
+    return np.hstack([turning(np.zeros(1), np.array([constant_velocity(wheel) or 0.0]), wheel) for wheel in wheels])
 
 
 def driven(phi: Array, omega: float, tau_s: float) -> Array:

@@ -12,7 +12,7 @@ from host.theory.hopf import hopf
 from host.theory.merging import course, merging, mergings, neutral_tau_s, passes
 from host.theory.model import OMEGA, PHI, Wheel, rates
 from host.theory.special import FOLD, LOST, MERGING, NEIMARK_SACKER, PITCHFORK, RANGE, follow
-from host.theory.turning import driven, potentials, speed
+from host.theory.turning import constant_velocity, driven, potentials
 
 PAPER = Wheel()
 K_MERGE = merging(PAPER).k
@@ -252,18 +252,18 @@ def test_a_wheel_that_is_turned_has_the_papers_potentials_in_either_direction():
 
 def test_the_constant_velocity_formula_balances_the_papers_force_and_begins_at_its_k_c():
     wheel = PAPER._replace(k=8.0)
-    lag = speed(wheel) * wheel.tau_s
+    lag = constant_velocity(wheel) * wheel.tau_s
     assert wheel.a * wheel.k * wheel.tau_s / 2 / (1 + lag**2) == pytest.approx(wheel.friction)
-    assert speed(PAPER._replace(k=1.0)) is None
-    assert speed(PAPER._replace(k=1.0 + 1e-9)) < 1e-3
-    assert speed(PAPER._replace(friction=0.0)) is None
+    assert constant_velocity(PAPER._replace(k=1.0)) is None
+    assert constant_velocity(PAPER._replace(k=1.0 + 1e-9)) < 1e-3
+    assert constant_velocity(PAPER._replace(friction=0.0)) is None
 
 
 def test_rotations_approach_the_formula_as_k_grows():
     off = []
     for k in (4.0, 8.0, 40.0):
         wheel = PAPER._replace(k=k)
-        off.append(speed(wheel) / (np.pi / 2 / rotation(wheel, turned(wheel)).unknowns[3]) - 1)
+        off.append(constant_velocity(wheel) / (np.pi / 2 / rotation(wheel, turned(wheel)).unknowns[3]) - 1)
     assert off[0] > off[1] > 0.05 > off[2] > 0.0
 
 

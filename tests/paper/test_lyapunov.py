@@ -10,12 +10,13 @@ from host.claims import Claim
 from host.errors import WrongUse
 from host.experiments.experiment import Setting
 from host.theory.attractors import BACK, CHAOS, REST, ROLL, settled, starts, watch
-from host.theory.model import PHI, Wheel, rates, resting, rolling
+from host.theory.model import PHI, Wheel, rates, resting
 from host.theory.route import rolling_end
 from host.theory.run import perform
 from host.theory.symbolic import jacobian_at
 from host.theory.tangent import divergence, growth, kaplan_yorke, pair_growth, smooth_mean, tangent_rates
 from host.theory.transients import crisis, lives, sample
+from host.theory.turning import begun_rolling
 
 RESTING, SWINGING, ROLLING, CHAOTIC = Wheel(k=1.4), Wheel(k=1.65), Wheel(k=8.0), Wheel(k=15.0, tau_s=1.0)
 OPTIONS = {"a": 4.0, "tau": 1.0, "k": 15.0, "f": 0.5, "I": 0.05, "seconds": 2000.0}
@@ -57,7 +58,7 @@ def test_a_wheel_that_balances_is_not_chaotic_though_what_is_near_it_parts():
 
 def test_along_a_cycle_one_exponent_is_0_and_the_others_are_negative():
     parameters = ROLLING.columns(1)
-    begin = settled(np.array(rolling(ROLLING))[:, None], parameters, 60.0)
+    begin = settled(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
     found = growth(begin, parameters, 100.0, 4)
     exponents = smooth_mean(found.rates)[:, 0]
     assert exponents[0] == pytest.approx(0.0, abs=1e-3)
@@ -83,7 +84,7 @@ def test_both_algorithms_find_the_same_positive_exponent(chaotic):
 
 def test_neither_algorithm_finds_growth_on_a_cycle():
     parameters = ROLLING.columns(1)
-    begin = settled(np.array(rolling(ROLLING))[:, None], parameters, 60.0)
+    begin = settled(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
     assert smooth_mean(pair_growth(begin, parameters, 100.0)) == pytest.approx(0.0, abs=1e-3)
 
 
@@ -123,14 +124,14 @@ def test_what_still_settles_is_not_called_chaos():
 
 def test_smooth_averages_are_the_plain_ones_of_long_times():
     parameters, seconds = ROLLING.columns(1), 1000.0
-    begin = settled(np.array(rolling(ROLLING))[:, None], parameters, 60.0)
+    begin = settled(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
     plain = (settled(begin, parameters, seconds)[PHI] - begin[PHI]) / seconds
     assert watch(begin, parameters, 60.0).omega_mean == pytest.approx(plain, rel=1e-5)
 
 
 def test_lives_are_those_of_switching_only():
     wheel = Wheel(k=4.4, tau_s=1.0)
-    begin = np.hstack([starts(31, _chance()), np.array(rolling(wheel))[:, None]])
+    begin = np.hstack([starts(31, _chance()), begun_rolling(wheel.columns(1))])
     found = lives(begin, wheel.columns(32), 1000.0, 0.6)
     assert found.ended.all()
     assert found.life_s[-1] == 0.0

@@ -12,7 +12,8 @@ from host.theory import phase_diagram, portrait
 from host.theory.ensemble import advance
 from host.theory.fixpoints import fixpoint
 from host.theory.hopf import critical_k
-from host.theory.model import OMEGA, PHI, Wheel, constant_velocity, rolling, turning
+from host.theory.model import OMEGA, PHI, Wheel
+from host.theory.turning import begun_rolling, constant_velocity, turning
 
 OPTIONS = {"a": 4.0, "f": 0.5, "I": 0.05, "points": 10, "k_to": 20.0, "tau_to": 1.5, "start": "sweep", "transient": 60.0, "seconds": 40.0}
 
@@ -101,7 +102,7 @@ def test_the_state_of_a_turning_wheel_is_that_of_its_equations():
     before, now, after = (turning(np.array([omega * t]), np.array([omega]), wheel)[:, 0] for t in (0.7 - step, 0.7, 0.7 + step))
     for row, seen in ((0, np.cos(0.7 * omega)), (1, np.sin(0.7 * omega))):
         assert (after[row] - before[row]) / (2 * step) == pytest.approx((seen - now[row]) / wheel.tau_s, abs=1e-8)
-    assert rolling(wheel)[3] == constant_velocity(wheel)
+    assert begun_rolling(wheel.columns(1))[OMEGA] == [constant_velocity(wheel)]
 
 
 @pytest.mark.parametrize(("k", "kind"), [(1.4, "S"), (1.65, "FB"), (1.85, "LLM"), (8.0, "LLM")])

@@ -224,7 +224,7 @@ def test_no_wheels_are_no_trouble():
 @pytest.mark.parametrize("wheel", [Wheel(tau_s=1e-7), Wheel(inertia=1e-9), Wheel(k=math.nan)])
 def test_a_stiff_wheel_is_refused_by_name(wheel):
     parameters = columns([Wheel(), wheel])
-    with pytest.raises(WrongUse, match=rf"tau_s = {wheel.tau_s:g}, k = {wheel.k:g}, I = {wheel.inertia:g}") as refusal:
+    with pytest.raises(WrongUse, match=rf"tau = {wheel.tau_s:g}, k = {wheel.k:g}, I = {wheel.inertia:g}") as refusal:
         averages(starts(2), parameters, 10.0, 10.0)
     assert "larger tau" in refusal.value.hint
 
