@@ -52,14 +52,26 @@ def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -
 
 
 def tell(summary: dict[str, Any]) -> None:
-    """What a run came to, in sentences: claims, and where its files are."""
+    """What a run came to: claims in sentences, its main numbers and how accurate they are, and where its files are."""
     from host.claims import Claim
 
     for claim in summary["claims"]:
         print(Claim.from_dict(claim).sentence())
-    for kind, paths in (("table", [summary["table"]]), ("figure", summary["figures"][:1]), ("file", summary["files"])):
-        for path in paths:
-            print(kind, path)
+    for name, value in _told(summary["numbers"]):
+        print(name, f"{value:.10g}" if isinstance(value, float) else value)
+    table = Path(summary["table"])
+    told = [("table", table), ("numbers", table.with_name("summary.json"))]
+    for kind, path in (*told, *(("figure", path) for path in summary["figures"][:1]), *(("file", path) for path in summary["files"])):
+        print(kind, path)
+
+
+def _told(numbers: Any) -> Iterator[tuple[str, Any]]:
+    """The single ones of a run's numbers, and those in its "accuracy", (name, value)."""
+    if isinstance(numbers, dict):
+        yield from ((name, value) for name, value in numbers.items() if isinstance(value, int | float | str))
+        for name, value in numbers.get("accuracy", {}).items():
+            inner = value if isinstance(value, dict) else {"": value}
+            yield from ((f"accuracy: {' '.join(filter(None, (name, key)))}", part) for key, part in inner.items())
 
 
 @contextmanager
