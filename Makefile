@@ -25,7 +25,7 @@ setup: $(STAMP) ## make .venv with the locked dependencies and kickctl in it
 demo: $(STAMP) ## watch the simulated robot being kicked
 	$(BIN)/kickctl demo
 
-reproduce: $(STAMP) ## measure all of the paper's claims about the robot on the simulated one, and write a report
+reproduce: $(STAMP) ## measure all of the paper's claims on the simulated robot and on the model, and write a report
 	$(BIN)/kickctl reproduce
 
 test: $(STAMP) ## run the tests

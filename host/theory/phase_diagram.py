@@ -205,10 +205,10 @@ def _claim(numbers: dict[str, Any], way: str) -> Claim:
         "four phases in (k, tau): S, FB, LLM and C; rest ends near k tau = 2 f / a",
         "std(omega), |mean(omega)|, the inset, the numeric and the analytic line",
         exact,
-        "of the inset's points",
+        "of the inset's points rest otherwise than the exact Hopf line says",
         None,
         not missing and exact < MISJUDGED,
         (f"not found: {', '.join(missing)}; " if missing else "")
-        + f"are not as the exact Hopf line says whether they rest, {rough:.2%} not as k tau = 2 f / a does; of the plane "
+        + f"{rough:.2%} otherwise than k tau = 2 f / a says; of the plane "
         + ", ".join(f"{share:.1%} {name}" for name, share in shares[f"plane, {way}"].items()),
     )
