@@ -133,12 +133,12 @@ def compare(results):
         ratio = enough[0].speed / result.speed if enough else 0.0
         least[name] = min(ratio, least.get(name, np.inf))
         print(
-            f"{name:<16} {setting:<14} " + (f"{enough[0].contestant.setting:<14} {ratio:>9.1f} times" if enough else "more exact than all")
+            f"{name:<16} {setting:<14} " + (f"{enough[0].contestant.setting:<14} {ratio:>9.2f} times" if enough else "more exact than all")
         )
     print()
     for name, ratio in least.items():
         goal = GOALS.get(name, 1.0)
-        print(f"{name}: at least {ratio:.1f} times as fast ({'PASS' if ratio > goal else 'FAIL'}: more than {goal:g})")
+        print(f"{name}: at least {ratio:.2f} times as fast ({'PASS' if ratio > goal else 'FAIL'}: more than {goal:g})")
 
 
 if __name__ == "__main__":
