@@ -1,0 +1,157 @@
+"""A car or a train that runs: MuJoCo steps the bodies, and between two steps the controllers of all wheels step and set their motors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from robot.controller import target_position
+from robot.kicks import MEMBRANE, Kick, invert_membrane, jump
+from sim_motor.bodies.drive import Wheels, drive
+from sim_motor.bodies.model import SIDES, car_name
+from sim_motor.bodies.presets import Preset
+from sim_motor.compiled import retold
+
+Array = NDArray[np.float64]
+
+# How often the state is written down, as in the program of 2019.
+RECORD_S = 0.005
+OF_A_WHEEL = ("phi_rad", "omega_rad_s", "x", "target", "torque_nm")
+OF_A_CAR = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
+_target_position: Any = retold(target_position, {"exp": np.exp})
+
+
+class Unstable(Exception):
+    """The simulation can no longer be followed. What was simulated until then is kept."""
+
+
+class Body:
+    """Cars in a scene, with their controllers.
+
+    model: as host or caller has compiled it from `sim_motor.bodies.model.compose`. k: of all wheels, N. phases (rad): of the wheels at the
+    start, (wheels,), with potentials 0, as in the authors' programs; random ones if there are none, from `seed`. torque (N m): if given,
+    it is each wheel's, for ever, instead of the controllers'. Wheels are in the order of `wheels`: car0_left, car0_right, car1_left ...
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        preset: Preset,
+        *,
+        k: float,
+        seed: int = 1,
+        phases: Array | None = None,
+        torque: float | None = None,
+        record_s: float = RECORD_S,
+    ) -> None:
+        self.model, self.data, self.torque = model, mujoco.MjData(model), torque
+        # What cannot be followed shall not begin anew by itself.
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        self.cars = sum(model.body(number).name.endswith("_car") for number in range(model.nbody))
+        self.wheels = tuple(car_name(car) + side for car in range(self.cars) for side in SIDES)
+        self.joints = tuple(car_name(car) + name for name in ("yaw", "pitch") for car in range(1, self.cars))
+        self.neurons = Wheels.of(len(self.wheels), preset.a, preset.tau, k, preset.wheel_radius)
+        self.step, self._every = 0, max(1, round(record_s / float(model.opt.timestep)))
+        self._angles = np.array([model.joint(name).qposadr[0] for name in self.wheels])
+        self._speeds = np.array([model.joint(name).dofadr[0] for name in self.wheels])
+        self._bends = np.array([model.joint(name).qposadr[0] for name in self.joints], dtype=np.int64)
+        self._bodies = np.array([model.body(car_name(car) + "car").id for car in range(self.cars)])
+        self._drags = np.full(self.cars, preset.body_drag)
+        self._frozen: list[Kick] = []
+        self._rows: list[Array] = []
+        begin = np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels)) if phases is None else phases
+        self.data.qpos[self._angles] = begin
+        mujoco.mj_forward(model, self.data)
+        self._note()
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time."""
+        return self.step * float(self.model.opt.timestep)
+
+    @property
+    def omega(self) -> Array:
+        """How fast the wheels turn (rad/s), (wheels,)."""
+        return np.asarray(self.data.qvel[self._speeds])
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of what `rows` has, with their units."""
+        wheels = (f"{wheel}_{quantity}" for quantity in OF_A_WHEEL for wheel in self.wheels)
+        cars = (f"{car_name(car)}{quantity}" for car in range(self.cars) for quantity in OF_A_CAR)
+        return ("t_s", *wheels, *(f"{joint}_joint_rad" for joint in self.joints), *cars)
+
+    @property
+    def rows(self) -> Array:
+        """The state every record_s, from the start on, (times, columns)."""
+        return np.array(self._rows)
+
+    def kick(self, kick: Kick) -> None:
+        """Begin a kick at its `begin`, in steps, on the wheels whose names it has. Raises ValueError if that is over or no wheel's.
+
+        A wheel has one quenched kick at a time; the next takes its place.
+        """
+        unknown = [name for name in kick.wheels if name not in self.wheels]
+        if unknown or kick.begin < self.step:
+            raise ValueError(f"there is no wheel {', '.join(unknown)}" if unknown else f"step {kick.begin} is over")
+        self._frozen.append(kick)
+        self._frozen.sort(key=lambda one: one.begin)
+
+    def run(self, seconds: float, watch: Callable[[float], None] = lambda time_s: None) -> None:
+        """Go on for so long; `watch` is told the time at each record. Raises Unstable."""
+        model, data, own = self.model, self.data, self.neurons
+        end, dt_s = self.step + round(seconds / model.opt.timestep), model.opt.timestep
+        velocity, warnings = data.sensordata, data.warning
+        while self.step < end:
+            while self._frozen and self._frozen[0].begin <= self.step:
+                self._begin(self._frozen.pop(0))
+            until = min(end, self._next_record(), self._frozen[0].begin if self._frozen else end)
+            for step in range(self.step, until):
+                mujoco.mj_step1(model, data)
+                drive(step, dt_s, own, self._angles, data.qpos, data.ctrl, self._drags, self._bodies, velocity, data.xfrc_applied)
+                if self.torque is not None:
+                    data.ctrl[:] = self.torque
+                mujoco.mj_step2(model, data)
+            self.step = until
+            if any(warnings[bad].number for bad in _BAD):
+                raise Unstable(f"the simulation cannot be followed beyond {self.time_s:g} s: forces or speeds grew without bounds")
+            if self.step % self._every == 0:
+                self._note()
+                watch(self.time_s)
+
+    def _next_record(self) -> int:
+        return (self.step // self._every + 1) * self._every
+
+    def _begin(self, kick: Kick) -> None:
+        own = self.neurons
+        for name in kick.wheels:
+            wheel = self.wheels.index(name)
+            if kick.pulse:
+                own.begin[wheel], own.ticks[wheel], own.pulse[wheel] = kick.begin, kick.ticks, kick.pulse
+                own.value[wheel], own.smooth[wheel] = kick.values[wheel % len(SIDES)], kick.smooth
+            elif kick.mode == MEMBRANE:
+                own.x1[wheel], own.x2[wheel] = invert_membrane(own.x1[wheel], own.x2[wheel])
+            else:
+                potential = getattr(own, kick.variable)
+                potential[wheel] = jump(potential[wheel], kick.delta)
+
+    def _note(self) -> None:
+        data, own = self.data, self.neurons
+        mujoco.mj_kinematics(self.model, data)
+        wheels = (data.qpos[self._angles], self.omega, own.x1, _target_position(own.x1, own.a), data.ctrl)
+        poses = [np.concatenate([data.xpos[body], _angles_of(data.xmat[body].reshape(3, 3))]) for body in self._bodies]
+        self._rows.append(np.concatenate([[self.time_s], *wheels, data.qpos[self._bends], *poses]))
+
+
+_BAD = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+
+
+def _angles_of(matrix: Array) -> Array:
+    """Roll, pitch and yaw (rad) of a body whose axes are the columns: turned by yaw about z, then pitch about y, then roll about x."""
+    roll, pitch = np.arctan2(matrix[2, 1], matrix[2, 2]), np.arctan2(-matrix[2, 0], np.hypot(matrix[0, 0], matrix[1, 0]))
+    return np.array([roll, pitch, np.arctan2(matrix[1, 0], matrix[0, 0])])

@@ -1,0 +1,157 @@
+"""Puts cars into a scene: the train is made of car.xml, as many times as it has cars, and every number is a preset's."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_motor.bodies.presets import HERE, Preset
+
+SCENES = ("flat", "walls", "octagon", "slopes", "funnel", "halfpipe", "hills", "box")
+# Scenes whose slopes can be given another angle.
+SLOPED = ("slopes", "funnel")
+SIDES = ("left", "right")
+# A wall against which a robot of the program of 2019 bounces about as in LPZRobots: time constant (s) and damping ratio.
+BOUNCY = (0.02, 0.3)
+_BOXES, _OCTAGON_M = 16, 5.0
+# Hills: how many waves, and the longest and the shortest (m).
+_WAVES, _LONGEST_M, _SHORTEST_M = 40, 6.0, 2.0
+
+
+def car_name(car: int) -> str:
+    """The prefix of all that belongs to a car; the first is the head."""
+    return f"car{car}_"
+
+
+def compose(
+    preset: Preset,
+    scene: str = "flat",
+    cars: int = 1,
+    *,
+    seed: int = 1,
+    angle: float | None = None,
+    bouncy: bool = False,
+    timestep: float = 0.001,
+) -> mujoco.MjSpec:
+    """A scene with a car, or with a train whose head is the first.
+
+    seed: of boxes and hills. angle (rad): of the scene's slopes. bouncy: whether its walls are springy rather than dead.
+    Raises ValueError of a file that is no MJCF, and of a scene or number of cars that there is not.
+    """
+    if scene not in SCENES:
+        raise ValueError(f"there is no scene '{scene}'; there are {', '.join(SCENES)}")
+    if cars < 1:
+        raise ValueError(f"a train of {cars} cars cannot be: give 1 or more")
+    spec = mujoco.MjSpec.from_file(str(HERE / "scenes" / f"{scene}.xml"))
+    spec.option.timestep = timestep
+    ground_m = _shape(spec, scene, np.random.default_rng(seed), angle, bouncy)
+    frame = spec.worldbody.add_frame(pos=((cars - 1) * preset.pitch / 2, 0.0, ground_m))
+    for car in range(cars):
+        own, prefix = _car(preset, alone=cars == 1), car_name(car)
+        spec.attach(own, prefix=prefix, frame=frame)
+        body = spec.body(prefix + "car")
+        if car:
+            body.pos = (0.0, 0.0, 0.0)
+            spec.delete(spec.joint(prefix + "root"))
+            _couple(body, prefix, preset)
+        frame = body.add_frame(pos=(-preset.pitch, 0.0, 0.0))
+    return spec
+
+
+def _car(preset: Preset, *, alone: bool) -> mujoco.MjSpec:
+    """A car with the preset's numbers. Only one that is alone has casters: those of a train hold each other up."""
+    spec = mujoco.MjSpec.from_file(str(HERE / "car.xml"))
+    spec.body("car").pos = (0.0, 0.0, preset.wheel_radius)
+    body = spec.geom("body")
+    body.size[:2], body.mass, body.friction[0] = (preset.body_radius, preset.body_height / 2), preset.body_mass, preset.friction
+    for end, sign in (("front", 1.0), ("rear", -1.0)):
+        caster, radius = spec.geom(f"{end}_caster"), preset.wheel_radius / 4
+        if alone:
+            caster.size[0] = radius
+            caster.pos = (sign * (preset.body_radius - 2 * radius), 0.0, radius - preset.wheel_radius)
+        else:
+            spec.delete(caster)
+    for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
+        spec.body(f"{side}_wheel").pos = (0.0, sign * (preset.body_radius + preset.wheel_width / 2), 0.0)
+        wheel, mark, joint = spec.geom(f"{side}_wheel"), spec.geom(f"{side}_mark"), spec.joint(side)
+        wheel.size[:2], wheel.mass, wheel.friction[0] = (preset.wheel_radius, preset.wheel_width / 2), preset.wheel_mass, preset.friction
+        mark.pos, mark.size = (
+            (0.0, 0.0, preset.wheel_radius / 2),
+            (preset.wheel_radius / 8, 0.6 * preset.wheel_width, preset.wheel_radius / 2),
+        )
+        joint.damping[0] = preset.wheel_drag * preset.wheel_radius
+    return spec
+
+
+def _couple(body: Any, prefix: str, preset: Preset) -> None:
+    """The torsion springs to the car before: yaw and pitch, halfway between the two."""
+    for name, axis in (("yaw", (0.0, 0.0, 1.0)), ("pitch", (0.0, 1.0, 0.0))):
+        joint = body.add_joint(name=prefix + name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=axis, pos=(preset.pitch / 2, 0.0, 0.0))
+        joint.stiffness[0], joint.damping[0] = preset.spring, preset.spring_damping
+        joint.limited, joint.range = mujoco.mjtLimited.mjLIMITED_TRUE, (-preset.joint_range, preset.joint_range)
+
+
+def _shape(spec: mujoco.MjSpec, scene: str, rng: np.random.Generator, angle: float | None, bouncy: bool) -> float:
+    """What of a scene is not in its file. Returns how high (m) the ground is in the middle."""
+    if angle is not None:
+        if scene not in SLOPED:
+            raise ValueError(f"the scene '{scene}' has no slopes of one angle; {' and '.join(SLOPED)} have")
+        if not 0.0 <= angle < pi / 2:
+            raise ValueError(f"slopes of {angle!r} rad cannot be: give 0 or more and less than pi/2")
+        for geom in spec.geoms:
+            if geom.name.startswith("slope_"):
+                _tilt(geom, angle)
+    for geom in spec.geoms:
+        if bouncy and geom.name.startswith("wall"):
+            geom.solref[:2] = BOUNCY
+    if scene == "octagon":
+        _strew(spec, rng)
+    elif scene == "hills":
+        hills = spec.hfield("hills")
+        heights = _hills(int(hills.nrow), float(hills.size[0]), rng)
+        hills.userdata = heights.ravel()
+        return float(heights[heights.shape[0] // 2, heights.shape[1] // 2] * hills.size[2])
+    return 0.0
+
+
+def _tilt(geom: Any, angle: float) -> None:
+    """Give a slope this angle about its foot."""
+    normal = np.cross(geom.alt.xyaxes[:3], geom.alt.xyaxes[3:])
+    slope = float(np.arctan2(np.hypot(*normal[:2]), normal[2]))
+    out, half = -normal[:2] / np.hypot(*normal[:2]), float(geom.size[0])
+    foot = geom.pos[:2] @ out - half * cos(slope)
+    geom.pos = (*(out * (foot + half * cos(angle))), half * sin(angle))
+    geom.alt.xyaxes = (*(out * cos(angle)), sin(angle), -out[1], out[0], 0.0)
+
+
+def _strew(spec: mujoco.MjSpec, rng: np.random.Generator) -> None:
+    """Boxes of foam, as in LPZRobots' octagon: edges of 0.1 to 1 m there, to 0.5 m in this smaller one, 0.3 m high, 2 to 5 kg/m^3."""
+    for number in range(_BOXES):
+        edges = rng.uniform(0.1, 0.5, 2)
+        away, around = _OCTAGON_M * sqrt(rng.uniform(0.12, 0.7)), rng.uniform(0.0, 2 * pi)
+        turned = rng.uniform(0.0, pi)
+        body = spec.worldbody.add_body(
+            name=f"box{number}", pos=(away * cos(around), away * sin(around), 0.15), quat=(cos(turned / 2), 0.0, 0.0, sin(turned / 2))
+        )
+        body.add_freejoint(name=f"box{number}")
+        size = (edges[0] / 2, edges[1] / 2, 0.15)
+        mass = float(rng.uniform(2.0, 5.0)) * 8 * size[0] * size[1] * size[2]
+        body.add_geom(spec.find_default("obstacle"), name=f"box{number}", size=size, mass=mass, contype=1)
+
+
+def _hills(points: int, half_m: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Heights from 0 to 1, (points, points), of random waves, flat around the middle, where cars begin."""
+    x, y = np.meshgrid(np.linspace(-half_m, half_m, points), np.linspace(-half_m, half_m, points))
+    height = np.zeros_like(x)
+    for length, direction, phase in zip(
+        rng.uniform(_SHORTEST_M, _LONGEST_M, _WAVES), rng.uniform(0.0, 2 * pi, _WAVES), rng.uniform(0.0, 2 * pi, _WAVES), strict=True
+    ):
+        height += length * np.cos(2 * pi * (x * cos(direction) + y * sin(direction)) / length + phase)
+    height = (height - height.min()) / (height.max() - height.min())
+    level = height[points // 2, points // 2]
+    near = np.exp(-((np.hypot(x, y) / 1.5) ** 4))
+    return np.asarray(height + near * (level - height))

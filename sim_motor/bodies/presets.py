@@ -1,0 +1,58 @@
+"""The numbers of the cars, from presets.toml, where their sources stand."""
+
+from __future__ import annotations
+
+import tomllib
+from math import isfinite
+from pathlib import Path
+from typing import Any, NamedTuple
+
+HERE = Path(__file__).parent
+
+
+class Preset(NamedTuple):
+    """A car, its coupling to the next, and its controller, in SI units; k is a force."""
+
+    body_mass: float
+    wheel_mass: float
+    wheel_radius: float
+    body_radius: float
+    body_height: float
+    wheel_width: float
+    body_drag: float
+    wheel_drag: float
+    friction: float
+    pitch: float
+    spring: float
+    spring_damping: float
+    joint_range: float
+    a: float
+    tau: float
+    k_car: float
+    k_train: float
+
+    def with_drag(self, drag: float) -> Preset:
+        """The same car with this drag, where the preset has it: on the body in N s/m, or on the wheels in N s/rad."""
+        return self._replace(body_drag=drag) if self.body_drag else self._replace(wheel_drag=drag)
+
+    def checked(self) -> Preset:
+        """The same preset. Raises ValueError if a number of it is none that a car can have."""
+        for name, value in self._asdict().items():
+            if not isfinite(value) or value < 0.0 or (value == 0.0 and name not in _MAY_BE_0):
+                raise ValueError(f"{name} cannot be {value!r}: give a finite number, {'0 or more' if name in _MAY_BE_0 else 'above 0'}")
+        return self
+
+    def wheel_inertia(self) -> float:
+        """Moment of inertia (kg m^2) of a wheel, a cylinder, about its axle."""
+        return self.wheel_mass * self.wheel_radius**2 / 2
+
+
+_MAY_BE_0 = ("body_drag", "wheel_drag", "friction", "spring", "spring_damping", "a", "k_car", "k_train")
+_TABLE: dict[str, dict[str, Any]] = tomllib.loads((HERE / "presets.toml").read_text(encoding="utf-8"))
+NAMES = tuple(_TABLE)
+
+
+def preset(name: str) -> Preset:
+    """The preset of this name. Raises KeyError."""
+    numbers = _TABLE[name]
+    return Preset(**{field: float(numbers[field]) for field in Preset._fields}).checked()
