@@ -24,7 +24,7 @@ from host.experiments.experiment import Cell, Findings, Row, Setting
 from host.theory.attractors import KINDS, ROLL, settled, starts, watch
 from host.theory.ensemble import rate_per_s
 from host.theory.model import Array, Wheel, numpy_rates
-from host.theory.route import along, checked, of_series, rolling_end, route_claim, spectrum, spectrum_claim, tally
+from host.theory.route import along, checked, of_series, rolling_end, route, spectrum, spectrum_claim, tally
 from host.theory.run import wheel_of
 from host.theory.tangent import divergence, growth, pair_growth, smooth_mean
 from host.theory.transients import crisis, least_chaotic_k, lives, sample
@@ -232,6 +232,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     by_k = {k: [row for row in parts["lives"] if row["k"] == k] for k in dict.fromkeys(row["k"] for row in parts["lives"])}
     samples = [sample(k, *(np.array([row[name] for row in own]) for name in ("life_s", "ended"))) for k, own in by_k.items()]
     found = crisis(samples)
+    through_a_crisis, words = route(found, samples, rolls, LIVES_S)
     numbers: dict[str, Any] = {
         "exponents": point["exponents"],
         "standard_errors": point["standard_errors"],
@@ -243,10 +244,11 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         "plane": tally(parts["plane"]),
         "rolling_ends": rolls,
         "crisis": None if found is None else found._asdict(),
+        "through_a_crisis": through_a_crisis,
         "lives": [one._asdict() for one in samples],
         "accuracy": {**point["accuracy"], **checked(parts["check"])},
     }
     own = Wheel(k=PAPER_K, tau_s=PAPER_TAU_S)
     if wheel != own:
         return Findings([], numbers)
-    return Findings([spectrum_claim(point, series), route_claim(found, samples, rolls, LIVES_S)], numbers)
+    return Findings([spectrum_claim(point, series, words)], numbers)

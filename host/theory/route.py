@@ -200,7 +200,7 @@ def checked(rows: list[Row]) -> dict[str, Any]:
     }
 
 
-def spectrum_claim(point: dict[str, Any], series: dict[str, Any] | None) -> Claim:
+def spectrum_claim(point: dict[str, Any], series: dict[str, Any] | None, route: str) -> Claim:
     """M8: chaos at the paper's point, by the sign of the largest exponent, found by two algorithms that have to agree."""
     rate, error = point["exponents"][0], point["standard_errors"][0]
     accuracy = point["accuracy"]
@@ -219,18 +219,21 @@ def spectrum_claim(point: dict[str, Any], series: dict[str, Any] | None) -> Clai
         rate > VERY_SURE * error and point["kind"] == KINDS[CHAOS] and agree,
         f"spectrum {others} 1/s, dimension {point['dimension']:.3f}; by pairs of near wheels {point['by_pairs']:.3f}"
         f" +- {point['by_pairs_error']:.3f}/s; from the series of the force {from_force}; {chaotic} of {point['of_wheels']} wheels are"
-        f" chaotic ({low:.0%} to {high:.0%})",
+        f" chaotic ({low:.0%} to {high:.0%}); {route}",
     )
 
 
-def route_claim(found: Crisis | None, samples: list[Sample], rolls: dict[str, Any] | None, most_s: float) -> Claim:
-    """M8: how chaos begins at tau = 1."""
+def route(found: Crisis | None, samples: list[Sample], rolls: dict[str, Any] | None, most_s: float) -> tuple[bool, str]:
+    """How chaos begins along k: whether it is through a crisis, as the caption of the phase diagram says, and what speaks for it."""
     above = [one for one in samples if found and one.k > found.k_interval[1]]
     left, watched = sum(one.ended for one in above), sum(one.wheels for one in above)
     tested = [one for one in samples if one.likeness is not None]
     exponential = sum(one.likeness > LIKELY for one in tested if one.likeness is not None)
     words = [f"lives are exponentially distributed at {exponential} of {len(tested)} k"]
+    holds = bool(found and watched and not left and exponential >= 0.8 * len(tested) > 0)
+    begin = "no crisis was found on the way to it" if found is None else f"going down in k it ends {'' if holds else 'perhaps '}in a crisis"
     if found:
+        begin += f" at {found.k:.2f} ({found.k_interval[0]:.2f} to {found.k_interval[1]:.2f})"
         power = f"{found.power:.2f} ({found.power_interval[0]:.2f} to {found.power_interval[1]:.2f})"
         words = [f"below, chaos is a transient with a mean life as (k_c - k)^-g, g = {power}", *words]
         words.append(f"above, {left} of {watched} wheels left it in {most_s:g} s")
@@ -239,13 +242,4 @@ def route_claim(found: Crisis | None, samples: list[Sample], rolls: dict[str, An
             f"going up in k, rolling stays stable as far as k = {rolls['k']:.3f}, where a pair of exponents reaches 0 (Neimark-Sacker) and"
             f" the wheel, by k = {rolls['leaves_by']:.3f}, is {rolls['for']}: a jump with hysteresis"
         )
-    return Claim(
-        "M8",
-        "at tau = 1 the transition to chaos takes place through a crisis",
-        "caption of the phase diagram",
-        found.k if found else 0.0,
-        "(k)",
-        found.k_interval if found else None,
-        bool(found and watched and not left and exponential >= 0.8 * len(tested) > 0),
-        "; ".join(words),
-    )
+    return holds, "; ".join([begin, *words])
