@@ -155,7 +155,7 @@ def _draw_line(axes: Axes, rows: list[Row]) -> None:
     axes.set_title(r"the merging over $\tau$", fontsize=12)
     axes.set(xscale="log")
     axes.set_xlabel(r"time constant $\tau$ (s)", fontsize=12)
-    axes.set_ylabel("$k$ of the merging / $k$ of Hopf", fontsize=12)
+    axes.set_ylabel("$k_\\mathrm{merging} / k_\\mathrm{Hopf}$", fontsize=12)
     if line:
         axes.legend(fontsize=10.5, title="near the merging:", title_fontsize=10.5, loc="upper right", handlelength=1.0)
 

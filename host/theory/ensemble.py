@@ -14,7 +14,7 @@ import numpy as np
 from host.errors import WrongUse
 from host.theory import adams, runge_kutta
 from host.theory.elementary import MATHEMATICS, OPTIONS, inlined
-from host.theory.model import OMEGA, PHI, Array, rates
+from host.theory.model import OMEGA, PHI, Array, Wheel, rates
 from sim_motor.compiled import prange, retold
 
 # Wheels in a block: as many as the fastest cache holds with all stages.
@@ -141,6 +141,11 @@ def averages(states: Array, parameters: Array, transient_s: float, measured_s: f
         return _advanced(steps, *given, seconds, fineness, _averaged_rates)
 
     begun = np.asarray(states, dtype=np.float64)
+    if begun.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != len(Wheel._fields):
+        shapes = f"{begun.shape} and {parameters.shape}"
+        raise WrongUse(f"states and parameters cannot be of shapes {shapes}", "give (4, wheels) and (6, wheels), as Wheel.columns does")
+    if not np.isfinite(begun).all():
+        raise WrongUse("a wheel begins in a state that is not finite", "give finite potentials, angles and speeds")
     if transient_s > 0.0:
         # What is averaged on the way is thrown away: that costs less than to compile the rates without it.
         begun = after(transient_s, begun)[: OMEGA + 1]

@@ -52,7 +52,7 @@ class Fixpoint(NamedTuple):
 def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
     """The fixpoint at one of ANGLES. Raises WrongUse if the rods do not pull, so that a wheel can rest anywhere."""
     for name in ("k", "a"):
-        if getattr(wheel, name) == 0.0:
+        if getattr(wheel.checked(), name) == 0.0:
             raise WrongUse(f"with {name} = 0 the rods do not pull, and a wheel rests at any angle", f"give {name} above 0")
     state = resting(np.array([phi]))[:, 0]
     values, vectors = np.linalg.eig(jacobian_at(state.tolist(), wheel))
@@ -78,7 +78,8 @@ def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
 
 
 def cells(options: dict[str, Any]) -> list[Cell]:
-    """All in one."""
+    """One wheel, and two. Raises WrongUse if it can rest anywhere."""
+    fixpoints(wheel_of(options))
     return [{"part": "one wheel"}, {"part": "two wheels"}]
 
 

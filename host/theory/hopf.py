@@ -48,7 +48,7 @@ def hopf(wheel: Wheel) -> Hopf:
 
     Raises WrongUse if there is none: without friction every resting wheel is unstable, and with a = 0 the rods do not pull.
     """
-    if wheel.friction == 0.0 or wheel.a == 0.0:
+    if wheel.checked().friction == 0.0 or wheel.a == 0.0:
         why = "without friction every k makes a resting wheel swing" if wheel.a else "with a = 0 the rods do not pull"
         raise WrongUse(f"there is no Hopf bifurcation: {why}", f"give {'f' if wheel.a else 'a'} above 0")
     k = critical_k(wheel)
@@ -123,14 +123,14 @@ def line(wheel: Wheel, taus_s: Array) -> list[tuple[float, Hopf]]:
 
 
 def cells(options: dict[str, Any]) -> list[Cell]:
-    """The point, the line through it, and the limit for which the estimate is made."""
+    """The point, the line through it, and the limit for which the estimate is made. Raises WrongUse as `hopf` does."""
+    hopf(wheel_of(options))
     return [{"part": "point"}, {"part": "line"}, {"part": "limit"}]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """k, frequency and coefficient of the bifurcation; at the point, also by eigenvalues."""
     wheel = wheel_of(setting.options)
-    hopf(wheel)  # refuses a wheel that has none
     parts: dict[str, Any] = {
         "point": wheel.tau_s,
         "line": wheel.tau_s * np.geomspace(0.01, 100.0, LINE),

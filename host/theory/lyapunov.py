@@ -74,7 +74,7 @@ def cells(options: dict[str, Any]) -> list[Cell]:
     lines: list[Cell] = [{"part": "line", "first": first} for first in range(0, LINE_KS, LINE_BAND)]
     planes: list[Cell] = [{"part": "plane", "first": first} for first in range(0, PLANE, PLANE_BAND)]
     life: list[Cell] = [{"part": "lives", "offset": offset} for offset in LIVES_AT]
-    return [*points, {"part": "series"}, *lines, {"part": "rolling"}, *life, *planes, {"part": "check"}]
+    return [{"part": "series"}, *planes, *lines, {"part": "rolling"}, {"part": "check"}, *life, *points]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:

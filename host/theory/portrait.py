@@ -119,8 +119,11 @@ def kind_of(found: Array | None) -> str:
 
 
 def cells(options: dict[str, Any]) -> list[Cell]:
-    """One portrait each."""
-    return [{"k": k} for k in (PAPERS_K if options["k"] is None else (options["k"],))]
+    """One portrait each. Raises WrongUse as `fixpoint` does."""
+    ks = PAPERS_K if options["k"] is None else (options["k"],)
+    for k in ks:
+        fixpoint(0.0, wheel_of(options)._replace(k=k))
+    return [{"k": k} for k in ks]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:

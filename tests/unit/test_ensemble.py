@@ -231,4 +231,10 @@ def test_a_stiff_wheel_is_refused_by_name(wheel):
 
 def test_a_wheel_that_runs_away_is_refused():
     with pytest.raises(WrongUse, match="ran away"):
-        averages(starts(1, (1.0, 0.0, 0.0, math.inf)), columns([Wheel()]), 0.0, 1.0)
+        averages(starts(1, (1.0, 0.0, 0.0, 1e300)), columns([Wheel()]), 0.0, 1.0)
+
+
+def test_states_that_are_none_of_these_wheels_are_refused():
+    for states in (starts(2), starts(1)[:3], starts(1, (1.0, 0.0, 0.0, math.inf))):
+        with pytest.raises(WrongUse, match=r"shapes|finite"):
+            averages(states, columns([Wheel()]), 0.0, 1.0)
