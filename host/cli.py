@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import argparse
 import importlib
 import json
@@ -33,6 +34,8 @@ VERBS = (
     "discover",
     "experiment",
     "theory",
+    "body",
+    "rods",
     "reproduce",
 )
 
@@ -71,6 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, _interrupt)  # a verb that moves the robot stops it then, and a log is closed
     options = parser.parse_args(_join_negative(sys.argv[1:] if arguments is None else list(arguments)))
+    hook, sys.unraisablehook = sys.unraisablehook, _interrupt_again
     try:
         status = int(options.run(options))
         sys.stdout.flush()
@@ -94,6 +98,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("kickctl: interrupted", file=sys.stderr)
         return 130
+    finally:
+        sys.unraisablehook = hook
 
 
 def _drop_output() -> None:
@@ -104,6 +110,16 @@ def _drop_output() -> None:
 
 def _interrupt(number: int, frame: object) -> None:
     raise KeyboardInterrupt
+
+
+def _interrupt_again(lost: sys.UnraisableHookArgs) -> None:
+    """Python lets nothing out of a destructor, of which the compiler's has many: an interrupt that came in one comes once more."""
+    if lost.exc_type is KeyboardInterrupt:
+        again = threading.Timer(0.05, _thread.interrupt_main)
+        again.daemon = True
+        again.start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _join_negative(arguments: list[str]) -> list[str]:

@@ -22,7 +22,7 @@ KICKS = 40
 def main() -> None:
     """Print everything."""
     print(f"Python {sys.version.split()[0]}, {os.cpu_count()} cores", flush=True)
-    for measure in (reads_and_writes, controller_tick, virtual_time, batch, real_time):
+    for measure in (reads_and_writes, controller_tick, virtual_time, batch, bodies, real_time):
         measure()
 
 
@@ -109,6 +109,42 @@ def batch() -> None:
         elapsed = best_of(5, lambda times=times: run(wheels, ticks, seed=1, times=times))
         rate = wheels * ticks * 0.03 / elapsed
         print(f"compiled batch, {os.cpu_count()} cores, {title}: {rate:,.0f} wheel-seconds a second", flush=True)
+
+
+def bodies() -> None:
+    """Cars in MuJoCo with the controllers of all wheels in the loop, against MuJoCo's bare stepping of the same motion."""
+    import mujoco
+    import numpy as np
+    from mujoco.rollout import rollout
+
+    from host.bodies import Asked, body_of
+
+    full, pushed = mujoco.mjtState.mjSTATE_FULLPHYSICS, mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_XFRC_APPLIED
+    for what, cars in (("car", 1), ("train", 5)):
+        for preset in ("paper", "snake2019"):
+            own_s, plain_s, steps = [], [], 3000
+            body = body_of(Asked(cars=cars, preset=preset))
+            model, data = body.model, mujoco.MjData(body.model)
+            step_s = float(model.opt.timestep)
+            body.run(2.0)
+            for _ in range(3):
+                # The same motion three times: to hear what pushes it in each step, with its controllers, and with what was heard.
+                begun, sizes = np.empty(mujoco.mj_stateSize(model, full)), mujoco.mj_stateSize(model, pushed)
+                mujoco.mj_getState(model, body.data, begun, full)
+                floats, step = body.neurons.floats.copy(), body.step
+                heard = np.empty((1, steps, sizes))
+                for number in range(steps):
+                    body.run(step_s)
+                    mujoco.mj_getState(model, body.data, heard[0, number], pushed)
+                mujoco.mj_setState(model, body.data, begun, full)
+                body.neurons.floats[:], body.step = floats, step
+                own_s.append(best_of(1, lambda body=body, seconds=steps * step_s: body.run(seconds)))
+                plain_s.append(best_of(1, lambda m=model, d=data, b=begun, h=heard: rollout(m, d, b, h, control_spec=int(pushed))))
+            ours = min(own_s)
+            print(
+                f"{what} ({preset}), one core: {steps / ours:,.0f} steps/s of {1000 * step_s:g} ms, {steps * step_s / ours:.0f} times real"
+                f" time; {min(plain_s) / ours:.2f} of MuJoCo's bare stepping" + (" (goals: 15, 0.5)" if cars > 1 else " (goal: 0.5)")
+            )
 
 
 def real_time() -> None:

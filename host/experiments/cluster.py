@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from concurrent.futures import CancelledError
 
 from host.errors import NoLink, WrongUse
@@ -14,7 +14,7 @@ CONNECT_S = 10.0
 
 def spread(
     address: str, simulate: Callable[[Cell, Setting], list[Row]], cells: list[Cell], setting: Setting
-) -> Iterator[tuple[Cell, list[Row]]]:
+) -> Generator[tuple[Cell, list[Row]]]:
     """(cell, rows) as they are done, on the workers of the Dask scheduler at `address`. Raises WrongUse and NoLink."""
     try:
         from distributed import Client, as_completed

@@ -55,7 +55,8 @@ class Findings:
 class Experiment(Protocol):
     """The module host.experiments.NAME.
 
-    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too.
+    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too. An experiment on simulated bodies
+    (host.experiments.table.BODIES) is for no robot, and has neither world nor trial.
     """
 
     simulate: Callable[[Cell, Setting], list[Row]] | None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,7 +12,7 @@ from host.claims import Claim
 from host.entries import Entry
 from host.errors import WrongUse
 from host.experiments.run import RESULTS, address, perform
-from host.experiments.table import TABLE
+from host.experiments.table import BODIES, TABLE
 from host.links import sim_options
 from host.theory.run import perform as study
 from host.theory.table import TABLE as STUDIES
@@ -20,6 +21,9 @@ from host.theory.table import TABLE as STUDIES
 NEEDS = {"R13": "needs two walls, a robot's length and more apart: build them, and ask for it by name (--only R13)"}
 
 OF_MODEL = "is about the paper's model and needs no robot: ask for it by name, or without --brick"
+OF_BODIES = "is about simulated cars and needs no robot: ask for it by name, without --brick"
+NO_BODIES = "needs mujoco, which is not installed: pip install 'kickctl[bodies]'"
+_ELSEWHERE = {"M": OF_MODEL, "B": OF_BODIES}
 
 
 class Reproduction(NamedTuple):
@@ -31,12 +35,12 @@ class Reproduction(NamedTuple):
 
 
 def known() -> list[str]:
-    """The ids of all claims that are settled here, R of the robot and M of the model."""
+    """The ids of all claims that are settled here: R of the robot, M of the model, B of simulated bodies."""
     return sorted((number for entry in (*TABLE.values(), *STUDIES.values()) for number in entry.claims), key=_place)
 
 
 def _place(number: str) -> tuple[int, int]:
-    return "RM".index(number[0]), int(number[1:])
+    return "RMB".index(number[0]), int(number[1:])
 
 
 def reproduce(
@@ -58,7 +62,9 @@ def reproduce(
         raise WrongUse(f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(known()))
     uri = address(uri)
     simulated = sim_options(uri) is not None
-    skipped = {} if simulated or only else NEEDS | {number: OF_MODEL for number in known() if number[0] == "M"}
+    skipped = {} if simulated or only else NEEDS | {number: _ELSEWHERE[number[0]] for number in known() if number[0] in _ELSEWHERE}
+    if not only and find_spec("mujoco") is None:
+        skipped |= {number: NO_BODIES for entry in BODIES.values() for number in entry.claims}
     wanted = [number for number in known() if number not in skipped and (not only or number in only)]
     summaries: list[dict[str, Any]] = []
     claims: dict[str, Claim] = {}

@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
+from host.bodies import need
 from host.client import Robot, connect
 from host.entries import checked
 from host.errors import NoLink, NotDone, RobotFault, WrongUse
 from host.experiments.experiment import Cell, Experiment, Row, Setting
 from host.experiments.study import digest
-from host.experiments.table import TABLE, load
+from host.experiments.table import BODIES, TABLE, load
 from host.experiments.work import Outcome, Work, begun, do, finish, simulate
 from host.links import SIM, make_link, sim_options
 from host.log import Log
@@ -58,6 +59,10 @@ def perform(
     uri = address(uri)
     make_link(uri)  # raises, in words, if that is no robot's address
     simulated = sim_options(uri)
+    if name in BODIES:
+        need("mujoco", "bodies")
+        if simulated is None:
+            raise WrongUse(f"{name} is about simulated cars, and '{uri}' is a robot's address", f"leave it out, or say {SIM}")
     for option in simulated or ():
         if option not in OWN_OPTIONS:
             raise WrongUse(f"an experiment places its robots itself, and '{uri}' says {option}", "leave that out")
@@ -76,7 +81,7 @@ def perform(
     cells = experiment.cells(options, batch=batch)
     with begun(Path(out), settings, cells, say) as study:
         if experiment.simulate and batch:
-            simulate(name, experiment.simulate, cells, setting, study, scheduler)
+            simulate(name, experiment.simulate, cells, setting, study, scheduler, processes=name in BODIES)
         elif any(cell not in study for cell in cells):
             with _robots(experiment, uri, setting, token, study.folder / "logs", say) as work:
                 do(name, cells, study, work)

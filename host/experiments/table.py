@@ -11,6 +11,67 @@ if TYPE_CHECKING:
     from host.experiments.experiment import Experiment
 
 
+# On simulated cars, which need no robot: `kickctl[bodies]`.
+BODIES = {
+    "train-start": Entry(
+        "trains of five cars from random wheel phases: order parameter against time, and which way each goes",
+        (
+            Option("seeds", 20, 1, 10000, "trains of each preset"),
+            Option("seconds", 15.0, 2.0, 600.0, "how long each runs"),
+        ),
+        ("B2",),
+    ),
+    "train-wall": Entry(
+        "a train between two walls, dead and bouncy: reversals and leg times, beside a train with constant torque",
+        (
+            Option("seeds", 3, 1, 1000, "trains of each kind"),
+            Option("seconds", 60.0, 10.0, 3600.0, "how long each runs"),
+        ),
+        ("B3",),
+    ),
+    "train-slope": Entry(
+        "a train between four slopes, over their angle and k: reversals, coherence, whether it stays inside",
+        (
+            Option("seeds", 2, 1, 1000, "trains of each kind"),
+            Option("seconds", 30.0, 10.0, 3600.0, "how long each runs"),
+        ),
+    ),
+    "train-wiggle": Entry(
+        "the travelling wave along a fast train's joints: amplitude, frequency, lag, beside the authors' program",
+        (Option("seconds", 60.0, 10.0, 3600.0, "how long each train runs"),),
+    ),
+    "train-kick": Entry(
+        "how many wheels of a running train must be kicked, and for how long, to reverse all of it",
+        (
+            Option("trials", 4, 1, 10000, "tries of each kick"),
+            Option("preset", "paper", 0, 0, "which train", ("paper", "snake2019")),
+        ),
+    ),
+    "train-fault": Entry(
+        "a train with one wheel weaker or dead, or with wheels of different size: order, speed, turning",
+        (
+            Option("seeds", 2, 1, 1000, "trains of each kind"),
+            Option("seconds", 30.0, 5.0, 3600.0, "how long each runs"),
+            Option("preset", "snake2019", 0, 0, "which train", ("paper", "snake2019")),
+        ),
+    ),
+    "car-slope": Entry(
+        "the car between four slopes for ten minutes: its way, and whether it stays inside and on its wheels",
+        (
+            Option("seeds", 3, 1, 1000, "cars on slopes of each angle"),
+            Option("seconds", 600.0, 10.0, 36000.0, "how long each drives"),
+        ),
+        ("B1",),
+    ),
+    "car-route": Entry(
+        "rest, forth-and-back and rolling of the car over k, and its speed beside the formula",
+        (
+            Option("seeds", 6, 1, 1000, "starts for each k"),
+            Option("seconds", 15.0, 6.0, 600.0, "how long each drives"),
+        ),
+    ),
+}
+
 TABLE = {
     "primitives": Entry(
         "all motion primitives from each other by kicks, stopped and back: success rates and times, speed, duty, torque",
@@ -50,6 +111,7 @@ TABLE = {
         "identifies this robot's motor from logs and writes it for sim://?motor=mine",
         (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about"),),
     ),
+    **BODIES,
 }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,16 +47,23 @@ def simulate(
     setting: Setting,
     study: Study,
     scheduler: str | None = None,
+    *,
+    processes: bool = False,
 ) -> None:
-    """Do them by computing, here or on the Dask cluster of the scheduler at this address."""
-    if scheduler is None:
-        do(name, cells, study, lambda cell: (function(cell, setting), []))
-        return
-    from host.experiments.cluster import spread
-
+    """Do them by computing, here or on the Dask cluster of the scheduler at this address. processes: one for each core, if here."""
     missing = [cell for cell in cells if cell not in study]
-    results: Iterator[Result] = ((cell, rows, []) for cell, rows in spread(scheduler, function, missing, setting))
-    _keep(results, len(cells) - len(missing), len(cells), study, name)
+    if scheduler is not None:
+        from host.experiments.cluster import spread
+
+        done = spread(scheduler, function, missing, setting)
+    elif processes:
+        from host.experiments.processes import side_by_side
+
+        done = side_by_side(function, missing, setting)
+    else:
+        done = ((cell, function(cell, setting)) for cell in missing)
+    with closing(done):
+        _keep(((cell, rows, []) for cell, rows in done), len(cells) - len(missing), len(cells), study, name)
 
 
 def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:

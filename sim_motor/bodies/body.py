@@ -33,7 +33,7 @@ class Unstable(Exception):
 class Body:
     """Cars in a scene, with their controllers.
 
-    model: as host or caller has compiled it from `sim_motor.bodies.model.compose`. k: of all wheels, N. phases (rad): of the wheels at the
+    model: as host or caller has compiled it from `sim_motor.bodies.model.compose`. phases (rad): of the wheels at the
     start, (wheels,), with potentials 0, as in the authors' programs; random ones if there are none, from `seed`. torque (N m): if given,
     it is each wheel's, for ever, instead of the controllers'. Wheels are in the order of `wheels`: car0_left, car0_right, car1_left ...
     """
@@ -43,7 +43,6 @@ class Body:
         model: mujoco.MjModel,
         preset: Preset,
         *,
-        k: float,
         seed: int = 1,
         phases: Array | None = None,
         torque: float | None = None,
@@ -55,7 +54,7 @@ class Body:
         self.cars = sum(model.body(number).name.endswith("_car") for number in range(model.nbody))
         self.wheels = tuple(car_name(car) + side for car in range(self.cars) for side in SIDES)
         self.joints = tuple(car_name(car) + name for name in ("yaw", "pitch") for car in range(1, self.cars))
-        self.neurons = Wheels.of(len(self.wheels), preset.a, preset.tau, k, preset.wheel_radius)
+        self.neurons = Wheels(len(self.wheels), preset.a, preset.tau, preset.k, preset.wheel_radius)
         self.step, self._every = 0, max(1, round(record_s / float(model.opt.timestep)))
         self._angles = np.array([model.joint(name).qposadr[0] for name in self.wheels])
         self._speeds = np.array([model.joint(name).dofadr[0] for name in self.wheels])
@@ -63,7 +62,7 @@ class Body:
         self._bodies = np.array([model.body(car_name(car) + "car").id for car in range(self.cars)])
         self._drags = np.full(self.cars, preset.body_drag)
         self._frozen: list[Kick] = []
-        self._rows: list[Array] = []
+        self._notes: list[tuple[Any, ...]] = []
         begin = np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels)) if phases is None else phases
         self.data.qpos[self._angles] = begin
         mujoco.mj_forward(model, self.data)
@@ -89,7 +88,11 @@ class Body:
     @property
     def rows(self) -> Array:
         """The state every record_s, from the start on, (times, columns)."""
-        return np.array(self._rows)
+        steps, qpos, qvel, x, torque, places, turns = (np.array(values) for values in zip(*self._notes, strict=True))
+        times_s = steps[:, None] * float(self.model.opt.timestep)
+        poses = np.concatenate([places[:, self._bodies], _angles_of(turns[:, self._bodies])], axis=2).reshape(len(steps), -1)
+        wheels = (qpos[:, self._angles], qvel[:, self._speeds], x, _target_position(x, self.neurons.a), torque)
+        return np.concatenate([times_s, *wheels, qpos[:, self._bends], poses], axis=1)
 
     def kick(self, kick: Kick) -> None:
         """Begin a kick at its `begin`, in steps, on the wheels whose names it has. Raises ValueError if that is over or no wheel's.
@@ -106,16 +109,17 @@ class Body:
         """Go on for so long; `watch` is told the time at each record. Raises Unstable."""
         model, data, own = self.model, self.data, self.neurons
         end, dt_s = self.step + round(seconds / model.opt.timestep), model.opt.timestep
-        velocity, warnings = data.sensordata, data.warning
+        # The same memory as long as the data live.
+        qpos, ctrl, pull, velocity, warnings = data.qpos, data.ctrl, data.xfrc_applied, data.sensordata, data.warning
         while self.step < end:
             while self._frozen and self._frozen[0].begin <= self.step:
                 self._begin(self._frozen.pop(0))
             until = min(end, self._next_record(), self._frozen[0].begin if self._frozen else end)
             for step in range(self.step, until):
                 mujoco.mj_step1(model, data)
-                drive(step, dt_s, own, self._angles, data.qpos, data.ctrl, self._drags, self._bodies, velocity, data.xfrc_applied)
+                drive(step, dt_s, own.floats, own.whole, self._angles, qpos, ctrl, self._drags, self._bodies, velocity, pull)
                 if self.torque is not None:
-                    data.ctrl[:] = self.torque
+                    ctrl[:] = self.torque
                 mujoco.mj_step2(model, data)
             self.step = until
             if any(warnings[bad].number for bad in _BAD):
@@ -141,17 +145,22 @@ class Body:
                 potential[wheel] = jump(potential[wheel], kick.delta)
 
     def _note(self) -> None:
-        data, own = self.data, self.neurons
+        data = self.data
         mujoco.mj_kinematics(self.model, data)
-        wheels = (data.qpos[self._angles], self.omega, own.x1, _target_position(own.x1, own.a), data.ctrl)
-        poses = [np.concatenate([data.xpos[body], _angles_of(data.xmat[body].reshape(3, 3))]) for body in self._bodies]
-        self._rows.append(np.concatenate([[self.time_s], *wheels, data.qpos[self._bends], *poses]))
+        noted = (data.qpos, data.qvel, self.neurons.x1, data.ctrl, data.xpos, data.xquat)
+        self._notes.append((self.step, *(values.copy() for values in noted)))
 
 
+# Its words would go into a file of the folder where one happens to be; `run` looks for what is wrong itself.
+mujoco.set_mju_user_warning(lambda words: None)
 _BAD = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
 
 
-def _angles_of(matrix: Array) -> Array:
-    """Roll, pitch and yaw (rad) of a body whose axes are the columns: turned by yaw about z, then pitch about y, then roll about x."""
-    roll, pitch = np.arctan2(matrix[2, 1], matrix[2, 2]), np.arctan2(-matrix[2, 0], np.hypot(matrix[0, 0], matrix[1, 0]))
-    return np.array([roll, pitch, np.arctan2(matrix[1, 0], matrix[0, 0])])
+def _angles_of(turns: Array) -> Array:
+    """Roll, pitch and yaw (rad), (..., 3), of unit quaternions (..., 4), the real part first.
+
+    Such a body is turned by yaw about z, then by pitch about its y, then by roll about its x.
+    """
+    w, x, y, z = np.moveaxis(turns, -1, 0)
+    roll, yaw = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return np.stack([roll, np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0)), yaw], axis=-1)

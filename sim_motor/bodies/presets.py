@@ -22,14 +22,14 @@ class Preset(NamedTuple):
     body_drag: float
     wheel_drag: float
     friction: float
+    slip: float
     pitch: float
     spring: float
     spring_damping: float
     joint_range: float
     a: float
     tau: float
-    k_car: float
-    k_train: float
+    k: float
 
     def with_drag(self, drag: float) -> Preset:
         """The same car with this drag, where the preset has it: on the body in N s/m, or on the wheels in N s/rad."""
@@ -47,7 +47,7 @@ class Preset(NamedTuple):
         return self.wheel_mass * self.wheel_radius**2 / 2
 
 
-_MAY_BE_0 = ("body_drag", "wheel_drag", "friction", "spring", "spring_damping", "a", "k_car", "k_train")
+_MAY_BE_0 = ("body_drag", "wheel_drag", "friction", "spring", "spring_damping", "a", "k")
 _TABLE: dict[str, dict[str, Any]] = tomllib.loads((HERE / "presets.toml").read_text(encoding="utf-8"))
 NAMES = tuple(_TABLE)
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
+import textwrap
 from math import pi
 
 import pytest
@@ -46,3 +49,30 @@ def test_degenerate_input_is_refused_in_words(kickctl, arguments):
     assert status == 2
     assert "Traceback" not in err
     assert err.count("kickctl:") == 1
+
+
+def test_an_interrupt_in_a_destructor_comes_again():
+    script = textwrap.dedent("""
+        import os, signal, sys, time
+        from host import cli
+
+        class Doomed:
+            def __del__(self):
+                os.kill(os.getpid(), signal.SIGTERM)
+                time.sleep(0.01)
+
+        def run(options):
+            print("begun", flush=True)
+            Doomed()
+            for _ in range(1000):
+                time.sleep(0.01)
+            print("not interrupted", flush=True)
+            return 0
+
+        import host.commands.discover as verb
+        verb.run = run
+        sys.exit(cli.main(["discover"]))
+    """)
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    assert (found.returncode, found.stdout) == (130, "begun\n")
+    assert found.stderr == "kickctl: interrupted\n"

@@ -1,0 +1,138 @@
+"""kickctl body."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from host.errors import KickctlError
+from host.terminal import say, show
+
+HELP = "a simulated car, or a train of cars that nobody steers: one rod and one neuron for each wheel, in MuJoCo"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The body, where it is, and what to make of it."""
+    parser.add_argument("body", choices=("car", "train"), help="one car, or a train")
+    parser.add_argument("--cars", type=int, metavar="N", help="how long the train is (default 5)")
+    parser.add_argument("--scene", default="flat", metavar="NAME", help="where it is, or your own NAME.xml (default %(default)s)")
+    parser.add_argument("--time", type=float, default=30.0, metavar="S", help="how long, in simulated seconds (default %(default)s)")
+    parser.add_argument("--preset", default="paper", metavar="NAME", help="paper or snake2019: sizes, masses, drag, controller")
+    for name, words in (
+        ("a", "gain of the neurons"),
+        ("k", "spring constant of the rods, N"),
+        ("tau", "time constant of the neurons, s"),
+        ("drag", "viscous: of bodies, N s/m (paper), or of wheels, N s/rad (snake2019)"),
+        ("angle", "of the scene's slopes, rad"),
+        ("torque", "a constant torque of every wheel instead of its controller, N m"),
+    ):
+        parser.add_argument("--" + name, type=float, metavar="X", help=words)
+    parser.add_argument("--bouncy", action="store_true", help="walls that throw back, as the authors' did")
+    parser.add_argument(
+        "--kick",
+        action="append",
+        default=[],
+        metavar="WORDS",
+        help='as in "t=5,mode=membrane,wheel=all"; also seconds, shift, param, value ...; may be given more than once',
+    )
+    parser.add_argument("--film", type=Path, metavar="FILE", help="a film of it, .mp4 or .gif")
+    parser.add_argument("--live", action="store_true", help="watch it in MuJoCo's viewer, in real time")
+    parser.add_argument("--model", type=Path, metavar="FILE", help="also write the scene with the cars as MJCF, for any viewer")
+    parser.add_argument("--out", type=Path, default=Path("results"), metavar="FOLDER", help="where results go (default %(default)s)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Simulate, and keep what there is even if it ends early."""
+    from host.bodies import CARS_OF_A_TRAIN, Asked, body_of, push_of, spec_of
+    from host.errors import WrongUse
+
+    if options.body == "car" and options.cars not in (None, 1):
+        raise WrongUse(f"a car is one car, not {options.cars}", "kickctl body train --cars N")
+    if not 0.0 < options.time <= 36000.0:
+        raise WrongUse(f"time cannot be {options.time!r}", "give seconds, above 0 and up to 36000")
+    cars = 1 if options.body == "car" else CARS_OF_A_TRAIN if options.cars is None else options.cars
+    numbers = {name: getattr(options, name) for name in ("a", "k", "tau", "drag", "angle", "torque", "bouncy")}
+    seed = 1 if options.seed is None else options.seed
+    asked = Asked(cars=cars, scene=options.scene, preset=options.preset, seed=seed, **numbers)
+    spec = spec_of(asked)
+    body = body_of(asked, spec)
+    if options.model:
+        options.model.write_text(spec.to_xml(), encoding="utf-8")
+    pushes = [push_of(words, body.wheels) for words in options.kick]
+    summary = _run(options, asked._asdict(), body, pushes)
+    if options.json:
+        show(summary)
+    else:
+        _tell(summary)
+    return 0
+
+
+def _run(options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: list[Any]) -> dict[str, Any]:
+    """Run it, and write everything, also if it is interrupted or cannot be followed."""
+    from contextlib import ExitStack
+
+    from host.bodies import run as let_run
+    from host.experiments.study import digest
+    from host.origin import commit
+    from host.progress import progress
+
+    info = {**asked, "kicks": options.kick, "time_s": options.time, "commit": commit()}
+    folder = options.out / f"body-{digest(info)}"
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        with ExitStack() as stack:
+            watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
+            advance = stack.enter_context(progress(f"{options.body}, simulated seconds", options.time))
+
+            def watch(time_s: float) -> None:
+                advance(time_s)
+                for watcher in watchers:
+                    watcher(body.data)
+
+            let_run(body, options.time, pushes, watch)
+    except (KickctlError, KeyboardInterrupt):
+        _write(folder, info, body, pushes)
+        say(f"the first {body.time_s:g} s are kept in {folder}")
+        raise
+    return _write(folder, info, body, pushes)
+
+
+def _watchers(options: argparse.Namespace, body: Any) -> list[Any]:
+    """What looks on while it runs."""
+    found: list[Any] = []
+    if options.film:
+        from host.film import Film
+
+        found.append(Film(options.film, body.model, body.cars))
+    if options.live:
+        from host.film import live
+
+        found.append(live(body.model, body.data))
+    return found
+
+
+def _write(folder: Path, info: dict[str, Any], body: Any, pushes: list[Any]) -> dict[str, Any]:
+    from host.figures.body import draw
+    from host.states import write_csv, write_mcap
+    from sim_motor.bodies.measures import summary as summary_of
+
+    rows = body.rows
+    summary = {**info, **summary_of(body.columns, rows), "folder": str(folder)}
+    write_csv(folder / "state.csv", body.columns, rows)
+    write_mcap(folder / "state.mcap", body.columns, rows, info)
+    figure = draw(body.columns, rows, summary, [push.t_s for push in pushes])
+    for ending in ("png", "svg"):
+        figure.savefig(folder / f"body.{ending}")
+    (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return summary
+
+
+def _tell(summary: dict[str, Any]) -> None:
+    times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
+    print(f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter {summary['order_parameter']:.3f}")
+    print(f"{len(summary['reversals'])} reversals" + (f", at {times} s" if times else ""))
+    for what in ("stuck", "flipped"):
+        if summary[what]:
+            print(what)
+    for name in ("body.png", "state.csv", "state.mcap"):
+        print(Path(summary["folder"]) / name)

@@ -1,0 +1,41 @@
+"""kickctl rods."""
+
+import argparse
+from pathlib import Path
+
+from host.terminal import answer, recorded, robot_of
+
+HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverses it"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Where to."""
+    parser.add_argument("--out", type=Path, default=Path("rods.mp4"), metavar="FILE", help="the film, .mp4 or .gif (default %(default)s)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Kick the robot, keep the log, and draw the left wheel around the kick; 1 if it did not reverse."""
+    from host.errors import NotDone
+    from host.figures.rods import SIZE, pictures
+    from host.kicking import describe, kick_and_watch, require_running, wait_settled
+    from host.movie import FPS, Movie
+    from host.progress import progress
+    from host.rods import SLOWER, WINDOW_S, course
+    from robot.kicks import PHASE
+
+    with Movie(options.out, SIZE) as movie:
+        with robot_of(options, moves=True) as robot:
+            require_running(robot)
+            with recorded(robot, "rods") as (log, path):
+                if not wait_settled(robot):
+                    raise NotDone("the wheels did not settle", "are the parameters those of a steady motion?")
+                outcome = kick_and_watch(robot, log, PHASE)
+                robot.wait(max(0.0, WINDOW_S[1] - (log.records[-1].t_s - log.records[log.kicks()[0][0]].t_s) + 0.1))
+        shown = course(log, "left", WINDOW_S, 1 / (FPS * SLOWER))
+        with progress("drawing", len(shown.t_s)) as advance:
+            for picture in pictures(shown, SLOWER):
+                movie.add(picture)
+                advance(movie.pictures)
+    result = {**outcome.as_dict(), "log": str(path), "film": str(options.out)}
+    answer(options, result, f"{describe(outcome)}\nlog {path}\nfilm {options.out}")
+    return 0 if outcome.reversed else 1

@@ -1,0 +1,308 @@
+"""The experiments on simulated cars and trains: what their numbers mean, on made-up motions; and short runs of the real ones."""
+
+import importlib
+import json
+import operator
+import os
+import time
+from math import pi
+from multiprocessing import active_children
+
+import numpy as np
+import pytest
+
+from host import bodies as shared
+from host.claims import Claim
+from host.errors import NotDone, WrongUse
+from host.experiments import car_route, car_slope, processes, reproduce, train_fault, train_kick, train_start, train_wall, train_wiggle
+from host.experiments.bodies import Ran, edge_m, made, pushed_off
+from host.experiments.experiment import Setting
+from host.experiments.run import perform
+from host.experiments.table import BODIES, TABLE
+from sim_motor.bodies.measures import Course
+from sim_motor.bodies.presets import preset
+
+SHORT = {"seconds": 3.0, "seeds": 2, "trials": 1, "preset": "paper"}
+
+
+def setting(name, seed=1, **options):
+    return Setting(seed, {option.name: options.get(option.name, SHORT[option.name]) for option in TABLE[name].options})
+
+
+def module(name):
+    return importlib.import_module("host.experiments." + name.replace("-", "_"))
+
+
+def plain(data):
+    return json.loads(json.dumps(data, allow_nan=False))
+
+
+# All eight.
+
+
+@pytest.fixture(autouse=True)
+def _two_cores(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {0, 1})
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_cells_are_plain_data_and_no_two_are_the_same(name):
+    cells = module(name).cells(setting(name).options, batch=True)
+    assert plain(cells) == cells
+    assert len({json.dumps(cell, sort_keys=True) for cell in cells}) == len(cells)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_a_short_run_ends_in_numbers_and_a_figure(name, monkeypatch):
+    """One cell of each kind of row is run, and stands for all others."""
+    monkeypatch.setattr(train_kick, "START_S", 0.5)
+    monkeypatch.setattr(train_kick, "WATCH_S", 0.5)
+    experiment, chosen = module(name), setting(name)
+    cells = experiment.cells(chosen.options, batch=True)
+    fields = dict.fromkeys(tuple(sorted(cell)) + (cell.get("part"),) for cell in cells)
+    shown = getattr(experiment, "SHOWN", ())
+    rows = []
+    for kind in fields:
+        of_kind = [cell for cell in cells if (*sorted(cell), cell.get("part")) == kind]
+        first = next((cell for cell in of_kind if {key: cell.get(key) for key in (shown[0] if shown else ())} in shown), of_kind[0])
+        made_rows = experiment.simulate(first, chosen)
+        assert plain(made_rows) == made_rows
+        rows += [{**cell, **row} for cell in of_kind for row in made_rows]
+    findings = experiment.report(rows, chosen)
+    assert [claim.id for claim in findings.claims] == list(TABLE[name].claims)
+    assert plain(findings.numbers) == findings.numbers
+    figure = importlib.import_module("host.figures." + name.replace("-", "_")).draw(rows, findings)
+    figure.canvas.draw()
+    assert all(axes.has_data() for axes in figure.axes)
+
+
+def test_the_same_seed_is_the_same_train_bit_for_bit():
+    cell = {"preset": "paper", "number": 3}
+    first = train_start.simulate(cell, setting("train-start"))
+    assert train_start.simulate(cell, setting("train-start")) == first
+    assert train_start.simulate(cell, setting("train-start", seed=2)) != first
+
+
+@pytest.mark.parametrize("name", ["car-slope", "train-kick"])
+def test_a_robot_is_refused_in_words_before_anything_runs(name, tmp_path):
+    with pytest.raises(WrongUse, match="simulated cars"):
+        perform(name, "tcp://127.0.0.1:1", out=tmp_path)
+    assert list(tmp_path.glob("*-*")) == []
+
+
+def test_without_mujoco_its_extra_is_named_and_the_claims_are_skipped(tmp_path, monkeypatch):
+    monkeypatch.setattr(shared.importlib.util, "find_spec", lambda module: None)
+    with pytest.raises(WrongUse) as refused:
+        perform("train-start", out=tmp_path)
+    assert "kickctl[bodies]" in refused.value.hint
+
+
+def test_the_claims_come_after_those_of_robot_and_model():
+    known = reproduce.known()
+    assert known[-3:] == ["B1", "B2", "B3"]
+    assert known[0] == "R1"
+
+
+@pytest.mark.parametrize(("uri", "library", "reason"), [("tcp://robot:5425", True, "by name"), ("sim://", False, "kickctl[bodies]")])
+def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(monkeypatch, tmp_path, uri, library, reason):
+    def perform(name, *_, **__):
+        assert name not in BODIES
+        claims = [Claim(number, "", "", 1.0, "1", None, holds=True).as_dict() for number in known if number in entry(name).claims]
+        return {"claims": claims, "seed": 1, "version": ""}
+
+    def entry(name):
+        return {**TABLE, **reproduce.STUDIES}[name]
+
+    known = reproduce.known()
+    monkeypatch.setattr(reproduce, "find_spec", lambda module: library or None)
+    monkeypatch.setattr(reproduce, "perform", perform)
+    monkeypatch.setattr(reproduce, "study", perform)
+    monkeypatch.setattr(reproduce.report, "write", lambda path, *_: path)
+    done = reproduce.reproduce(uri, out=tmp_path)
+    assert all(reason in done.skipped[number] for number in ("B1", "B2", "B3"))
+
+
+# Processes.
+
+
+def test_cells_side_by_side_come_to_the_same_as_one_by_one():
+    found = dict(processes.side_by_side(operator.call, [abs, float, str], -3))
+    assert found == {abs: 3, float: -3.0, str: "-3"}
+    assert dict(processes.side_by_side(operator.call, [abs], -3)) == {abs: 3}
+
+
+def test_work_that_is_broken_off_leaves_no_process_behind():
+    """What sleeps for an hour is not waited for."""
+    work = processes.side_by_side(operator.call, [float, time.sleep], 3600.0)
+    assert next(work) == (float, 3600.0)
+    left = active_children()
+    work.close()
+    for process in left:
+        process.join(30)
+    assert [process.is_alive() for process in left] == [False] * 2
+
+
+def test_a_process_that_dies_is_told_in_words():
+    with pytest.raises(NotDone, match="ended from outside"):
+        list(processes.side_by_side(operator.call, [os._exit, float], 3))
+
+
+def test_an_error_in_a_cell_is_that_error_here():
+    with pytest.raises(ZeroDivisionError):
+        list(processes.side_by_side(operator.truediv, [1, 2], 0))
+
+
+# What is measured.
+
+
+def ran(omega, x=0.0, y=0.0, dt_s=0.005):
+    """A run whose wheels turned at omega (times, wheels), and whose middle was at x, y."""
+    omega = np.asarray(omega, dtype=float)
+    t = np.arange(len(omega)) * dt_s
+    centre = np.stack([np.broadcast_to(x, t.shape), np.broadcast_to(y, t.shape), np.zeros_like(t)], axis=1)
+    return Ran(Course(t, omega, centre, np.zeros_like(t)), np.zeros((len(t), 8)), centre, None)
+
+
+def shuttling(reversals, leg=600, wheels=10):
+    ways = np.repeat((-1.0) ** np.arange(reversals + 1), leg)
+    return np.repeat(40.0 * ways[:, None], wheels, axis=1)
+
+
+def test_a_train_that_shuttles_is_told_from_one_that_is_stuck():
+    omega = shuttling(3)
+    away = np.cumsum(omega[:, 0]) * 0.005 * 0.04
+    row = train_wall.told(ran(omega, x=away))
+    assert row["reversals_s"] == pytest.approx([3.0, 6.0, 9.0], abs=0.01)
+    assert (row["whole"], row["ended"]) == (3, train_wall.RUNS)
+    still = train_wall.told(ran(np.full((2400, 10), 40.0), x=3.8))  # its wheels slip at the wall
+    assert (still["reversals_s"], still["ended"]) == ([], train_wall.STUCK)
+
+
+def test_a_reversal_of_some_wheels_is_not_one_of_the_whole_train():
+    omega = shuttling(1)
+    omega[600:, :2] *= -1
+    row = train_wall.told(ran(omega, x=np.linspace(0, 5, 1200)))
+    assert (len(row["reversals_s"]), row["whole"]) == (1, 0)
+
+
+def wall_rows(counts, ended=train_wall.STUCK):
+    """Runs with so many reversals, by (preset, drag, bouncy)."""
+    rows = []
+    for train in train_wall.TRAINS:
+        for bouncy in (False, True):
+            own = {**train, "bouncy": bouncy, "number": 0, "whole": counts[train["preset"]], "aside_m": 0.0}
+            times = [float(time) for time in range(9)]  # not all of them of the whole train
+            rows += [{**own, "controller": True, "reversals_s": times, "ended": train_wall.RUNS}]
+            rows += [{**own, "controller": False, "reversals_s": [], "ended": ended}]
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("paper", "snake", "ended", "holds"),
+    [
+        (5, 5, train_wall.STUCK, True),
+        (9, 4, train_wall.STUCK, False),
+        (4, 9, train_wall.STUCK, False),
+        (9, 9, train_wall.RUNS, False),
+    ],
+)
+def test_b3_wants_five_reversals_of_both_presets_and_none_without_neurons(paper, snake, ended, holds):
+    rows = wall_rows({"paper": paper, "snake2019": snake}, ended)
+    (claim,) = train_wall.report(rows, setting("train-wall")).claims
+    assert claim.holds is holds
+    assert claim.measured == min(paper, snake)
+
+
+def start_rows(orders, ways):
+    return [
+        {"preset": name, "number": number, "t_s": t_s, "order": order if t_s else 0.2, "omega_rad_s": 40.0 * way}
+        for name in ("paper", "snake2019")
+        for number, (order, way) in enumerate(zip(orders, ways, strict=True))
+        for t_s in (0.0, 5.0, 5.5)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("orders", "ways", "holds"), [((1.0, 1.0), (1, -1), True), ((1.0, 0.9), (1, -1), False), ((1.0, 1.0), (1, 1), False)]
+)
+def test_b2_wants_all_trains_ordered_and_both_directions(orders, ways, holds):
+    findings = train_start.report(start_rows(orders, ways), setting("train-start"))
+    assert findings.claims[0].holds is holds
+    assert findings.numbers["paper"]["ordered_s_latest"] == 5.0
+
+
+@pytest.mark.parametrize(
+    ("inside", "flipped", "seconds", "last_s", "holds"),
+    [
+        (True, False, 600.0, 600.0, True),
+        (False, False, 600.0, 600.0, False),
+        (True, True, 600.0, 600.0, False),
+        (True, False, 599.0, 599.0, False),
+        (True, False, 600.0, 300.0, False),
+    ],
+)
+def test_b1_wants_ten_minutes_inside_on_the_wheels_and_on_the_way(inside, flipped, seconds, last_s, holds):
+    fixed = {"reach_m": 5.0, "lean_rad": 0.3, "reversals": 9, "path_m": 1.0, "travelled": 1.0, "last_s": last_s, "spun": 0.0, "squares": 9}
+    rows = [{"angle": angle, "number": 0, "inside": inside, "flipped": flipped, **fixed} for angle in car_slope.ANGLES]
+    (claim,) = car_slope.report(rows, setting("car-slope", seconds=seconds)).claims
+    assert claim.holds is holds
+
+
+def test_slopes_end_where_they_are_drawn_to():
+    body = made(preset("paper"), "slopes", 1, seed=1, angle=0.3)
+    assert edge_m(body) == pytest.approx(4.0 + 3.0 * np.cos(0.3), abs=1e-3)
+
+
+def test_a_wave_that_travels_has_its_frequency_its_lag_and_its_amplitudes():
+    t = np.arange(6000) * 0.005
+    waves = np.stack([amplitude * np.cos(2 * pi * 3.8 * t - joint * 2.2) for joint, amplitude in enumerate((5, 10, 15, 20))], axis=1)
+    rows = train_wiggle.wiggling(waves, 0.005)
+    assert [row["std_deg"] for row in rows] == pytest.approx(np.array((5, 10, 15, 20)) / np.sqrt(2), rel=0.01)
+    assert [row["lag_deg"] for row in rows[1:]] == pytest.approx([-np.degrees(2.2)] * 3, abs=1.0)
+    assert rows[0]["lag_deg"] is None
+    assert [row["hz"] for row in rows] == pytest.approx([3.8] * 4, abs=0.05)
+    assert train_wiggle.wiggling(0.001 * waves, 0.005)[-1]["hz"] is None
+
+
+def turning(*speeds):
+    return np.repeat(np.array([speeds], dtype=float), 1000, axis=0)
+
+
+def test_a_cars_motion_has_one_name():
+    t = np.arange(1000) * 0.005
+    swing = np.stack([5 * np.cos(3 * t), 0 * t], axis=1)
+    found = [car_route.kind_of(omega, 0.005) for omega in (turning(0, 0), swing, turning(9, -9), turning(9, 8), turning(-9, -8))]
+    assert found == [car_route.REST, car_route.SWING, car_route.SPIN, car_route.ROLL, car_route.ROLL]
+
+
+def test_the_formula_gives_the_speed_of_the_car_of_2019_and_none_below_its_onset():
+    assert car_route.rolling_rad_s(preset("snake2019"), 2.0) == pytest.approx(98.0, abs=0.1)
+    assert car_route.rolling_rad_s(preset("snake2019"), 0.07) is None
+
+
+@pytest.mark.parametrize(
+    ("after", "outcome"),
+    [(-40.0, train_kick.REVERSED), (40.0, train_kick.ON), (1.0, train_kick.STOPS), (np.array([40.0] * 5 + [-40.0] * 5), train_kick.MIXED)],
+)
+def test_a_kicks_outcome_is_told_by_all_wheels(after, outcome):
+    assert train_kick.outcome_of(np.full(10, 50.0), np.broadcast_to(after, (10,))) == outcome
+
+
+def test_a_kick_takes_the_wheels_it_names_only():
+    body = pushed_off(preset("paper"), seed=1)
+    body.run(0.2)
+    before = body.neurons.x1.copy()
+    body.kick(train_kick.kick_of({"mode": "membrane"}, ["car1_left"], body))
+    body.run(0.001)
+    signs = np.sign(body.neurons.x1 * before)
+    assert signs.tolist() == [1, 1, -1, *[1] * 7]
+
+
+def test_a_wheel_is_as_large_and_as_weak_as_the_fault_has_it():
+    radii = np.linspace(0.95, 1.05, 10)
+    body = pushed_off(preset("paper"), seed=1, prepare=train_fault.sized(radii))
+    sizes = [body.model.geom(name + "_wheel").size[0] for name in body.wheels]
+    assert sizes == pytest.approx(0.03 * radii)
+    dead = train_fault.simulate({"part": "weaker", "wheel": train_fault.WEAK, "percent": -100, "number": 1}, setting("train-fault"))
+    whole = train_fault.simulate({"part": "weaker", "wheel": train_fault.WEAK, "percent": 0, "number": 1}, setting("train-fault"))
+    assert dead[0]["speed_m_s"] < whole[0]["speed_m_s"]
