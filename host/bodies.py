@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import isfinite
@@ -50,8 +50,16 @@ class Asked(NamedTuple):
 
 def need(module: str, extra: str) -> None:
     """Raise WrongUse if a library of an extra is not installed."""
-    if importlib.util.find_spec(module) is None:
-        raise WrongUse(f"this needs {module}, which is not installed", f"install it with the extra: pip install 'kickctl[{extra}]'")
+    try:
+        importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        raise WrongUse(
+            f"this needs {module}, which is not installed", f"install it with the extra: pip install 'kickctl[{extra}]'"
+        ) from error
+    except (RuntimeError, AttributeError, ImportError, OSError) as error:  # as mujoco does with a MUJOCO_GL that it cannot use
+        raise NotDone(
+            f"{module} cannot be loaded: {error}", "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa"
+        ) from error
 
 
 def preset_of(asked: Asked) -> Preset:

@@ -65,7 +65,7 @@ class _Mp4:
     """H.264, as every player and browser shows it. A signal from the keyboard is for this program, not for ffmpeg."""
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
-        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
+        from imageio_ffmpeg import get_ffmpeg_exe
 
         self._path = path
         source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", "{}x{}".format(*size), "-r", f"{fps:g}", "-i", "pipe:"]

@@ -78,10 +78,10 @@ def _run(options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: 
 
     info = {**asked, "kicks": options.kick, "time_s": options.time, "commit": commit()}
     folder = options.out / f"body-{digest(info)}"
-    folder.mkdir(parents=True, exist_ok=True)
-    try:
-        with ExitStack() as stack:
-            watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
+    with ExitStack() as stack:
+        watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
             advance = stack.enter_context(progress(f"{options.body}, simulated seconds", options.time))
 
             def watch(time_s: float) -> None:
@@ -90,10 +90,10 @@ def _run(options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: 
                     watcher(body.data)
 
             let_run(body, options.time, pushes, watch)
-    except (KickctlError, KeyboardInterrupt):
-        _write(folder, info, body, pushes)
-        say(f"the first {body.time_s:g} s are kept in {folder}")
-        raise
+        except (KickctlError, KeyboardInterrupt):
+            _write(folder, info, body, pushes)
+            say(f"the first {body.time_s:g} s are kept in {folder}")
+            raise
     return _write(folder, info, body, pushes)
 
 

@@ -59,21 +59,19 @@ def made(
     cars: int = CARS_OF_A_TRAIN,
     *,
     seed: int,
-    k: float | None = None,
     phases: Array | None = None,
     torque: float | None = None,
     angle: float | None = None,
     bouncy: bool = False,
     prepare: Callable[[mujoco.MjSpec], None] = lambda spec: None,
 ) -> Body:
-    """A body as `compose` and `Body` have it. k: by default the preset's. prepare: what else is done to it before it is compiled."""
+    """A body as `compose` and `Body` have it. prepare: what else is done to it before it is compiled."""
     from sim_motor.bodies.body import Body
     from sim_motor.bodies.model import compose
 
     spec = compose(preset, scene, cars, seed=seed, angle=angle, bouncy=bouncy)
     prepare(spec)
-    own = preset if k is None else preset._replace(k=k)
-    return Body(spec.compile(), own, seed=seed, phases=phases, torque=torque)
+    return Body(spec.compile(), preset, seed=seed, phases=phases, torque=torque)
 
 
 def pushed_off(preset: Preset, scene: str = "flat", *, seed: int, bent: float = BENT, **others: Any) -> Body:

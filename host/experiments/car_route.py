@@ -31,8 +31,8 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
 
 
 def car(cell: Cell) -> Preset:
-    """The paper's, with the cell's neurons."""
-    return preset("paper")._replace(a=cell["a"], tau=cell["tau"])
+    """The paper's, with the cell's neurons and k."""
+    return preset("paper")._replace(**cell)
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
@@ -40,7 +40,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     rows: list[Row] = []
     for number in range(setting.options["seeds"]):
         phases = np.full(2, PUSHED) if number == 0 else None
-        body = made(car(cell), cars=1, seed=setting.seed_of({"number": number}), k=cell["k"], phases=phases)
+        body = made(car(cell), cars=1, seed=setting.seed_of({"number": number}), phases=phases)
         did = ran(body, setting.options["seconds"])
         late = did.last(LATE_S)
         lost = did.broke_s is not None or float(did.moved.lean_rad.max()) > 1.0
@@ -58,10 +58,10 @@ def kind_of(omega: NDArray[np.float64], dt_s: float) -> str:
     return SWING if (np.ptp(angles, axis=0) > SWING_RAD).any() else REST
 
 
-def rolling_rad_s(own: Preset, k: float) -> float | None:
+def rolling_rad_s(own: Preset) -> float | None:
     """The formula's speed; None where there is none. A wheel bears half of the body's drag."""
     drag = own.body_drag * own.wheel_radius**2 / 2 + own.wheel_drag * own.wheel_radius
-    surplus = own.a * k * own.wheel_radius * own.tau / (4 * drag) - 1.0
+    surplus = own.a * own.k * own.wheel_radius * own.tau / (4 * drag) - 1.0
     return sqrt(surplus) / own.tau if surplus > 0.0 else None
 
 
@@ -71,7 +71,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     for cell in cells(setting.options, batch=True):
         own = [row for row in rows if all(row[name] == value for name, value in cell.items())]
         speeds = [row["omega_rad_s"] for row in own if row["kind"] == ROLL]
-        formula = rolling_rad_s(car(cell), cell["k"])
+        formula = rolling_rad_s(car(cell))
         routes.append({**cell, "kinds": dict(Counter(row["kind"] for row in own)), "rolling_rad_s": speeds, "formula_rad_s": formula})
     return Findings([], {"route": routes, "largest_deviation": _deviation(routes)})
 

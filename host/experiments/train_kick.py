@@ -21,12 +21,12 @@ from sim_motor.bodies.presets import preset
 if TYPE_CHECKING:
     from sim_motor.bodies.body import Body
 
-WHEELS = (2, 4, 6, 7, 8, 9, 10)
-LENGTHS_S = (0.03, 0.1, 0.3, 0.6, 0.8, 0.9, 1.0, 1.2, 1.6, 2.4)
+WHEELS = (4, 6, 7, 8, 9, 10)
+LENGTHS_S = (0.1, 0.5, 1.0, 1.25, 1.5, 2.0, 2.5)
 # A train is let run for so long (s) before the first kick; then for up to a little longer, and after the kick.
-START_S, CHANCE_S, WATCH_S = 5.0, 0.3, 4.0
-# A train whose wheels turn more slowly than this part of the speed before the kick is stopped.
-STOPPED = 0.2
+START_S, CHANCE_S, WATCH_S = 5.0, 0.3, 5.0
+# A train whose wheels turn more slowly than the first part of the speed before the kick is stopped; a kick has braked it at the second.
+STOPPED, BRAKED = 0.2, 0.25
 REVERSED, STOPS, ON, MIXED = "reversed", "stopped", "goes on", "wheels disagree"
 
 

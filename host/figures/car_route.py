@@ -45,7 +45,7 @@ def _draw_shares(axes: Axes, route: list[dict[str, Any]]) -> None:
 
 def _draw_speeds(axes: Axes, route: list[dict[str, Any]], a: float, tau: float) -> None:
     ks = np.geomspace(KS[0], KS[-1], 400)
-    speeds = [rolling_rad_s(car({"a": a, "tau": tau}), float(k)) for k in ks]
+    speeds = [rolling_rad_s(car({"a": a, "tau": tau, "k": float(k)})) for k in ks]
     axes.plot(ks, [np.nan if speed is None else speed for speed in speeds], color="black", label=r"formula for $\omega^*$")
     measured = [(one["k"], speed) for one in route for speed in one["rolling_rad_s"]]
     axes.plot([k for k, _ in measured], [speed for _, speed in measured], "o", color=COLOURS[0], label=r"$|\omega|$ of cars that roll")

@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from host.experiments.experiment import Findings, Row
-from host.experiments.train_kick import LENGTHS_S, REVERSED, STOPS, WHEELS
+from host.experiments.train_kick import BRAKED, LENGTHS_S, MIXED, ON, REVERSED, STOPS, WHEELS
 from host.figures.style import COLOURS, SIZE, styled
 from robot.kicks import MEMBRANE, POSITION
+
+_COLOURS = {REVERSED: COLOURS[0], ON: COLOURS[5], STOPS: "#999999", MIXED: COLOURS[4]}
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -19,14 +22,15 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     kicks = {(kick["mode"], kick["wheels"], kick["seconds"]): kick for kick in findings.numbers["kicks"]}
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 9.0)})
-        (reversed_, stopped), (shares, speeds) = figure.subplots(2, 2)
+        (reversed_, stopped), (braked, speeds) = figure.subplots(2, 2)
         _draw_map(reversed_, kicks, REVERSED, "reversed (%)")
         _draw_map(stopped, kicks, STOPS, "stopped for good (%)")
-        _draw_shares(shares, kicks)
+        _draw_braked(braked, rows)
         _draw_speeds(speeds, rows)
-        trials = findings.numbers["kicks"][0]["trials"]
+        inverted = [kick for (mode, _, _), kick in kicks.items() if mode == MEMBRANE]
+        words = f"{sum(kick['reversed'] for kick in inverted)} of {sum(kick['trials'] for kick in inverted)}"
         figure.suptitle(
-            f"Kicking some of a running train's ten wheels ({findings.numbers['preset']}; {trials} trials of each kick)", fontsize=15
+            f"Kicking some of a running train's wheels ({findings.numbers['preset']}); membrane inversion reversed {words}", fontsize=14
         )
     return figure
 
@@ -46,27 +50,33 @@ def _percent(kick: dict[str, Any], outcome: str) -> float:
     return float(100 * kick["outcomes"].get(outcome, 0) / kick["trials"])
 
 
-def _draw_shares(axes: Axes, kicks: dict[Any, dict[str, Any]]) -> None:
-    """Each number of wheels with the length that is best for it."""
-    best = [max((kicks[POSITION, wheels, seconds] for seconds in LENGTHS_S), key=lambda kick: int(kick["reversed"])) for wheels in WHEELS]
-    inverted = [kicks[MEMBRANE, wheels, None] for wheels in WHEELS]
-    for number, (own, name) in enumerate(((best, "position, its best length"), (inverted, "membrane"))):
-        share = np.array([kick["reversed"] / kick["trials"] for kick in own])
-        low, high = np.array([kick["interval"] for kick in own]).T
-        style: dict[str, Any] = {"color": COLOURS[number], "marker": "os"[number], "capsize": 4, "label": name}
-        axes.errorbar(np.array(WHEELS) + 0.12 * number, 100 * share, 100 * np.abs([share - low, high - share]), **style)
-    axes.set(xlabel="wheels kicked", ylabel="reversed (%)", ylim=(-3, 103), xticks=range(0, 11, 2))
-    axes.legend(fontsize=11, loc="upper left")
+def _draw_braked(axes: Axes, rows: list[Row]) -> None:
+    """What becomes of a train that a position inversion has braked, whatever its length, by the number of wheels."""
+    braked = [row for row in rows if row["mode"] == POSITION and abs(row["end_rad_s"]) < BRAKED * abs(row["before_rad_s"])]
+    counts = [[sum((row["wheels"], row["outcome"]) == (wheels, outcome) for row in braked) for outcome in _COLOURS] for wheels in WHEELS]
+    below = np.zeros(len(WHEELS))
+    for share, (outcome, colour) in zip(_shares(counts).T, _COLOURS.items(), strict=True):
+        axes.bar(WHEELS, share, bottom=below, color=colour, label=outcome)
+        below += share
+    for wheels, own in zip(WHEELS, counts, strict=True):
+        axes.text(wheels, 101, f"{sum(own)}", ha="center", fontsize=11)
+    axes.set(xlabel="wheels kicked", ylabel="of the trials that it brakes (%)", xticks=WHEELS, ylim=(0, 112))
+    axes.set_title(f"braked below {BRAKED:.0%} of its speed: then", fontsize=13)
+
+
+def _shares(counts: list[list[int]]) -> NDArray[np.float64]:
+    table = np.array(counts, dtype=float)
+    return 100 * table / np.maximum(table.sum(axis=1, keepdims=True), 1)
 
 
 def _draw_speeds(axes: Axes, rows: list[Row]) -> None:
-    """How fast the train still is when a kick ends, of what it was, and what became of it."""
+    """How fast the train still is when a kick ends, and what became of it."""
     own = [row for row in rows if row["mode"] == POSITION]
-    for number, outcome in enumerate(dict.fromkeys(row["outcome"] for row in own)):
+    for outcome, colour in _COLOURS.items():
         found = [row for row in own if row["outcome"] == outcome]
         ends = [row["end_rad_s"] * np.sign(row["before_rad_s"]) for row in found]
         places = [row["seconds"] * (2 * row["wheels"] - 10) / 10 for row in found]
-        axes.plot(places, ends, "os^D"[number], color=COLOURS[number], label=outcome, markersize=5, alpha=0.7)
+        axes.plot(places, ends, "o", color=colour, label=outcome, markersize=5, alpha=0.8)
     axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
-    axes.set(xlabel="length (s) times share of kicked less that of other wheels", ylabel=r"mean $\omega$ when the kick ends (rad/s)")
+    axes.set(xlabel=r"length $\times$ (2 kicked $-$ 10)/10 (s)", ylabel=r"mean $\omega$ when the kick ends (rad/s)")
     axes.legend(fontsize=11)

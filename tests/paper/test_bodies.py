@@ -276,8 +276,8 @@ def test_a_cars_motion_has_one_name():
 
 
 def test_the_formula_gives_the_speed_of_the_car_of_2019_and_none_below_its_onset():
-    assert car_route.rolling_rad_s(preset("snake2019"), 2.0) == pytest.approx(98.0, abs=0.1)
-    assert car_route.rolling_rad_s(preset("snake2019"), 0.07) is None
+    assert car_route.rolling_rad_s(preset("snake2019")) == pytest.approx(98.0, abs=0.1)
+    assert car_route.rolling_rad_s(preset("snake2019")._replace(k=0.07)) is None
 
 
 @pytest.mark.parametrize(
