@@ -26,6 +26,8 @@ PRESETS = ("paper", "snake2019")
 PUSHED, BENT = -pi / 3, 0.01
 # A train whose wheels' order parameter is above this goes one way.
 ORDERED = 0.9
+# Here slopes have no end; those of the authors' programs, 2 m long, end so far (m) from the middle, and what gets farther is not inside.
+EDGE_M = 6.0
 
 
 class Ran(NamedTuple):
@@ -106,16 +108,3 @@ def headed(yaw_rad: float) -> Callable[[mujoco.MjSpec], None]:
         spec.body("car0_car").quat = (cos(yaw_rad / 2), 0.0, 0.0, sin(yaw_rad / 2))
 
     return prepare
-
-
-def edge_m(body: Body) -> float:
-    """How far (m) from the middle the slopes around a body end, along x or y."""
-    model = body.model
-    slopes = [geom for geom in range(model.ngeom) if model.geom(geom).name.startswith("slope_")]
-    return float(max(np.abs(model.geom_pos[geom][:2]).max() + model.geom_size[geom][0] * _level(model, geom) for geom in slopes))
-
-
-def _level(model: mujoco.MjModel, geom: int) -> float:
-    """The cosine of a geom's tilt: the z component of its own z axis, which its quaternion (w, x, y, z) gives."""
-    _, x, y, _ = model.geom_quat[geom]
-    return float(1.0 - 2.0 * (x * x + y * y))

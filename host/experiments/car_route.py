@@ -73,10 +73,12 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         speeds = [row["omega_rad_s"] for row in own if row["kind"] == ROLL]
         formula = rolling_rad_s(car(cell))
         routes.append({**cell, "kinds": dict(Counter(row["kind"] for row in own)), "rolling_rad_s": speeds, "formula_rad_s": formula})
-    return Findings([], {"route": routes, "largest_deviation": _deviation(routes)})
+    return Findings([], {"route": routes, "largest_deviation_from_formula": _deviation(routes)})
 
 
 def _deviation(routes: list[dict[str, Any]]) -> float | None:
-    """Of the rolling speed from the formula's, where that is well above its onset (twice)."""
-    known = [(route["formula_rad_s"], route["rolling_rad_s"]) for route in routes if (route["formula_rad_s"] or 0.0) * route["tau"] > 1.0]
+    """Of the rolling speed from the formula's, at k of more than 8 times its onset; nearer to it the potentials are not small."""
+    known = [
+        (route["formula_rad_s"], route["rolling_rad_s"]) for route in routes if (route["formula_rad_s"] or 0.0) * route["tau"] > sqrt(7.0)
+    ]
     return max((abs(speed / formula - 1.0) for formula, speeds in known for speed in speeds), default=None)

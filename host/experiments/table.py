@@ -43,7 +43,7 @@ BODIES = {
     "train-kick": Entry(
         "how many wheels of a running train must be kicked, and for how long, to reverse all of it",
         (
-            Option("trials", 6, 1, 10000, "tries of each kick"),
+            Option("trials", 4, 1, 10000, "tries of each kick"),
             Option("preset", "paper", 0, 0, "which train", ("paper", "snake2019")),
         ),
     ),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sim_motor.bodies.body import Body
 
 WHEELS = (4, 6, 7, 8, 9, 10)
-LENGTHS_S = (0.1, 0.5, 1.0, 1.25, 1.5, 2.0, 2.5)
+LENGTHS_S = (0.1, 0.5, 1.0, 1.25, 1.5, 2.0, 2.5, 3.5)
 # A train is let run for so long (s) before the first kick; then for up to a little longer, and after the kick.
 START_S, CHANCE_S, WATCH_S = 5.0, 0.3, 5.0
 # A train whose wheels turn more slowly than the first part of the speed before the kick is stopped; a kick has braked it at the second.

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from host.experiments.bodies import ORDERED, edge_m, headed, made, ran
+from host.experiments.bodies import EDGE_M, ORDERED, headed, made, ran
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
 from sim_motor.bodies.measures import FALLEN_RAD, reversals_s, started_s
 from sim_motor.bodies.presets import preset
@@ -45,7 +45,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
             "reversals": len(reversals_s(moved)),
             "coherent": None if started is None else float((did.order[moved.t_s >= started] > ORDERED).mean()),
             "reach_m": reach,
-            "inside": reach < edge_m(body) and did.broke_s is None,
+            "inside": reach < EDGE_M and did.broke_s is None,
             "flipped": bool((moved.lean_rad > FALLEN_RAD).any()),
         }
     ]

@@ -36,7 +36,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             ["-100", "-75", "-50", "-25", "0", "1", "2", "4", "5", f"±{SIZES:g} %"],
             fontsize=11,
         )
-        lines[2].set_xlabel(f"$k$ of {WEAK.replace('_', ', ')} (%)  |  dead: left of car  | radii", fontsize=12)
+        lines[2].set_xlabel("$k$ of the left wheel of car 3 (%)  |  dead: left of car  |  radii", fontsize=12)
         _draw_ways(figure.add_subplot(grid[:, 1]), rows)
         figure.suptitle("A train with a weak or dead wheel, or wheels of different size", fontsize=16)
     return figure

@@ -66,7 +66,7 @@ def _draw_braked(axes: Axes, rows: list[Row]) -> None:
 
 def _shares(counts: list[list[int]]) -> NDArray[np.float64]:
     table = np.array(counts, dtype=float)
-    return 100 * table / np.maximum(table.sum(axis=1, keepdims=True), 1)
+    return np.asarray(100 * table / np.maximum(table.sum(axis=1, keepdims=True), 1))
 
 
 def _draw_speeds(axes: Axes, rows: list[Row]) -> None:

@@ -27,7 +27,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         maps[1].set_yticklabels([])
         for axes, shown in zip(ways, SHOWN, strict=True):
             _draw_way(axes, [row for row in rows if "t_s" in row and all(row[name] == value for name, value in shown.items())], shown)
-        figure.suptitle(f"A train between four slopes, {kinds[0]['runs']} runs each (left: over the top, 3 m up the slope)", fontsize=15)
+        figure.suptitle(f"A train between four slopes, {kinds[0]['runs']} runs each (left: farther than 2 m up a slope)", fontsize=15)
     return figure
 
 

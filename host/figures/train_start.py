@@ -29,7 +29,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             order.set(ylim=(-0.03, 1.04), ylabel="order parameter")
             order.set_title(f"{name}: {told['ordered']} of {told['trains']} above 0.9", loc="left", fontsize=13)
             speed.axhline(0, color="lightgrey", linewidth=1, zorder=0)
-            speed.set_ylabel(r"mean $\omega$ of the wheels (rad/s)")
+            speed.set_ylabel(r"mean $\omega$ (rad/s)")
             speed.set_title(f"{told['forward']} forward, {told['backward']} backward", loc="left", fontsize=13)
         for axes in lines[-1]:
             axes.set_xlabel("time (s)")
