@@ -170,7 +170,9 @@ class Brick:
         wait_until(lambda: self.pid() is None)
 
     def log(self):
-        return (self.kickctl / "robot.log").read_text(encoding="utf-8")
+        log = self.kickctl / "robot.log"
+        # Between two releases there is none for a moment.
+        return log.read_text(encoding="utf-8") if log.exists() else ""
 
     def uri(self):
         """The robot's address through the tunnel."""
