@@ -47,6 +47,10 @@ BODIES = {
             Option("preset", "paper", 0, 0, "which train", ("paper", "snake2019")),
         ),
     ),
+    "train-goal": Entry(
+        "drive a train to goals by kicks that it has learned, beside random kicks and none",
+        (Option("goals", 10, 1, 1000, "goals, each from a start of its own"),),
+    ),
     "train-fault": Entry(
         "a train with one wheel weaker or dead, or with wheels of different size: order, speed, turning",
         (

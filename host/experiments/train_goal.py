@@ -1,7 +1,8 @@
 """Whether kicks can drive a train that nobody steers to a goal (beyond the paper): planned ones, beside random ones and none.
 
 The goal is 3 m from the train's middle, anywhere around it, and reached if the middle comes within 0.2 m of it, a quarter of the
-train's length. The train of 2019 is taken: the paper's lighter one, whose springs are as stiff, turns on a circle of many metres at best.
+train's length. The train of 2019 is taken: the same kicks turn the paper's, which has weaker wheels and springs as stiff,
+on a circle of 10 m instead of 2 m.
 """
 
 from __future__ import annotations

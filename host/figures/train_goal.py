@@ -14,14 +14,14 @@ from host.experiments.train_goal import LIMIT_S, PLANNED, RANDOM, REACHED_M, WAY
 from host.figures.style import COLOURS, SIZE, styled
 from host.steering import KICK_S, LEFT, LOOK_S, RIGHT
 
-_LOOKS = {
+_LOOKS: dict[str, dict[str, Any]] = {
     way: {"color": colour, "linestyle": dash}
     for way, colour, dash in zip(WAYS, (COLOURS[0], COLOURS[3], COLOURS[6]), ("-", "--", ":"), strict=True)
 }
 _MARKS = {LEFT: ("^", COLOURS[2], "kick to the left"), RIGHT: ("v", COLOURS[1], "kick to the right")}
 _GOAL: Any = {"facecolor": COLOURS[4], "edgecolor": "black"}
-# Which goals are shown, the first ones, and how far (m) around the start.
-_ACROSS, _DOWN, _SEEN_M = 3, 2, 6.3
+# Which goals are shown, the first ones, and how far (m) along and across the start.
+_ACROSS, _DOWN, _SEEN_M = 3, 2, (6.2, 7.4)
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -30,14 +30,15 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     shown = _ACROSS * _DOWN
     with styled():
         figure = Figure(**SIZE)
-        left, right = figure.subfigures(1, 2, width_ratios=(1.7, 1.0))
+        halves: Any = figure.subfigures(1, 2, width_ratios=(1.6, 1.0))
+        left, right = halves
         panels = left.subplots(_DOWN, _ACROSS, sharex=True, sharey=True)
         for axes, planned, by_chance in zip(panels.flat, by_way[PLANNED][:shown], by_way[RANDOM][:shown], strict=False):
             _draw_paths(axes, planned, by_chance)
         for axes in panels.flat[len(by_way[PLANNED]) :]:
             axes.set_axis_off()
-        left.supxlabel("ahead of the train at first (m)")
-        left.supylabel("to its left (m)")
+        left.supxlabel("ahead of the train at first (m)", fontsize=13)
+        left.supylabel("to its left (m)", fontsize=13)
         axes = right.subplots()
         for way, own in by_way.items():
             _draw_share(axes, own, way)
@@ -55,10 +56,11 @@ def _draw_paths(axes: Any, planned: Row, by_chance: Row) -> None:
     course, every = _course(planned), round(KICK_S / LOOK_S)
     for choice, (marker, colour, _) in _MARKS.items():
         at = [number * every for number, chosen in enumerate(planned["choices"]) if chosen == choice and number * every < len(course)]
-        axes.plot(*course[at, :2].T, marker=marker, markersize=5, color=colour, linestyle="none", zorder=3)
-    axes.plot(0, 0, marker=">", markersize=9, color="black", zorder=4)
+        axes.plot(*course[at, :2].T, marker=marker, markersize=4.5, color=colour, linestyle="none", zorder=3)
+    axes.plot(0, 0, marker=">", markersize=7, color="black", zorder=4)
     axes.add_patch(Circle(planned["goal_m"], REACHED_M, **_GOAL, zorder=4))
-    axes.set(xlim=(-_SEEN_M, _SEEN_M), ylim=(-_SEEN_M, _SEEN_M), aspect="equal")
+    for side, seen_m in zip("xy", _SEEN_M, strict=True):
+        axes.set(**{side + "lim": (-seen_m, seen_m), side + "ticks": (-5, 0, 5)}, aspect="equal")
     reached = planned["reached_s"]
     axes.set_title(f"missed, {planned['nearest_m']:.2f} m" if reached is None else f"there after {reached:.1f} s", fontsize=12)
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from host.errors import WrongUse
 from host.theory import adams, runge_kutta
@@ -17,8 +18,9 @@ from host.theory.elementary import MATHEMATICS, OPTIONS, inlined
 from host.theory.model import OMEGA, PHI, Array, Wheel, rates
 from sim_motor.compiled import prange, retold
 
-# Wheels in a block: as many as the fastest cache holds with all stages.
-LANES = 64
+# Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond the fewest takes many more steps than
+# it needs, for the sake of the others.
+LANES, FEWEST, ALIKE = 64, 16, 0.75
 # Every run of numbers from the sequence of its multiples, without their whole parts, is about as evenly spread as can be.
 _GOLDEN = 0.6180339887498949
 # Steps per unit of a wheel's rate (see `rate_per_s`): at FINE, averages of regular motion have nine digits.
@@ -30,6 +32,8 @@ _ADAMS_STEPS = 5
 MOST_STEPS = 20_000_000
 # A wheel without friction gets faster and faster; for so long its steps are short enough.
 _SPINNING_UP_S = 1000.0
+
+Whole = NDArray[np.int64]
 
 vectorised_rates = retold(rates, MATHEMATICS, inlined)
 
@@ -86,6 +90,16 @@ def rate_per_s(parameters: Array) -> Array:
     return np.asarray(np.hypot(0.9 * relaxing, 3.4 * turning))
 
 
+def _edges(needed: Array) -> Whole:
+    """Where blocks begin, and where the last ends, of wheels that need so many steps, in rising order: all take those of the last."""
+    edges = [len(needed)]
+    while edges[-1]:
+        end = edges[-1]
+        alike = int(np.searchsorted(needed[:end], ALIKE * needed[end - 1]))
+        edges.append(max(0, end - LANES, min(alike, end - FEWEST)))
+    return np.array(edges[::-1])
+
+
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
     """What to raise if so many seconds of a wheel with these constants would take so many steps."""
     words = ", ".join(f"{name} = {value:g}" for name, value in zip(("a", "tau", "k", "I", "f"), constants.tolist(), strict=False))
@@ -110,7 +124,7 @@ def _advanced(steps: Any, states: Array, parameters: Array, seconds: float, fine
     needed = np.ceil(seconds * fineness * rate[order])
     if len(order) and not needed[-1] <= MOST_STEPS:
         raise too_stiff(seconds, parameters[:, order[-1]], needed[-1])
-    edges = np.append(np.arange(0, len(order), LANES), len(order))
+    edges = _edges(needed)
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
     # Neighbours cost about the same, so a core must not get neighbours only.
     blocks = np.argsort(np.arange(len(counts)) * _GOLDEN % 1.0)

@@ -14,6 +14,7 @@ from host.experiments import kick_map
 from host.experiments.cluster import spread
 from host.experiments.experiment import Setting
 from host.experiments.run import perform
+from host.theory.run import perform as study
 
 KICKS = 36 * 30
 
@@ -36,6 +37,13 @@ def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
         assert list(csv.DictReader(table)) == [{name: str(value) for name, value in row.items()} for row in here]
     assert there["numbers"] == kick_map.report(here, setting).numbers
     assert there["numbers"]["kicks"] > 0.9 * KICKS
+
+
+def test_a_study_of_the_model_has_the_same_numbers_from_a_cluster(cluster, tmp_path):
+    there = study("hopf", out=tmp_path / "there", scheduler=cluster.scheduler_address)
+    here = study("hopf", out=tmp_path / "here")
+    assert there["numbers"] == here["numbers"]
+    assert Path(there["table"]).read_bytes() == Path(here["table"]).read_bytes()
 
 
 @pytest.fixture
