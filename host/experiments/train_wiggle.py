@@ -28,6 +28,9 @@ AUTHORS: dict[float, dict[str, Any]] = {
 # Their joints' lag, from one to the next (degrees).
 AUTHORS_LAG_DEG = (-150.0, -110.0)
 TRAINS: tuple[Cell, ...] = (*({"preset": "snake2019", "drag": drag} for drag in AUTHORS), {"preset": "paper", "drag": 0.1})
+# Between what the authors' engine holds along an axis of its box of friction, the same area as a circle, the mean of all directions, and
+# the box's corners: the late speed depends on it.
+FRICTIONS = (0.64, 0.722, 0.815, 0.905)
 BENTS = (0.0, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
 SHOWN_S, EVERY_S = 1.5, 0.01
 # A joint that yaws less (degrees) does not wiggle.
@@ -35,14 +38,16 @@ STILL_DEG = 0.1
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """Trains that begin a little bent, for the wiggling; and one more and less bent, for its highest speed."""
-    wiggling = [{"part": "wiggle", **train, "bent": BENT} for train in TRAINS]
-    return wiggling + [{"part": "bent", **TRAINS[0], "bent": bent} for bent in BENTS]
+    """Trains that begin a little bent, for the wiggling; and one with tyres that hold more and less, and more and less bent."""
+    wiggling: list[Cell] = [{"part": "wiggle", **train, "bent": BENT} for train in TRAINS]
+    held: list[Cell] = [{"part": "friction", **TRAINS[0], "bent": BENT, "friction": friction} for friction in FRICTIONS]
+    return wiggling + held + [{"part": "bent", **TRAINS[0], "bent": bent} for bent in BENTS]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """The wheels' highest and late mean speed (late: the second half), the wiggling of each joint in it, and the joints in its end."""
     own = preset(cell["preset"]).with_drag(cell["drag"])
+    own = own._replace(friction=cell.get("friction", own.friction))
     did = ran(pushed_off(own, seed=setting.seed, bent=cell["bent"]), setting.options["seconds"])
     speed, late = np.abs(did.moved.omega.mean(axis=1)), did.last(setting.options["seconds"] / 2)
     rows: list[Row] = [{"peak_rad_s": float(speed.max()), "late_rad_s": float(speed[late].mean())}]
@@ -51,6 +56,8 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     yaws = np.degrees(did.joints[:, : did.joints.shape[1] // 2])
     t, shown = did.moved.t_s, did.last(SHOWN_S)
     rows += wiggling(yaws[late], float(t[1] - t[0]))
+    if cell["part"] == "friction":
+        return rows
     series = [
         {"joint": joint + 1, "t_s": float(t[at]), "deg": float(yaws[at, joint])}
         for joint in range(4)
@@ -101,5 +108,10 @@ def report(rows: list[Row], setting: Setting) -> Findings:
                 "authors": theirs,
             }
         )
+    held = []
+    for friction in FRICTIONS:
+        own = [row for row in rows if row.get("friction") == friction]
+        (speeds,), joints = [row for row in own if "peak_rad_s" in row], [row for row in own if "std_deg" in row]
+        held.append({"friction": friction, "late_rad_s": speeds["late_rad_s"], "hz": joints[-1]["hz"], "std_deg": joints[-1]["std_deg"]})
     bent = [[row["bent"], row["peak_rad_s"], row["late_rad_s"]] for row in rows if row["part"] == "bent"]
-    return Findings([], {"trains": trains, "authors_lag_deg": list(AUTHORS_LAG_DEG), "bent_rad_peak_late_rad_s": bent})
+    return Findings([], {"trains": trains, "authors_lag_deg": list(AUTHORS_LAG_DEG), "bent_rad_peak_late_rad_s": bent, "by_friction": held})
