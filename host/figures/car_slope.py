@@ -17,7 +17,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 4.6)})
-        panels = figure.subplots(1, len(ANGLES), sharex=True, sharey=True)
+        panels = figure.subplots(1, len(ANGLES))
         lines = None
         for axes, angle in zip(panels, ANGLES, strict=True):
             run = max((row for row in runs_of(rows) if row["angle"] == angle), key=lambda row: float(row["squares"]))
@@ -29,8 +29,9 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             lines = LineCollection(list(np.stack([points[:-1], points[1:]], axis=1)), cmap="cividis", array=t[:-1] / 60, linewidths=0.9)
             axes.add_collection(lines)
             axes.plot(*points[-1], "o", color=COLOURS[1], markersize=5)
-            axes.set(xlabel="$x$ (m)", xticks=(-8, -4, 0, 4, 8), yticks=(-8, -4, 0, 4, 8))
-            axes.set_aspect("equal")
+            half = 1.08 * max(_FOOT_M, float(np.abs(points).max()))
+            axes.set(xlabel="$x$ (m)", xlim=(-half, half), ylim=(-half, half), aspect="equal")
+            axes.locator_params(nbins=5)
             told = next(one for one in findings.numbers["angles"] if one["angle"] == angle)
             words = f"{told['inside']} of {told['cars']} inside, {told['flipped']} flipped"
             axes.set_title(f"{angle:g} rad: {words};\nshown: {run['path_m']:.0f} m, {run['reversals']} reversals", fontsize=11)
