@@ -14,7 +14,7 @@ from robot.wheel import Wheel
 from sim_motor.bodies.body import Body
 from sim_motor.bodies.measures import course, directions, order, reversals_s, summary
 from sim_motor.bodies.model import SCENES, compose
-from sim_motor.bodies.presets import NAMES, preset
+from sim_motor.bodies.presets import HERE, NAMES, preset
 
 
 def rolling_speed(own, k):
@@ -157,6 +157,14 @@ def test_in_every_scene_a_train_stands_on_the_ground(scene):
     assert np.abs(body.omega).max() < 8.0
     assert (column(body, "_z_m")[-1] > 0.02).all()
     assert column(body, "_z_m")[-1].max() < 0.4
+
+
+def test_the_file_for_a_viewer_is_the_papers_car_on_a_floor():
+    model = mujoco.MjModel.from_xml_path(str(HERE / "scene.xml"))
+    data, own = mujoco.MjData(model), preset("paper")
+    mujoco.mj_step(model, data, 500)
+    assert model.body_mass.sum() == pytest.approx(own.body_mass + 2 * own.wheel_mass)
+    assert data.body("car").xpos == pytest.approx([0.0, 0.0, own.wheel_radius], abs=1e-3)
 
 
 def test_slopes_take_their_angle():
