@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import isfinite
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 CAR, TRAIN = "car", "train"
 CARS_OF_A_TRAIN = 5
+# How wheels stand at the start: where the rods pull all of them forward, or at random.
+PUSHED_FORWARD, RANDOM = "pushed", "random"
 ALL = "all"
 # How long (s) a quenched kick acts if nothing is said.
 KICK_S = 0.1
@@ -32,7 +35,11 @@ _SLICE_S = 0.5
 
 
 class Asked(NamedTuple):
-    """What a body is to be, in SI units; None is the preset's own. k is in N, drag in the preset's unit, torque in N m."""
+    """What a body is to be, in SI units; None is the preset's own. k is in N, drag in the preset's unit, torque in N m.
+
+    start: of the wheels, PUSHED_FORWARD or RANDOM; by default a car is pushed, as one that starts at random mostly comes to rest, and a
+    train is not.
+    """
 
     cars: int = 1
     scene: str = "flat"
@@ -45,6 +52,7 @@ class Asked(NamedTuple):
     angle: float | None = None
     bouncy: bool = False
     torque: float | None = None
+    start: str | None = None
     timestep: float = 0.001
 
 
@@ -91,12 +99,14 @@ def spec_of(asked: Asked) -> mujoco.MjSpec:
 
 
 def body_of(asked: Asked, spec: mujoco.MjSpec | None = None) -> Body:
-    """The body, at rest, its wheels at random angles. spec: as `spec_of` has made it for the same. Raises WrongUse."""
+    """The body, at rest. spec: as `spec_of` has made it for the same. Raises WrongUse."""
     model = compiled(spec_of(asked) if spec is None else spec)
     from sim_motor.bodies.body import Body
+    from sim_motor.bodies.presets import PUSHED
 
-    own = preset_of(asked)
-    return Body(model, own, seed=asked.seed, torque=asked.torque)
+    start = asked.start or (PUSHED_FORWARD if asked.cars == 1 else RANDOM)
+    phases = np.full(2 * asked.cars, PUSHED) if start == PUSHED_FORWARD else None
+    return Body(model, preset_of(asked), seed=asked.seed, torque=asked.torque, phases=phases)
 
 
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
@@ -151,13 +161,17 @@ def push_of(text: str, wheels: Sequence[str]) -> Push:
         name, _, value = part.strip().partition("=")
         if name not in (*_NUMBERS, *_WORDS) or not value:
             raise WrongUse(f"'{part.strip()}' is no part of a kick", f"write NAME=VALUE with {', '.join((*_NUMBERS, *_WORDS))}")
+        if name in fields:
+            raise WrongUse(f"a kick has one {name}, and '{text}' has more", "write it once")
         try:
             fields[name] = _NUMBERS[name](value) if name in _NUMBERS else value
-        except ValueError as error:
+        except (ValueError, ArgumentTypeError) as error:
             raise WrongUse(f"{name} of a kick cannot be '{value}'", "give a number") from error
     time_s, wheel = fields.pop("t", None), fields.pop("wheel", ALL)
     if time_s is None or not 0.0 <= time_s < float("inf"):
-        raise WrongUse("a kick needs its time", "write t=SECONDS, 0 or more")
+        raise WrongUse(f"a kick's time cannot be {time_s}", "write t=SECONDS, 0 or more")
+    if not 0.0 < fields.get("seconds", KICK_S) < float("inf"):
+        raise WrongUse(f"a kick cannot last {fields['seconds']} s", "write seconds=..., above 0")
     chosen = tuple(name for name in wheels if wheel == ALL or wheel in (name, *name.split("_")))
     if not chosen:
         raise WrongUse(f"there is no wheel '{wheel}'", f"write wheel={ALL}, left, right, car0, or one of {', '.join(wheels)}")
@@ -184,4 +198,4 @@ def run(body: Body, seconds: float, pushes: Sequence[Push], watch: Any) -> None:
             until = min([end, *(push.t_s for push in waiting[:1])])
             body.run(min(until - body.time_s, _SLICE_S), watch)
     except Unstable as error:
-        raise NotDone(str(error), "a smaller k, or more drag, keeps it on the ground") from error
+        raise NotDone(str(error), "with a smaller k, drag or torque, or fewer cars where there are walls, it can be") from error

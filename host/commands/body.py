@@ -27,6 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ("torque", "a constant torque of every wheel instead of its controller, N m"),
     ):
         parser.add_argument("--" + name, type=float, metavar="X", help=words)
+    parser.add_argument(
+        "--start", choices=("pushed", "random"), help="wheels: all pushed forward (default of a car), or at random angles (of a train)"
+    )
     parser.add_argument("--bouncy", action="store_true", help="walls that throw back, as the authors' did")
     parser.add_argument(
         "--kick",
@@ -48,10 +51,10 @@ def run(options: argparse.Namespace) -> int:
 
     if options.body == "car" and options.cars not in (None, 1):
         raise WrongUse(f"a car is one car, not {options.cars}", "kickctl body train --cars N")
-    if not 0.0 < options.time <= 36000.0:
-        raise WrongUse(f"time cannot be {options.time!r}", "give seconds, above 0 and up to 36000")
+    if not 0.01 <= options.time <= 36000.0:
+        raise WrongUse(f"time cannot be {options.time!r}", "give seconds, from 0.01 to 36000")
     cars = 1 if options.body == "car" else CARS_OF_A_TRAIN if options.cars is None else options.cars
-    numbers = {name: getattr(options, name) for name in ("a", "k", "tau", "drag", "angle", "torque", "bouncy")}
+    numbers = {name: getattr(options, name) for name in ("a", "k", "tau", "drag", "angle", "torque", "bouncy", "start")}
     seed = 1 if options.seed is None else options.seed
     asked = Asked(cars=cars, scene=options.scene, preset=options.preset, seed=seed, **numbers)
     spec = spec_of(asked)
@@ -59,6 +62,8 @@ def run(options: argparse.Namespace) -> int:
     if options.model:
         options.model.write_text(spec.to_xml(), encoding="utf-8")
     pushes = [push_of(words, body.wheels) for words in options.kick]
+    if any(push.t_s >= options.time for push in pushes):
+        raise WrongUse(f"a kick comes after the {options.time:g} s that are simulated", "kick earlier, or give a longer --time")
     summary = _run(options, asked._asdict(), body, pushes)
     if options.json:
         show(summary)
@@ -131,8 +136,9 @@ def _tell(summary: dict[str, Any]) -> None:
     times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
     print(f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter {summary['order_parameter']:.3f}")
     print(f"{len(summary['reversals'])} reversals" + (f", at {times} s" if times else ""))
-    for what in ("stuck", "flipped"):
-        if summary[what]:
-            print(what)
+    if summary["stuck"]:
+        print("in the end it stays where it is: it rests, turns on the spot, or is held; another --start, --seed or --kick may move it")
+    if summary["flipped"]:
+        print("a car fell over")
     for name in ("body.png", "state.csv", "state.mcap"):
         print(Path(summary["folder"]) / name)

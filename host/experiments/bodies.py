@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, pi, sin
+from math import cos, sin
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from host.bodies import CARS_OF_A_TRAIN
 from sim_motor.bodies.measures import Course, course, order
-from sim_motor.bodies.presets import Preset
+from sim_motor.bodies.presets import PUSHED, Preset
 
 if TYPE_CHECKING:
     import mujoco
@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 PRESETS = ("paper", "snake2019")
-# The program of 2019 starts all wheels at this angle (rad), where the rod pulls them forward; and with straight joints, which no train has:
-# here they are bent a little (rad, standard deviation), by chance.
-PUSHED, BENT = -pi / 3, 0.01
+# The program of 2019 starts with straight joints, which no train has: here they are bent a little (rad, standard deviation), by chance.
+BENT = 0.01
 # A train whose wheels' order parameter is above this goes one way.
 ORDERED = 0.9
 # Here slopes have no end; those of the authors' programs, 2 m long, end so far (m) from the middle, and what gets farther is not inside.

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.experiments.bodies import PUSHED, made, ran
+from host.experiments.bodies import made, ran
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from sim_motor.bodies.presets import Preset, preset
+from sim_motor.bodies.presets import PUSHED, Preset, preset
 
 # Gain and time constant (s) of the neurons: the presets', slower ones, and the paper's of section 'Analytic modeling'.
 NEURONS = ((2.0, 0.05), (2.0, 0.25), (4.0, 0.25))

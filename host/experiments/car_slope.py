@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from host.claims import Claim
-from host.experiments.bodies import EDGE_M, PUSHED, headed, made, ran
+from host.experiments.bodies import EDGE_M, headed, made, ran
 from host.experiments.experiment import Cell, Findings, Options, Row, Setting
 from host.experiments.statistics import fraction, wilson
 from sim_motor.bodies.measures import FALLEN_RAD, STILL_RAD_S, reversals_s
-from sim_motor.bodies.presets import preset
+from sim_motor.bodies.presets import PUSHED, preset
 
 # The slopes of the authors' programs are of 0.3 rad, in a funnel, and of 0.37 rad; the claim is tried on both, and shallower ones shown.
 ANGLES, THEIRS = (0.2, 0.3, 0.37), (0.3, 0.37)

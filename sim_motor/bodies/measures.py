@@ -11,8 +11,9 @@ Array = NDArray[np.float64]
 
 # Start-up is over when the wheels' mean |omega| first reaches this part of the greatest; a body has a direction from the second part on.
 STARTED, MOVING = 0.9, 0.25
-# A wheel that turns more slowly (rad/s) has no direction, and a body whose wheels all do is at rest.
-STILL_RAD_S = 0.5
+# A wheel that turns more slowly (rad/s) has no direction, and a body whose wheels all do is at rest. One whose wheels' mean never exceeds
+# the second rocks to and fro, which is no reversal.
+STILL_RAD_S, TRAVELS_RAD_S = 0.5, 3.0
 # A body is stuck if for so long (s) in the end it stays within so many metres; it has fallen over if a car leans by more than this (rad).
 STUCK_S, STUCK_M, FALLEN_RAD = 5.0, 0.25, np.pi / 2
 
@@ -48,7 +49,8 @@ def order(omega: Array) -> Array:
 def directions(moved: Course) -> NDArray[np.int64]:
     """1 forward, -1 backward, at each time; what it was last while the wheels' mean is small; 0 before it first was anything."""
     mean = moved.omega.mean(axis=1)
-    least = max(STILL_RAD_S, MOVING * float(np.abs(mean).max()))
+    most = float(np.abs(mean).max())
+    least = MOVING * most if most > TRAVELS_RAD_S else np.inf
     signs = np.where(np.abs(mean) < least, 0, np.sign(mean)).astype(np.int64)
     latest = np.maximum.accumulate(np.where(signs != 0, np.arange(len(signs)), 0))
     return np.asarray(signs[latest])
@@ -78,7 +80,7 @@ def summary(columns: tuple[str, ...], rows: Array) -> dict[str, Any]:
     started = started_s(moved)
     after = moved.t_s >= (moved.t_s[-1] if started is None else started)
     steps = np.linalg.norm(np.diff(moved.centre_m, axis=0), axis=1)
-    late, seconds = after[1:], float(moved.t_s[-1] - moved.t_s[after][0])
+    late, seconds = after[:-1], float(moved.t_s[-1] - moved.t_s[after][0])
     end = moved.t_s >= moved.t_s[-1] - STUCK_S
     away = np.linalg.norm(moved.centre_m[end] - moved.centre_m[-1], axis=1).max()
     return {
@@ -87,7 +89,7 @@ def summary(columns: tuple[str, ...], rows: Array) -> dict[str, Any]:
         "reversals": reversals_s(moved),
         "mean_speed": float(steps[late].sum() / seconds) if seconds > 0.0 else 0.0,
         "mean_abs_omega": float(np.abs(moved.omega[after]).mean()),
-        "peak_omega": float(np.abs(moved.omega.mean(axis=1)).max()),
+        "peak_omega": float(np.abs(moved.omega).mean(axis=1).max()),
         "order_parameter": float(order(moved.omega[after]).mean()) if started is not None else 0.0,
         "path_length": float(steps.sum()),
         "end": moved.centre_m[-1].tolist(),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import cos, pi, sin, sqrt
+from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -55,7 +56,12 @@ def compose(
 
 
 def _assemble(preset: Preset, scene: str, cars: int, seed: int, angle: float | None, bouncy: bool, timestep: float) -> mujoco.MjSpec:
-    spec = mujoco.MjSpec.from_file(scene if scene.endswith(".xml") else str(HERE / "scenes" / f"{scene}.xml"))
+    path = Path(scene) if scene.endswith(".xml") else HERE / "scenes" / f"{scene}.xml"
+    if not path.is_file():
+        raise ValueError(f"there is no file {path}")
+    spec = mujoco.MjSpec.from_file(str(path))
+    if any(body.name.endswith("car") for body in spec.bodies):
+        raise ValueError(f"{path} has cars in it already: open it in a viewer, or give a scene without")
     spec.option.timestep = timestep
     ground_m = _shape(spec, scene, np.random.default_rng(seed), angle, bouncy)
     frame = spec.worldbody.add_frame(pos=((cars - 1) * preset.pitch / 2, 0.0, ground_m))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from math import isfinite
+from math import isfinite, pi
 from pathlib import Path
 from typing import Any, NamedTuple
 
 HERE = Path(__file__).parent
+# Where the program of 2019 starts all wheels (rad): the rod pulls them forward.
+PUSHED = -pi / 3
 
 
 class Preset(NamedTuple):

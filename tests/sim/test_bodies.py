@@ -203,6 +203,9 @@ def test_words_make_kicks_of_wheels_and_wrong_words_are_refused():
         ("t=1,colour=red", "colour"),
         ("t=nan,mode=phase", "time"),
         ("t=1,mode=phase,shift=100", "shift"),
+        ("t=1,mode=phase,shift=foo", "shift"),
+        ("t=1,mode=phase,seconds=-1", "last"),
+        ("t=1,t=2,mode=phase", "one t"),
     ):
         with pytest.raises(WrongUse, match=reason):
             push_of(words, wheels)
