@@ -148,7 +148,8 @@ def test_every_motor_is_reset_whatever_its_port(brick, checkout):
     motors = [brick.sysfs / "tacho-motor" / f"motor{number}" / "command" for number in (0, 3)]
     for motor in motors:
         write(motor, "")
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
     assert [motor.read_text(encoding="ascii") for motor in motors] == ["reset\n", "reset\n"]
 
 
@@ -158,7 +159,8 @@ def test_arguments_stay_until_others_are_given(brick, checkout):
     assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
     environment = checkout.environment()
     checkout.environment = lambda **more: {**environment, **{name: value for name, value in more.items() if name != "KICK_ROBOT_ARGS"}}
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
     assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
 
 

@@ -102,7 +102,8 @@ def test_a_first_release_that_dies_leaves_nothing_that_runs(brick, checkout):
     assert "there was none before it" in output
     assert (brick.runs(), brick.release()) == (None, None)
     params.write_bytes(sound)
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
 
 
 def test_arguments_that_kill_the_program_are_taken_back(deployed, checkout):
@@ -191,7 +192,8 @@ def test_a_broken_upload_is_noticed(deployed, checkout, tar):
     assert (deployed.runs(), deployed.release()) == (release, release)
     assert not [name for name in deployed.releases() if name.startswith(".")]
     (checkout.bin / "tar").unlink()
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
     assert deployed.release() != release
     assert not [name for name in deployed.releases() if name.startswith(".")]
 
@@ -235,7 +237,8 @@ def test_two_deploys_at_once_do_not_get_into_each_others_way(deployed, checkout)
         outputs = [process.communicate(timeout=100)[0] for process in (one, other)]
     assert 0 in (one.returncode, other.returncode), outputs
     assert deployed.runs() == deployed.release()
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
 
 
 @contextmanager

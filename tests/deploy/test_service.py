@@ -116,7 +116,8 @@ def test_a_first_release_of_all_that_systemd_does_not_take_is_no_service(ready, 
     ready.replace("systemctl", "exit 1")
     assert checkout.deploy("--service")[0] == 5
     assert not unit(ready).exists()
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
     assert is_no_service(ready)
 
 
@@ -152,7 +153,8 @@ def test_no_service_undoes_it_and_the_release_stays(served, checkout):
     assert "disable kickctl" in commands(served)
     status, output = checkout.deploy("--no-service")
     assert (status, "no service" in output) == (1, True)
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
     assert is_no_service(served)
 
 
@@ -184,7 +186,8 @@ def test_without_the_administrators_password_nothing_is_touched(served, checkout
     assert (served.release(), served.pid()) == (release, pid)
     assert unit(served).exists()
     served.replace("sudo", 'exec "$@"')
-    assert checkout.deploy()[0] == 0
+    status, output = checkout.deploy()
+    assert status == 0, output
 
 
 def test_a_program_that_ends_well_is_not_started_again(served):
