@@ -23,15 +23,12 @@ if TYPE_CHECKING:
     from sim_motor.bodies.body import Body
     from sim_motor.bodies.presets import Preset
 
-CAR, TRAIN = "car", "train"
 CARS_OF_A_TRAIN = 5
 # How wheels stand at the start: where the rods pull all of them forward, or at random.
 PUSHED_FORWARD, RANDOM = "pushed", "random"
 ALL = "all"
 # How long (s) a quenched kick acts if nothing is said.
 KICK_S = 0.1
-# How much (s) is simulated at a time while somebody may interrupt.
-_SLICE_S = 0.5
 
 
 class Asked(NamedTuple):
@@ -196,6 +193,6 @@ def run(body: Body, seconds: float, pushes: Sequence[Push], watch: Any) -> None:
                 for kick in push.kicks(body.step, step_s, omega.tolist()):
                     body.kick(kick)
             until = min([end, *(push.t_s for push in waiting[:1])])
-            body.run(min(until - body.time_s, _SLICE_S), watch)
+            body.run(until - body.time_s, watch)
     except Unstable as error:
         raise NotDone(str(error), "with a smaller k, drag or torque, or fewer cars where there are walls, it can be") from error

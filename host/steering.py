@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from host.bodies import need
 from host.errors import NotDone
 from robot.kicks import PHASE
+from sim_motor.bodies.presets import PUSHED
 
 if TYPE_CHECKING:
     from sim_motor.bodies.environment import Info, Train
@@ -31,8 +32,8 @@ ALL_PAIRS = (ON, LEFT, ON, RIGHT, LEFT, LEFT, RIGHT, RIGHT, ON)
 LOOK_S, START_S, AHEAD = 0.1, 6.0, 10
 # What it is worth to be somewhere a second sooner (m).
 SOONER_M = 0.05
-# The wheels begin at this angle (rad), where rods push them, or at its mirror image, which is backward; give or take so much.
-PUSHED_RAD, SPREAD_RAD = -np.pi / 3, 0.3
+# The wheels begin where rods push them forward, or at the mirror image, which is backward; give or take so much (rad).
+SPREAD_RAD = 0.3
 
 
 def environment(preset: str) -> Train:
@@ -54,7 +55,7 @@ class Drive:
     def __init__(self, train: Train, seed: int) -> None:
         self._train, self._wheels = train, train.action_space.shape or ()
         rng = np.random.default_rng(seed)
-        phases = rng.choice((-1.0, 1.0)) * PUSHED_RAD + rng.normal(0.0, SPREAD_RAD, self._wheels)
+        phases = rng.choice((-1.0, 1.0)) * PUSHED + rng.normal(0.0, SPREAD_RAD, self._wheels)
         train.reset(seed=seed, options={"phases": phases})
         self.choices: list[int] = []
         self.poses: list[tuple[float, float, float]] = []

@@ -8,7 +8,7 @@ import numpy as np
 
 from host.claims import Claim
 from host.experiments.experiment import Findings, Row, Setting
-from host.theory.hopf import hopf
+from host.theory.hopf import estimate, hopf
 from host.theory.model import Wheel
 from host.theory.run import wheel_of
 from host.theory.turning import constant_velocity
@@ -223,7 +223,7 @@ def _m6(deviations: list[tuple[float, float]], turning: list[dict[str, Any]], nu
         None,
         any(end == value for _, end in near),
         f"at {along} = {value:g}, the end of the branch; within 5 % for {along} = {where}; {shown}; it begins at "
-        f"k = {hopf(wheel).k:.4g} x {2 * wheel.friction / (wheel.a * wheel.tau_s) / hopf(wheel).k:.2f}, as a rotation does not",
+        f"k = {hopf(wheel).k:.4g} x {estimate(wheel) / hopf(wheel).k:.2f}, as a rotation does not",
     )
 
 

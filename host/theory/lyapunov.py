@@ -141,14 +141,6 @@ def _measured(parameters: Array, begin: Array, fineness: float = FINENESS) -> li
     ]
 
 
-def _columns(wheel: Wheel, ks: Array, taus: Array | None = None) -> Array:
-    parameters = wheel.columns(len(ks))
-    parameters[Wheel._fields.index("k")] = ks
-    if taus is not None:
-        parameters[Wheel._fields.index("tau_s")] = taus
-    return parameters
-
-
 def _both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -> list[Row]:
     """Measure each column from so many starts of either kind."""
     columns = np.repeat(parameters, wheels, axis=1)
@@ -162,12 +154,12 @@ def _both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -> li
 
 def _line(cell: Cell, options: dict[str, Any], wheel: Wheel, rng: np.random.Generator) -> list[Row]:
     ks = k_axis(options, LINE_KS)[cell["first"] : cell["first"] + LINE_BAND]
-    return _both_starts(_columns(wheel, ks), LINE_WHEELS, rng)
+    return _both_starts(wheel.columns(len(ks), k=ks), LINE_WHEELS, rng)
 
 
 def _plane(cell: Cell, options: dict[str, Any], wheel: Wheel, rng: np.random.Generator) -> list[Row]:
     taus, ks = tau_axis(options)[cell["first"] : cell["first"] + PLANE_BAND], k_axis(options, PLANE)
-    return _both_starts(_columns(wheel, np.tile(ks, len(taus)), np.repeat(taus, len(ks))), 1, rng)
+    return _both_starts(wheel.columns(PLANE * len(taus), k=np.tile(ks, len(taus)), tau_s=np.repeat(taus, PLANE)), 1, rng)
 
 
 def _rolling(cell: Cell, options: dict[str, Any], wheel: Wheel, rng: np.random.Generator) -> list[Row]:
@@ -186,7 +178,7 @@ def _damping(wheel: Wheel, ks: Array) -> list[Row]:
 
     They are known together from the fast one and the sum of all, and far better so than one by one if they are a complex pair.
     """
-    parameters = _columns(wheel, ks)
+    parameters = wheel.columns(len(ks), k=ks)
     seen = watch(settled(begun_rolling(parameters), parameters, 2 * _settle_s(wheel)), parameters, WATCH_S)
     exponents = smooth_mean(growth(seen.states, parameters, MEASURE_S, 4).rates)
     pairs = (divergence(wheel) - exponents[3]) / 2
@@ -209,7 +201,7 @@ def _lives(cell: Cell, options: dict[str, Any], wheel: Wheel, rng: np.random.Gen
 
 def _check(cell: Cell, options: dict[str, Any], wheel: Wheel, rng: np.random.Generator) -> list[Row]:
     ks, taus = rng.choice(k_axis(options, PLANE), CHECKED), rng.choice(tau_axis(options), CHECKED)
-    parameters, begin = _columns(wheel, ks, taus), starts(CHECKED, rng)
+    parameters, begin = wheel.columns(CHECKED, k=ks, tau_s=taus), starts(CHECKED, rng)
     plain, finer = (_measured(parameters, begin, fineness) for fineness in (FINENESS, 2 * FINENESS))
     return [
         {

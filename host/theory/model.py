@@ -18,7 +18,7 @@ from robot.controller import actual_positions, membrane_rate, rod_force, tangent
 from sim_motor.compiled import retold
 
 Array = NDArray[np.float64]
-X1, X2, PHI, OMEGA = range(4)
+PHI, OMEGA = 2, 3
 STEEPEST = 100.0
 
 
@@ -82,9 +82,12 @@ class Wheel(NamedTuple):
             raise WrongUse(f"a cannot be {self.a!r}", f"give at most {STEEPEST:g}: steeper neurons are switches, and no longer smooth")
         return self
 
-    def columns(self, count: int) -> Array:
-        """The constants of `count` such wheels, (6, count)."""
-        return np.repeat(np.array(self, dtype=np.float64)[:, None], count, axis=1)
+    def columns(self, count: int, **varied: Array) -> Array:
+        """The constants of `count` such wheels, (6, count). varied: those in which the wheels differ, (count,), by name."""
+        parameters = np.repeat(np.array(self, dtype=np.float64)[:, None], count, axis=1)
+        for name, values in varied.items():
+            parameters[self._fields.index(name)] = values
+        return parameters
 
 
 def resting(phi: Array) -> Array:

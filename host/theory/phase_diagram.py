@@ -114,9 +114,7 @@ def _sample(options: dict[str, Any], seed: int) -> list[Row]:
 
 
 def _parameters(options: dict[str, Any], taus: Array, ks: Array) -> Array:
-    parameters = wheel_of(options).columns(len(taus))
-    parameters[Wheel._fields.index("tau_s")], parameters[Wheel._fields.index("k")] = taus, ks
-    return parameters
+    return wheel_of(options).columns(len(taus), tau_s=taus, k=ks)
 
 
 def _at_rest(parameters: Array) -> Array:

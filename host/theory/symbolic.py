@@ -36,12 +36,6 @@ def jacobian() -> Floats:
     return function([sympy.diff(rate, variable) for rate in field() for variable in STATE])
 
 
-@cache
-def sensitivity() -> Floats:
-    """The function of the 24 derivatives of the rates by the constants, row by row."""
-    return function([sympy.diff(rate, constant) for rate in field() for constant in CONSTANTS])
-
-
 def jacobian_at(state: Sequence[float], wheel: Wheel) -> Array:
     """The Jacobian, (4, 4), in 1/s."""
     return np.array(jacobian()(*state, *wheel)).reshape(4, 4)

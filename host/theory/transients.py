@@ -52,8 +52,7 @@ def least_chaotic_k(wheel: Wheel, most_k: float, fineness: float) -> float | Non
     low, high = 0.0, most_k
     for _ in range(2):
         ks = np.linspace(low, high, SEARCH_STEPS + 1)[1:]
-        parameters = wheel.columns(SEARCH_STEPS * SEARCH_WHEELS)
-        parameters[Wheel._fields.index("k")] = np.repeat(ks, SEARCH_WHEELS)
+        parameters = wheel.columns(SEARCH_STEPS * SEARCH_WHEELS, k=np.repeat(ks, SEARCH_WHEELS))
         begin = starts(parameters.shape[1], np.random.default_rng(0))
         kinds = watch(settled(begin, parameters, SEARCH_S, fineness), parameters, SEARCH_S / 2, fineness).kinds()
         found = np.flatnonzero(np.mean(kinds.reshape(SEARCH_STEPS, SEARCH_WHEELS) == CHAOS, axis=1) >= 0.5)

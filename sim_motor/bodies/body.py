@@ -61,7 +61,7 @@ class Body:
         self._bends = np.array([model.joint(name).qposadr[0] for name in self.joints], dtype=np.int64)
         self._bodies = np.array([model.body(car_name(car) + "car").id for car in range(self.cars)])
         self._drags = np.full(self.cars, preset.body_drag)
-        self._frozen: list[Kick] = []
+        self._kicks: list[Kick] = []
         self._notes: list[tuple[Any, ...]] = []
         begin = np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels)) if phases is None else phases
         self.data.qpos[self._angles] = begin
@@ -102,8 +102,8 @@ class Body:
         unknown = [name for name in kick.wheels if name not in self.wheels]
         if unknown or kick.begin < self.step:
             raise ValueError(f"there is no wheel {', '.join(unknown)}" if unknown else f"step {kick.begin} is over")
-        self._frozen.append(kick)
-        self._frozen.sort(key=lambda one: one.begin)
+        self._kicks.append(kick)
+        self._kicks.sort(key=lambda one: one.begin)
 
     def run(self, seconds: float, watch: Callable[[float], None] = lambda time_s: None) -> None:
         """Go on for so long; `watch` is told the time at each record. Raises Unstable."""
@@ -112,9 +112,9 @@ class Body:
         # The same memory as long as the data live.
         qpos, ctrl, pull, velocity, warnings = data.qpos, data.ctrl, data.xfrc_applied, data.sensordata, data.warning
         while self.step < end:
-            while self._frozen and self._frozen[0].begin <= self.step:
-                self._begin(self._frozen.pop(0))
-            until = min(end, self._next_record(), self._frozen[0].begin if self._frozen else end)
+            while self._kicks and self._kicks[0].begin <= self.step:
+                self._begin(self._kicks.pop(0))
+            until = min(end, self._next_record(), self._kicks[0].begin if self._kicks else end)
             for step in range(self.step, until):
                 mujoco.mj_step1(model, data)
                 drive(step, dt_s, own.floats, own.whole, self._angles, qpos, ctrl, self._drags, self._bodies, velocity, pull)

@@ -44,10 +44,6 @@ class Preset(NamedTuple):
                 raise ValueError(f"{name} cannot be {value!r}: give a finite number, {'0 or more' if name in _MAY_BE_0 else 'above 0'}")
         return self
 
-    def wheel_inertia(self) -> float:
-        """Moment of inertia (kg m^2) of a wheel, a cylinder, about its axle."""
-        return self.wheel_mass * self.wheel_radius**2 / 2
-
 
 _MAY_BE_0 = ("body_drag", "wheel_drag", "friction", "spring", "spring_damping", "a", "k")
 _TABLE: dict[str, dict[str, Any]] = tomllib.loads((HERE / "presets.toml").read_text(encoding="utf-8"))
