@@ -44,6 +44,7 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 	@command -v shellcheck >/dev/null || { echo "make lint: needs shellcheck. Install it (Debian, Ubuntu: apt-get install shellcheck) and\
 	 try again." >&2; exit 1; }
 	shellcheck deploy.sh robot/service/brick.sh .ci/run

@@ -13,8 +13,8 @@ import threading
 from collections.abc import Sequence
 from contextlib import suppress
 
+from host.commands._options import common
 from host.errors import KickctlError
-from host.options import common
 from robot import __version__
 
 VERBS = (

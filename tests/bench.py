@@ -71,7 +71,7 @@ def controller_tick() -> None:
 
 def virtual_time() -> None:
     """Robot seconds per wall second on one core: the loop alone, and with a host that takes in every record."""
-    from host.client import connect
+    from host.client.robot import connect
     from robot.loop import Loop
     from robot.server import Server
     from sim_motor.brick import SimBrick
@@ -117,7 +117,7 @@ def bodies() -> None:
     import numpy as np
     from mujoco.rollout import rollout
 
-    from host.bodies import Asked, body_of
+    from host.bodies.build import Asked, body_of
 
     full, pushed = mujoco.mjtState.mjSTATE_FULLPHYSICS, mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_XFRC_APPLIED
     for what, cars in (("car", 1), ("train", 5)):
@@ -178,8 +178,8 @@ def _burn() -> None:
 
 def _desk_robot():
     """(how late each tick began, command-to-tick times of kicks, missed deadlines), all times in s."""
-    from host.client import connect
-    from host.log import Log
+    from host.client.robot import connect
+    from host.logs.log import Log
 
     with tempfile.TemporaryDirectory() as folder:
         token = str(Path(folder) / "token")

@@ -3,7 +3,7 @@
 from itertools import cycle
 from math import pi
 
-from host.log import Log
+from host.logs.log import Log
 from robot import wire
 from robot.loop import Loop
 from robot.motors import Motor, MotorFault

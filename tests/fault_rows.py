@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from host.log import Log
+from host.logs.log import Log
 from robot import wire
 from robot.params import TABLE
 from robot.watchdog import MOST_UNANSWERED
@@ -152,7 +152,7 @@ def _loses_link(policy):
 
 _HOLDER = """
 import sys, time
-from host.client import connect
+from host.client.robot import connect
 with connect(sys.argv[1], name="killed host") as robot:
     robot.lease()
     robot.set(link_loss="stop")

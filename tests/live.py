@@ -11,9 +11,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from unittest import mock
 
-from host.client import connect
+from host.client.robot import connect
 from host.errors import KickctlError
-from host.log import Log
+from host.logs.log import Log
 from tests.sysfs.mount import ended, inject, motor_folder, started
 
 PORTS = ("outB", "outC")
@@ -27,7 +27,7 @@ _GONE = (errno.ENODEV, errno.ENOENT)
 
 def impatient():
     """A context in which hosts wait for less long than people would have them wait."""
-    return mock.patch.multiple("host.client", **IMPATIENT)
+    return mock.patch.multiple("host.client.robot", **IMPATIENT)
 
 
 def wait_until(condition, what):

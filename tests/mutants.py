@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 SUBJECT = "robot/safety.py"
-TESTS = "tests/unit/test_safety.py"
+TESTS = "tests/unit/robot/test_safety.py"
 CONFIG = f"""
 [tool.mutmut]
 source_paths = ["robot"]

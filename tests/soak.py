@@ -15,8 +15,8 @@ from random import Random
 from unittest import mock
 
 from host.errors import KickctlError
-from host.log import Log
-from host.recording import McapTap
+from host.logs.log import Log
+from host.logs.mcap_files import McapTap
 from robot.params import TABLE
 from tests.live import PORTS, Live, open_files, wait_until
 from tests.sysfs.mount import mounted, why_not

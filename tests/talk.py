@@ -1,6 +1,6 @@
 """A host that talks to a robot on a rig, over a link without a network."""
 
-from host.conversation import Conversation
+from host.client.conversation import Conversation
 from robot import wire
 from robot.session import Session
 from tests.rig import TOKEN

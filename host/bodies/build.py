@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -11,8 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from host.angles import parse_angle
 from host.errors import NotDone, WrongUse
+from host.util.angles import parse_angle
+from host.util.extras import need
 from robot.errors import Refused
 from robot.kicks import FROZEN_MODES, Kick, parse
 from robot.params import Params
@@ -51,20 +51,6 @@ class Asked(NamedTuple):
     torque: float | None = None
     start: str | None = None
     timestep: float = 0.001
-
-
-def need(module: str, extra: str) -> None:
-    """Raise WrongUse if a library of an extra is not installed."""
-    try:
-        importlib.import_module(module)
-    except ModuleNotFoundError as error:
-        raise WrongUse(
-            f"this needs {module}, which is not installed", f"install it with the extra: pip install 'kickctl[{extra}]'"
-        ) from error
-    except (RuntimeError, AttributeError, ImportError, OSError) as error:  # as mujoco does with a MUJOCO_GL that it cannot use
-        raise NotDone(
-            f"{module} cannot be loaded: {error}", "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa"
-        ) from error
 
 
 def preset_of(asked: Asked) -> Preset:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.bodies import need
 from host.errors import NotDone
+from host.util.extras import need
 from robot.kicks import PHASE
 from sim_motor.bodies.presets import PUSHED
 

@@ -20,20 +20,20 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from host.conversation import Conversation, Samples
+from host.client.conversation import Conversation, Samples
+from host.client.subscription import Subscription
 from host.errors import KickctlError, LeaseLost, NoLink, RefusedByRobot, WrongUse
-from host.links import SIM, make_link
-from host.origin import origin
-from host.subscription import Subscription
-from host.transport import Link, LinkLost
+from host.link.addresses import SIM, make_link
+from host.link.transport import Link, LinkLost
+from host.util.provenance import origin
 from robot.record import Record
 from robot.token import TokenError, default_path, load
 
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from host.log import Log
-    from host.stream import Tap
+    from host.logs.log import Log
+    from host.logs.tap import Tap
 
 # The robot counts a silent host as lost after half a second by default.
 HEARTBEAT_S = 0.1
@@ -166,7 +166,7 @@ class Robot:
 
     def record(self, seconds: float) -> Log:
         """The log of the next `seconds` of the robot's time."""
-        from host.log import Log
+        from host.logs.log import Log
 
         log = Log(self.info())
         self.add_tap(log)

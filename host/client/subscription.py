@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from host.conversation import Samples
+from host.client.conversation import Samples
 from robot.blackbox import Snapshot
 from robot.record import Record
 

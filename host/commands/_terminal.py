@@ -10,11 +10,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.client import Robot, connect
+from host.client.robot import Robot, connect
 from host.errors import KickctlError
 
 if TYPE_CHECKING:
-    from host.log import Log
+    from host.logs.log import Log
 
 
 def say(text: str) -> None:
@@ -53,7 +53,7 @@ def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -
 
 def tell(summary: dict[str, Any]) -> None:
     """What a run came to: claims in sentences, its main numbers and how accurate they are, and where its files are."""
-    from host.claims import Claim
+    from host.runs.claims import Claim
 
     for claim in summary["claims"]:
         print(Claim.from_dict(claim).sentence())
@@ -77,8 +77,8 @@ def _told(numbers: Any) -> Iterator[tuple[str, Any]]:
 @contextmanager
 def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
     """A log of all that the robot does meanwhile, in memory and, as it grows, in a new file of this path."""
-    from host.log import Log
-    from host.recording import McapTap, new_path
+    from host.logs.log import Log
+    from host.logs.mcap_files import McapTap, new_path
 
     path = new_path(kind)
     log = Log(robot.info())

@@ -5,8 +5,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from host.commands._terminal import say, show
 from host.errors import KickctlError
-from host.terminal import say, show
 
 HELP = "a simulated car, or a train of cars that nobody steers: one rod and one neuron for each wheel, in MuJoCo"
 
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Simulate, and keep what there is even if it ends early."""
-    from host.bodies import CARS_OF_A_TRAIN, Asked, body_of, push_of, spec_of
+    from host.bodies.build import CARS_OF_A_TRAIN, Asked, body_of, push_of, spec_of
     from host.errors import WrongUse
 
     if options.body == "car" and options.cars not in (None, 1):
@@ -76,10 +76,10 @@ def _run(options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: 
     """Run it, and write everything, also if it is interrupted or cannot be followed."""
     from contextlib import ExitStack
 
-    from host.bodies import run as let_run
-    from host.experiments.study import digest
-    from host.origin import commit
-    from host.progress import progress
+    from host.bodies.build import run as let_run
+    from host.runs.folder import digest
+    from host.util.progress import progress
+    from host.util.provenance import commit
 
     info = {**asked, "kicks": options.kick, "time_s": options.time, "commit": commit()}
     folder = options.out / f"body-{digest(info)}"
@@ -106,19 +106,19 @@ def _watchers(options: argparse.Namespace, body: Any) -> list[Any]:
     """What looks on while it runs."""
     found: list[Any] = []
     if options.film:
-        from host.film import Film
+        from host.films.body import Film
 
         found.append(Film(options.film, body.model, body.cars))
     if options.live:
-        from host.film import live
+        from host.films.body import live
 
         found.append(live(body.model, body.data))
     return found
 
 
 def _write(folder: Path, info: dict[str, Any], body: Any, pushes: list[Any]) -> dict[str, Any]:
-    from host.figures.body import draw
-    from host.states import write_csv, write_mcap
+    from host.bodies.files import write_csv, write_mcap
+    from host.figures.bodies.body import draw
     from sim_motor.bodies.measures import summary as summary_of
 
     rows = body.rows

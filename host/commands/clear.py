@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.terminal import answer, robot_of
+from host.commands._terminal import answer, robot_of
 
 HELP = "clear a fault once its cause is mended"
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.terminal import recorded, robot_of, say, show
+from host.commands._terminal import recorded, robot_of, say, show
 
 HELP = "the main job, from a random start to a kick that reverses the robot, with the paper's claims measured on the way"
 
@@ -16,11 +16,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run all of it into one log; 1 if the kick did not reverse the robot or a claim did not hold."""
-    from host import claims, showing
-    from host.figures.kick import KICK_WINDOW_S, draw
-    from host.kicking import describe, kick_and_watch, title
-    from host.primitives import drive
-    from host.progress import progress
+    from host.figures.robot.kick import KICK_WINDOW_S, draw
+    from host.kicking import manoeuvres as showing
+    from host.kicking.outcome import describe, kick_and_watch, title
+    from host.kicking.primitives import drive
+    from host.runs import claims
+    from host.util.progress import progress
 
     with robot_of(options, moves=True) as robot, recorded(robot, "demo") as (log, path), progress("demo", 4) as advance:
         say("driving forward ...")

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.terminal import say, show
+from host.commands._terminal import say, show
 
 HELP = "look for robots in the network"
 
@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what answers, robots that announce themselves first; 3 if nothing does."""
-    from host.discovery import look_around
+    from host.link.discovery import look_around
 
     found = look_around(options.seconds)
     if options.json:

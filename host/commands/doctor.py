@@ -14,9 +14,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from host.client import Robot, connect
+from host.client.robot import Robot, connect
+from host.commands._terminal import show
 from host.errors import KickctlError
-from host.terminal import show
 from robot import __version__
 from robot.token import TokenError, default_path, load
 

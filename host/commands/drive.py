@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.terminal import recorded, robot_of, show
+from host.commands._terminal import recorded, robot_of, show
 
 HELP = "bring the robot into a motion primitive by kicks, or to rest by k"
 
@@ -14,9 +14,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Drive there, starting the robot if it does not run; 1 if it did not get there."""
-    from host.figures.kick import draw
-    from host.kicking import require_running
-    from host.primitives import drive
+    from host.figures.robot.kick import draw
+    from host.kicking.outcome import require_running
+    from host.kicking.primitives import drive
 
     with robot_of(options, moves=True) as robot:
         if robot.status()["state"] in ("idle", "stopped"):

@@ -2,10 +2,10 @@
 
 import argparse
 
-from host.entries import add_options, options_given
-from host.experiments.table import TABLE
-from host.options import common
-from host.terminal import say, show, tell
+from host.commands._options import common
+from host.commands._terminal import say, show, tell
+from host.experiments.registry import TABLE
+from host.runs.registry import add_options, options_given
 
 HELP = "one of the robot's experiments: logs, table, figure, and what the paper claims beside what was measured"
 
@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run it; 1 if a claim does not hold."""
-    from host.experiments.run import perform
+    from host.perform.run import perform
 
     name = options.experiment
     arguments = options_given(options, TABLE[name])

@@ -2,9 +2,9 @@
 
 import argparse
 
-from host.angles import parse_angle
+from host.commands._terminal import recorded, robot_of, say, show
 from host.errors import NotDone, WrongUse
-from host.terminal import recorded, robot_of, say, show
+from host.util.angles import parse_angle
 from robot.errors import Refused
 from robot.kicks import DEFAULT_TICKS, MODES, PULSED, RECTANGULAR, SMOOTH, WHEELS, parse
 from robot.params import Params
@@ -29,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Kick, write log and figure, and answer; 1 if a kicked wheel did not reverse."""
-    from host.figures.kick import KICK_WINDOW_S, draw
-    from host.kicking import advice, describe, kick_and_watch, require_running, title, wait_settled
+    from host.figures.robot.kick import KICK_WINDOW_S, draw
+    from host.kicking.outcome import advice, describe, kick_and_watch, require_running, title, wait_settled
 
     details = {name: getattr(options, name) for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")}
     _check(options.mode, options.wheel, details)

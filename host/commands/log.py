@@ -6,12 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from host.commands._options import common
+from host.commands._terminal import answer, robot_of, say, show
 from host.errors import WrongUse
-from host.options import common
-from host.terminal import answer, robot_of, say, show
 
 if TYPE_CHECKING:
-    from host.replay import ReplayResult
+    from host.logs.replay import ReplayResult
 
 HELP = "logs: list them, pull the robot's black box, export, replay"
 
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> int:
-    from host.recording import LOG_FOLDER, list_logs
+    from host.logs.mcap_files import LOG_FOLDER, list_logs
 
     folder = options.folder or LOG_FOLDER
     if not folder.is_dir():
@@ -60,8 +60,8 @@ def _list(options: argparse.Namespace) -> int:
 
 
 def _pull(options: argparse.Namespace) -> int:
-    from host.log import Log
-    from host.recording import new_path
+    from host.logs.log import Log
+    from host.logs.mcap_files import new_path
 
     with robot_of(options) as robot:
         log = Log(robot.info())
@@ -74,8 +74,8 @@ def _pull(options: argparse.Namespace) -> int:
 def _export(options: argparse.Namespace) -> int:
     import sys
 
-    from host.export import write_csv
-    from host.log import Log
+    from host.logs.log import Log
+    from host.logs.tables import write_csv
 
     log = Log.load(options.log)
     if log.info.get("truncated"):
@@ -93,8 +93,8 @@ def _export(options: argparse.Namespace) -> int:
 
 
 def _replay(options: argparse.Namespace) -> int:
-    from host.log import Log
-    from host.replay import replay
+    from host.logs.log import Log
+    from host.logs.replay import replay
 
     log = Log.load(options.log)
     result = replay(log)

@@ -2,8 +2,8 @@
 
 import argparse
 
+from host.commands._terminal import robot_of, show
 from host.errors import WrongUse
-from host.terminal import robot_of, show
 
 HELP = "the robot's parameters: list, get NAME, set NAME=VALUE ..."
 

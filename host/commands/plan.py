@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from host.terminal import robot_of, show
+from host.commands._terminal import robot_of, show
 
 if TYPE_CHECKING:
-    from host.client import Robot
+    from host.client.robot import Robot
 
 HELP = "say which kick, and when, would bring each wheel to a direction; nothing is kicked"
 
@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Look at the wheels, and tell each wheel's plan."""
     from host.errors import NotDone
-    from host.kicking import require_running, wait_settled
+    from host.kicking.outcome import require_running, wait_settled
     from robot.kicks import WHEELS
 
     with robot_of(options, observe=True) as robot:
@@ -42,9 +42,9 @@ def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
     """A wheel's heading, phase and speed, and the kick for it: None if it goes as wanted already."""
     from math import pi
 
-    from host.experiments.statistics import wilson
-    from host.motion import heading_of
-    from host.primitives import course, plan
+    from host.kicking.primitives import course, plan
+    from host.logs.motion import heading_of
+    from host.util.intervals import wilson
 
     present = heading_of([getattr(record, side + "_phi_rad") for record in robot.recent()])
     params = robot.status()["params"]

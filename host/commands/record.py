@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from host.commands._terminal import answer, robot_of, say
 from host.errors import KickctlError, RobotFault, WrongUse, printable
-from host.terminal import answer, robot_of, say
 from robot.record import Record
 
 HELP = "record every tick of the robot into a log"
@@ -42,8 +42,8 @@ class Tally:
 
 def run(options: argparse.Namespace) -> int:
     """Record; ^C ends it early, and what was recorded is kept. 5 if the robot fell into a fault meanwhile."""
-    from host.progress import progress
-    from host.recording import McapTap, new_path
+    from host.logs.mcap_files import McapTap, new_path
+    from host.util.progress import progress
 
     if not 0.0 < options.seconds < 1e6:
         raise WrongUse(f"cannot record {options.seconds:g} s", "give a number of seconds above 0")

@@ -3,10 +3,10 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from host.terminal import say, show
+from host.commands._terminal import say, show
 
 if TYPE_CHECKING:
-    from host.claims import Claim
+    from host.runs.claims import Claim
 
 HELP = "all of the paper's claims about the robot and its model, measured: a table and a report with figures"
 
@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Measure and report; whether the claims hold is what the report says, not the exit status."""
-    from host.experiments.reproduce import reproduce
+    from host.perform.reproduce import reproduce
 
     only = [number.strip().upper() for number in options.only.split(",")] if options.only else []
     done = reproduce(options.brick, options.seed, only, token=options.token, out=options.out, say=say)

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from host.terminal import answer, recorded, robot_of
+from host.commands._terminal import answer, recorded, robot_of
 
 HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverses it"
 
@@ -16,11 +16,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Kick the robot, keep the log, and draw the left wheel around the kick; 1 if it did not reverse."""
     from host.errors import NotDone
-    from host.figures.rods import SIZE, pictures
-    from host.kicking import describe, kick_and_watch, require_running, wait_settled
-    from host.movie import FPS, Movie
-    from host.progress import progress
-    from host.rods import SLOWER, WINDOW_S, course
+    from host.figures.robot.rods import SIZE, pictures
+    from host.films.movie import FPS, Movie
+    from host.films.rod_course import SLOWER, WINDOW_S, course
+    from host.kicking.outcome import describe, kick_and_watch, require_running, wait_settled
+    from host.util.progress import progress
     from robot.kicks import PHASE
 
     with Movie(options.out, SIZE) as movie:

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.terminal import robot_of, show
+from host.commands._terminal import robot_of, show
 
 HELP = "what the robot does, who controls it, and how punctual its ticks are"
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.terminal import answer, robot_of
+from host.commands._terminal import answer, robot_of
 
 HELP = "stop the motors; needs no token"
 

@@ -2,10 +2,10 @@
 
 import argparse
 
-from host.entries import add_options, options_given
-from host.options import common
-from host.terminal import say, show, tell
-from host.theory.table import TABLE
+from host.commands._options import common
+from host.commands._terminal import say, show, tell
+from host.runs.registry import add_options, options_given
+from host.theory.studies.registry import TABLE
 
 HELP = "the paper's analytic model of a wheel: fixpoints, bifurcations, portraits, phase diagram, chaos, basins"
 
@@ -19,10 +19,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run it; 1 if a claim does not hold. With --json the numbers stand at the top, unless they are a list, which is all then."""
-    from host.theory.run import perform
+    from host.perform.run import perform
 
     name = options.study
-    summary = perform(name, options.seed, out=options.out, scheduler=options.scheduler, say=say, **options_given(options, TABLE[name]))
+    summary = perform(
+        name, None, options.seed, out=options.out, scheduler=options.scheduler, say=say, **options_given(options, TABLE[name])
+    )
     if options.json:
         numbers = summary.pop("numbers")
         show(numbers if isinstance(numbers, list) else {**summary, **numbers})

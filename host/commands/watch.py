@@ -7,9 +7,9 @@ import time
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from host.client import Robot
+from host.client.robot import Robot
+from host.commands._terminal import robot_of
 from host.errors import WrongUse
-from host.terminal import robot_of
 from robot.kicks import WHEELS
 from robot.record import KICK_NAMES, STATES, Record
 
@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     """Watch; with --json a line of JSON for each refresh instead of the table."""
     from rich.live import Live
 
-    from host.terminal import show
+    from host.commands._terminal import show
 
     if not options.seconds > 0.0:
         raise WrongUse(f"cannot watch for {options.seconds:g} s", "give a number of seconds above 0")

@@ -1,1 +1,1 @@
-"""Every experiment with the robot: one file each, run by host.experiments.run, listed in host.experiments.table."""
+"""Every experiment with the robot and with simulated bodies, one file each, listed in host.experiments.registry."""

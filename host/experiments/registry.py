@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, cast
-
-from host.entries import Entry, Option, entry_of
-
-if TYPE_CHECKING:
-    from host.experiments.experiment import Experiment
-
+from host.runs.registry import Entry, Option
 
 # On simulated cars, which need no robot: `kickctl[bodies]`.
 BODIES = {
@@ -76,7 +69,7 @@ BODIES = {
     ),
 }
 
-TABLE = {
+ROBOT = {
     "primitives": Entry(
         "all motion primitives from each other by kicks, stopped and back: success rates and times, speed, duty, torque",
         (Option("trials", 10, 1, 1000, "tries of each transition"),),
@@ -115,11 +108,6 @@ TABLE = {
         "identifies this robot's motor from logs and writes it for sim://?motor=mine",
         (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about"),),
     ),
-    **BODIES,
 }
 
-
-def load(name: str) -> Experiment:
-    """The module of an experiment. Raises WrongUse if there is none."""
-    entry_of("experiment", TABLE, name)
-    return cast("Experiment", importlib.import_module("host.experiments." + name.replace("-", "_")))
+TABLE = {**ROBOT, **BODIES}

@@ -16,9 +16,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from host.bodies import need
 from host.errors import NotDone
-from host.movie import FPS, Movie, Picture
+from host.films.movie import FPS, Movie, Picture
+from host.util.extras import need
 
 SIZE = (960, 540)
 # How long (s) the camera takes to follow, and from how far (m) it looks: at a point, and so many times the body's greatest half more.

@@ -12,8 +12,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from host.bodies import need
 from host.errors import NotDone, WrongUse
+from host.util.extras import need
 
 Picture = NDArray[np.uint8]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import NotDone
-from host.log import Log
+from host.logs.log import Log
 from robot.controller import actual_positions, target_position
 from robot.kicks import WHEELS, pulse_weight, pulsed, seen_positions
 from sim_motor.compiled import retold

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from host.claims import Span
-from host.client import Robot
-from host.kicking import wait_settled
-from host.log import Log
+from host.client.robot import Robot
+from host.kicking.outcome import wait_settled
+from host.logs.log import Log
+from host.runs.claims import Span
 from robot.kicks import DEFAULT_SHIFT_RAD, WHEELS
 
 STEADY_S = 2.0

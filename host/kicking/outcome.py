@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from host.client import Robot
+from host.client.robot import Robot
 from host.errors import NotDone, RobotFault
-from host.log import Log
-from host.motion import HEADINGS, heading, settled, settling_s
+from host.logs.log import Log
+from host.logs.motion import HEADINGS, heading, settled, settling_s
 from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSED, WHEELS
 from robot.record import Record
 from sim_motor.settling import WINDOW_S

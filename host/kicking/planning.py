@@ -12,7 +12,7 @@ from math import degrees, tau
 from pathlib import Path
 from typing import Any
 
-from host.mapping import KINDS, PHASE_BINS, Row, bin_edges_rad, count, lengths, request, shift_of, tally
+from host.kicking.kick_map import KINDS, PHASE_BINS, Row, bin_edges_rad, count, lengths, request, shift_of, tally
 from robot import __version__
 from robot.params import Params
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from host.client import Robot
+from host.client.robot import Robot
 from host.errors import NotDone
-from host.kicking import BACKWARD, DIRECTIONS, FORWARD, STOPPED, WATCH_S, Outcome, kick_and_watch, wait_settled
-from host.log import Log
-from host.motion import heading
-from host.planning import Plan, reversal
+from host.kicking.outcome import BACKWARD, DIRECTIONS, FORWARD, STOPPED, WATCH_S, Outcome, kick_and_watch, wait_settled
+from host.kicking.planning import Plan, reversal
+from host.logs.log import Log
+from host.logs.motion import heading
 from robot.kicks import DEFAULT_SHIFT_RAD, DEFAULT_TICKS, DIRECTION_TICKS, MEMBRANE, PHASE, PULSE, WHEELS
 
 PRIMITIVES = {

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from urllib.parse import parse_qsl, urlsplit
 
 from host.errors import WrongUse
-from host.interrupts import uninterrupted
-from host.transport import Link, SerialLink, TcpLink
+from host.link.transport import Link, SerialLink, TcpLink
+from host.util.interrupts import uninterrupted
 from robot.program import BAUD, PORT
 
 SIM = "sim://"
@@ -49,13 +49,13 @@ def make_link(uri: str, seed: int | None = None) -> Link:
         if parts.host or parts.path:
             raise WrongUse(f"'{uri}' is no address of a robot: the simulated one has no name", _FORMS)
         with uninterrupted():
-            from host.sim_link import SimLink
+            from host.link.sim import SimLink
 
             return SimLink.from_options(uri, parts.options, seed)
     if parts.scheme == "tcp" and parts.host:
         return TcpLink(uri, parts.host, parts.port or PORT)
     if parts.scheme == "ssh" and parts.host:
-        from host.ssh_link import SshLink
+        from host.link.ssh import SshLink
 
         return SshLink(uri)
     if parts.scheme == "serial" and parts.path:

@@ -7,7 +7,7 @@ import socket
 from dataclasses import fields
 
 from host.errors import WrongUse
-from host.transport import LinkLost
+from host.link.transport import LinkLost
 from robot.loop import Loop
 from robot.server import Server
 from robot.wire import TOKEN_BYTES

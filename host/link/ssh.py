@@ -13,7 +13,7 @@ from typing import IO
 from urllib.parse import parse_qsl, urlsplit
 
 from host.errors import NoLink, WrongUse, printable
-from host.transport import LinkLost, TcpLink
+from host.link.transport import LinkLost, TcpLink
 from robot.program import PORT
 
 _FORM = "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens elsewhere than at its usual port"

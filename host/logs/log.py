@@ -7,7 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.stream import Event, Tap
+from host.logs.tap import Event, Tap
 from robot.kicks import WHEELS
 from robot.record import CHANNELS, NAMES, Record
 
@@ -123,7 +123,7 @@ class Log:
 
     def save(self, path: str | Path) -> Path:
         """Write the log to a new MCAP file. Raises LogError if the file exists already."""
-        from host.recording import McapTap
+        from host.logs.mcap_files import McapTap
 
         with McapTap(path, self.info) as tap:
             self.play(tap)
@@ -132,7 +132,7 @@ class Log:
     @classmethod
     def load(cls, path: str | Path) -> Log:
         """The log in an MCAP file, bit for bit. Raises LogError."""
-        from host.recording import play
+        from host.logs.mcap_files import play
 
         log = cls()
         log.info, whole = play(path, log)
@@ -141,8 +141,8 @@ class Log:
         return log
 
     def to_csv(self, path: str | Path) -> Path:
-        """Write one row a tick, as host.export describes it, over whatever the file held."""
-        from host.export import write_csv
+        """Write one row a tick, as host.logs.tables describes it, over whatever the file held."""
+        from host.logs.tables import write_csv
 
         path = Path(path)
         with path.open("w", encoding="utf-8", newline="") as out:
@@ -151,7 +151,7 @@ class Log:
 
     def to_npz(self, path: str | Path) -> Path:
         """Write the same columns as numpy arrays, with `info` and `events` as JSON text, over whatever the file held."""
-        from host.export import write_npz
+        from host.logs.tables import write_npz
 
         path = Path(path)
         with path.open("wb") as out:

@@ -26,7 +26,7 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
 from host.errors import WrongUse
-from host.stream import Event, Tap
+from host.logs.tap import Event, Tap
 from robot import __version__
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 

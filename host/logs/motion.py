@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.log import Log
+from host.logs.log import Log
 from robot.kicks import DIRECTION_TICKS, REST_TRAVEL_RAD, direction
 from sim_motor.settling import BAND, COUNT_RAD, ROUNDING, WINDOW_S
 from sim_motor.settling import settling_s as rule

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from struct import pack
 from typing import Any
 
-from host.log import Log
-from host.stream import Event
+from host.logs.log import Log
+from host.logs.tap import Event
 from robot.blackbox import Snapshot
 from robot.kicks import WHEELS, Kick
 from robot.params import Params

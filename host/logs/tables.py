@@ -10,7 +10,7 @@ import csv
 import json
 from typing import IO, Any, TextIO
 
-from host.stream import Event
+from host.logs.tap import Event
 from robot.kicks import WHEELS
 from robot.record import KICK_NAMES, STATES
 

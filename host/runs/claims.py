@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from host.experiments.statistics import fraction, spread, wilson
-from host.log import Log
+from host.logs.log import Log
+from host.util.intervals import fraction, spread, wilson
 from robot.kicks import WHEELS
 
 # The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.

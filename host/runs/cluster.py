@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 from concurrent.futures import CancelledError
 
 from host.errors import NoLink, WrongUse
-from host.experiments.experiment import Cell, Row, Setting
+from host.runs.contract import Cell, Row, Setting
 
 CONNECT_S = 10.0
 

@@ -1,4 +1,4 @@
-"""What an experiment is: a module with these functions, and host.figures.NAME with draw(rows, findings), which returns a Figure.
+"""What an experiment is: a module with these functions, and one among the figures with draw(rows, findings), which returns a Figure.
 
 Its work is a list of cells, each of which can be done by itself.
 
@@ -13,9 +13,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from host.claims import Claim
-from host.client import Robot
-from host.log import Log
+from host.client.robot import Robot
+from host.logs.log import Log
+from host.runs.claims import Claim
 
 Cell = dict[str, Any]
 Row = dict[str, Any]
@@ -53,10 +53,10 @@ class Findings:
 
 
 class Experiment(Protocol):
-    """The module host.experiments.NAME.
+    """The module of an experiment.
 
-    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too. An experiment on simulated bodies
-    (host.experiments.table.BODIES) is for no robot, and has neither world nor trial.
+    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too. An experiment on simulated bodies,
+    and a study of the analytic model, is for no robot and has neither world nor trial.
     """
 
     simulate: Callable[[Cell, Setting], list[Row]] | None

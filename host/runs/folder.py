@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.errors import WrongUse
-from host.experiments.experiment import Cell, Row
+from host.runs.contract import Cell, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

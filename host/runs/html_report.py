@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from host.claims import Claim
+from host.runs.claims import Claim
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
@@ -22,7 +22,7 @@ dt { font-weight: bold; }
 
 
 def write(path: Path, claims: Sequence[Claim], summaries: Sequence[dict[str, Any]], skipped: dict[str, str]) -> Path:
-    """Write the file. summaries: of the experiments, as host.experiments.run.perform returns them; skipped: why a claim was not tried."""
+    """Write the file. summaries: of the experiments, as host.perform.run returns them; skipped: why a claim was not tried."""
     first = summaries[0] if summaries else {"seed": "none", "version": ""}
     robots = sorted({summary["brick"] for summary in summaries if "brick" in summary})
     facts = {"robot": ", ".join(robots) or "none", "seed": first["seed"], "kickctl": first["version"]}

@@ -10,7 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import active_children, get_context
 
 from host.errors import NotDone
-from host.experiments.experiment import Cell, Row, Setting
+from host.runs.contract import Cell, Row, Setting
 
 
 def side_by_side(simulate: Callable[[Cell, Setting], list[Row]], cells: list[Cell], setting: Setting) -> Generator[tuple[Cell, list[Row]]]:

@@ -38,12 +38,12 @@ def entry_of(kind: str, table: Mapping[str, Entry], name: str) -> Entry:
     return table[name]
 
 
-def checked(kind: str, table: Mapping[str, Entry], name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+def checked(name: str, entry: Entry, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """All options of an entry, those that are not given at their defaults. Raises WrongUse."""
-    options = {option.name: option for option in entry_of(kind, table, name).options}
+    options = {option.name: option for option in entry.options}
     for given in arguments:
         if given not in options:
-            raise WrongUse(f"the {kind} '{name}' has no option '{given}'", "it has " + (", ".join(options) or "none"))
+            raise WrongUse(f"'{name}' has no option '{given}'", "it has " + (", ".join(options) or "none"))
     return {name: _value(option, arguments.get(name, option.default)) for name, option in options.items()}
 
 

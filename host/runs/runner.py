@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from host.errors import KickctlError
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.experiments.study import Study
-from host.progress import progress
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.runs.folder import Study
+from host.util.progress import progress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Outcome = tuple[list[Row], list[str]]  # and why earlier tries did not count
 Result = tuple[Cell, list[Row], list[str]]
 Work = Callable[[Cell], Outcome]
+Draw = Callable[[list[Row], Findings], "Figure"]
 
 
 @contextmanager
@@ -53,11 +56,11 @@ def simulate(
     """Do them by computing, here or on the Dask cluster of the scheduler at this address. processes: one for each core, if here."""
     missing = [cell for cell in cells if cell not in study]
     if scheduler is not None:
-        from host.experiments.cluster import spread
+        from host.runs.cluster import spread
 
         done = spread(scheduler, function, missing, setting)
     elif processes:
-        from host.experiments.processes import side_by_side
+        from host.runs.processes import side_by_side
 
         done = side_by_side(function, missing, setting)
     else:
@@ -75,9 +78,8 @@ def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: 
             advance(done)
 
 
-def finish(name: str, rows: list[Row], findings: Findings, study: Study, settings: dict[str, Any]) -> dict[str, Any]:
-    """Write the table, the figures of host.figures, and the summary, which is returned."""
-    draw = importlib.import_module("host.figures." + name.replace("-", "_")).draw
+def finish(name: str, rows: list[Row], findings: Findings, draw: Draw, study: Study, settings: dict[str, Any]) -> dict[str, Any]:
+    """Write the table, the figure that `draw` makes, and the summary, which is returned."""
     figures = study.write_figure(name, draw(rows, findings))
     logs = study.folder / "logs"
     summary = {

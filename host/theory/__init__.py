@@ -1,1 +1,1 @@
-"""The paper's analytic model of one wheel (eq. dot_x_phi): what mathematics and numbers say about it. Listed in host.theory.table."""
+"""The paper's analytic model of one wheel (eq. dot_x_phi): what mathematics and numbers say about it."""

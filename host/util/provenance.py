@@ -34,7 +34,7 @@ def origin(uri: str, hello: dict[str, Any], status: dict[str, Any], clock_zero_s
 @cache
 def commit() -> str:
     """The commit of the checkout that this runs from, with a '+' if it was changed; empty outside of one."""
-    root = Path(__file__).resolve().parent.parent
+    root = Path(__file__).resolve().parents[2]
     if not (root / ".git").exists():
         return ""
     try:

@@ -1,6 +1,6 @@
 """`make bench-theory`: kickctl's engine for many wheels of the analytic model against its peers, at equal accuracy, in one run.
 
-Every engine gets the equations from host.theory.model, the same points, both cores, and computes the same two averages.
+Every engine gets the equations from host.theory.model.wheel, the same points, both cores, and computes the same two averages.
 """
 
 import os
@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from host.theory.ensemble import averages as ours
+from host.theory.engine.ensemble import averages as ours
 from tests.bench_theory import by_heyoka, by_jax, by_numba, by_scipy
 from tests.bench_theory.problem import MEASURED_S, TRANSIENT_S, WORKERS, Averages, Contestant, difference, random_points, starts
 

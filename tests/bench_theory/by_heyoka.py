@@ -11,7 +11,7 @@ from functools import partial
 import heyoka
 import numpy as np
 
-from host.theory.model import Wheel, rates
+from host.theory.model.wheel import Wheel, rates
 from sim_motor.compiled import retold
 from tests.bench_theory.problem import MEASURED_S, TRANSIENT_S, WORKERS, Contestant, averages, starts
 

@@ -11,7 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from host.theory.model import rates
+from host.theory.model.wheel import rates
 from sim_motor.compiled import retold
 from tests.bench_theory.problem import MEASURED_S, START, TRANSIENT_S, WORKERS, Contestant, averages
 

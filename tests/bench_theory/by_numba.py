@@ -5,7 +5,7 @@ from functools import partial
 import numba
 import numpy as np
 
-from host.theory.model import rates
+from host.theory.model.wheel import rates
 from sim_motor.compiled import compiled
 from tests.bench_theory.problem import MEASURED_S, TRANSIENT_S, Contestant, averages, starts
 

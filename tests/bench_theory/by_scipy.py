@@ -8,7 +8,7 @@ import numba
 import numpy as np
 from scipy.integrate import odeint, solve_ivp
 
-from host.theory.model import rates
+from host.theory.model.wheel import rates
 from sim_motor.compiled import compiled
 from tests.bench_theory.problem import MEASURED_S, START, TRANSIENT_S, WORKERS, Contestant, averages
 

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from host.theory.ensemble import rate_per_s
-from host.theory.model import Array, Wheel
+from host.theory.engine.ensemble import rate_per_s
+from host.theory.model.wheel import Array, Wheel
 
 TRANSIENT_S = MEASURED_S = 100.0
 START = (1.0, 0.0, 0.3, 1.0)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from host.client import connect
+from host.client.robot import connect
 from host.errors import RefusedByRobot
 
 

@@ -12,11 +12,12 @@ from pathlib import Path
 
 import pytest
 
-from host.claims import Claim
 from host.errors import NoLink, NotDone, RobotFault
-from host.experiments import run, table
-from host.experiments.experiment import Findings
-from host.experiments.run import perform
+from host.experiments import registry as table
+from host.perform import robots as run
+from host.perform.run import perform
+from host.runs.claims import Claim
+from host.runs.contract import Findings
 from tests.cli.test_desk import desk_robot
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -55,10 +56,10 @@ def toy(monkeypatch):
     from matplotlib.figure import Figure
 
     made = Toy()
-    monkeypatch.setitem(table.TABLE, "toy", table.Entry("a toy", (table.Option("cells", COUNT, 1, 100, "how many"),), ("R1",)))
-    monkeypatch.setattr(run, "load", lambda name: made)
+    monkeypatch.setitem(table.ROBOT, "toy", table.Entry("a toy", (table.Option("cells", COUNT, 1, 100, "how many"),), ("R1",)))
     monkeypatch.setattr(run, "PAUSE_S", 0.1)
-    monkeypatch.setitem(sys.modules, "host.figures.toy", types.SimpleNamespace(draw=lambda rows, findings: Figure()))
+    monkeypatch.setitem(sys.modules, "host.experiments.robot.toy", made)
+    monkeypatch.setitem(sys.modules, "host.figures.robot.toy", types.SimpleNamespace(draw=lambda rows, findings: Figure()))
     return made
 
 
@@ -174,7 +175,7 @@ def test_a_robot_that_stays_in_fault_ends_the_run_and_keeps_what_was_measured(to
 
 
 def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(toy, desk, tmp_path, monkeypatch):
-    monkeypatch.setattr("host.client.RECONNECT_S", 0.5)
+    monkeypatch.setattr("host.client.robot.RECONNECT_S", 0.5)
     uri, process = desk
     real = toy.trial
 
@@ -211,7 +212,7 @@ def test_a_try_in_which_the_robots_program_began_anew_does_not_count(toy, desk, 
 
 @pytest.mark.parametrize("fails", [False, True])
 def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(toy, desk, tmp_path, fails):
-    from host.client import connect
+    from host.client.robot import connect
 
     own = {"k": 2.0, "tick_s": 0.02, "tau_s": 0.5, "max_duty_pct": 20.0}
     with connect(desk[0]) as robot:
@@ -244,7 +245,7 @@ def test_a_simulated_robots_seed_may_stand_in_its_address(toy, tmp_path):
 
 @pytest.mark.parametrize("named", [True, False])
 def test_no_real_robot_is_sent_against_a_wall_that_nobody_has_built(monkeypatch, tmp_path, named):
-    from host.experiments import reproduce
+    from host.perform import reproduce
 
     asked = []
 
@@ -266,7 +267,7 @@ def test_no_real_robot_is_sent_against_a_wall_that_nobody_has_built(monkeypatch,
 
 
 def test_after_an_experiment_the_robot_stands_still(toy, desk, tmp_path):
-    from host.client import connect
+    from host.client.robot import connect
 
     perform("toy", desk[0], out=tmp_path)
     with connect(desk[0]) as robot:

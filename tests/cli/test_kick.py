@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from host.log import Log
+from host.logs.log import Log
 from robot.record import KICK_NAMES, STATES
 
 OUTCOME = {"mode", "ticks", "shift_rad", "wheel", "applied_tick", "before", "after", "reversed", "settling_s"}

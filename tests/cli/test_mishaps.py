@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from host.client import connect
+from host.client.robot import connect
 from host.errors import NoLink, RefusedByRobot, WrongUse
-from host.log import Log
+from host.logs.log import Log
 from tests.cli.test_desk import desk_robot
 
 

@@ -6,12 +6,12 @@ from math import pi
 import numpy as np
 import pytest
 
-from host import planning
-from host.client import connect
-from host.kicking import kick_and_watch, wait_settled
-from host.log import Log
-from host.planning import Plan
-from host.primitives import drive, headings
+from host.client.robot import connect
+from host.kicking import planning
+from host.kicking.outcome import kick_and_watch, wait_settled
+from host.kicking.planning import Plan
+from host.kicking.primitives import drive, headings
+from host.logs.log import Log
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS
 from robot.params import Params
 
@@ -83,7 +83,7 @@ def test_a_kick_that_dips_is_given_at_the_moment_at_which_it_reverses(only_a_kic
 
 
 def test_a_planned_kick_that_fails_is_repeated_and_at_last_the_membrane_is_inverted(monkeypatch):
-    monkeypatch.setattr("host.primitives.reversal", lambda before, params, say: Plan(POSITION, 1))
+    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say: Plan(POSITION, 1))
     kicks = reversals(1, 1, {"k": 8.0}, by_plan)[0]
     assert [kick["mode"] for kick in kicks][:3] == [POSITION] * 3
     assert {kick["mode"] for kick in kicks[3:]} == {MEMBRANE}
@@ -91,7 +91,7 @@ def test_a_planned_kick_that_fails_is_repeated_and_at_last_the_membrane_is_inver
 
 
 def test_where_no_quenched_kick_is_sure_the_membrane_is_inverted_at_once(monkeypatch):
-    monkeypatch.setattr("host.primitives.reversal", lambda before, params, say: None)
+    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say: None)
     kicks = reversals(2, 1, {"k": 8.0}, by_plan)[0]
     assert {kick["mode"] for kick in kicks} == {MEMBRANE}
 
@@ -139,10 +139,10 @@ def test_plan_speaks_in_sentences(kickctl):
 
 def test_a_resting_wheel_is_set_going_and_a_window_is_told(kickctl, monkeypatch):
     with monkeypatch.context() as rested:
-        rested.setattr("host.motion.heading_of", lambda phi: "stopped")
+        rested.setattr("host.logs.motion.heading_of", lambda phi: "stopped")
         out = kickctl("plan", "--to", "forward", "--seed", "1")[1]
     assert "phase kick by -135° of 4 ticks, at any phase; sets a resting wheel going forward" in out
-    monkeypatch.setattr("host.primitives.reversal", lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99))
+    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99))
     out = kickctl("plan", "--to", "backward", "--seed", "1")[1]
     assert "at a phase from 29° to 86°" in out
     assert "ticks from now" in out

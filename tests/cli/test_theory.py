@@ -10,8 +10,8 @@ from math import pi
 
 import pytest
 
-from host.theory.hopf import hopf
-from host.theory.model import Wheel
+from host.theory.analysis.hopf import hopf
+from host.theory.model.wheel import Wheel
 
 
 def test_the_command_lists_eight_fixpoints(kickctl):

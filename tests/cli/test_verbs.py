@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from host.log import Log
+from host.logs.log import Log
 
 LOG_VERBS = ("export", "replay")
 

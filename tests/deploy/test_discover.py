@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import pytest
 from zeroconf import ServiceInfo, Zeroconf
 
-from host import discovery
 from host.cli import main
-from host.discovery import BRICK, ROBOT, USER, look_around
 from host.errors import NoLink, WrongUse
+from host.link import discovery
+from host.link.discovery import BRICK, ROBOT, USER, look_around
 
 LOOPBACK = ["127.0.0.1"]
 # Questions go out at once, after 1 s and after 3 s, and a record that was told within the last second is not told again.

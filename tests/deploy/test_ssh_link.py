@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from host.client import connect
+from host.client.robot import connect
 from host.errors import NoLink, WrongUse
-from host.links import make_link
+from host.link.addresses import make_link
 from tests.deploy.brick import ROOT, free_port, needs_sshd
 from tests.sysfs.mount import ended, mounted, needs_mount, started
 

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from host.client import RECONNECT_S, Robot, connect
+from host.client.robot import RECONNECT_S, Robot, connect
 from host.errors import NoLink, RefusedByRobot, WrongUse
-from host.log import Log
-from host.sim_link import SimLink
-from host.transport import TcpLink
+from host.link.sim import SimLink
+from host.link.transport import TcpLink
+from host.logs.log import Log
 from robot.loop import Loop
 from robot.motors import MonotonicClock
 from robot.record import unpack

@@ -4,10 +4,10 @@ from random import Random
 
 import pytest
 
-from host.client import Robot
+from host.client.robot import Robot
 from host.errors import NoLink
-from host.log import Log
-from host.sim_link import SimLink
+from host.link.sim import SimLink
+from host.logs.log import Log
 from robot.blackbox import BlackBox
 from robot.record import STRUCT
 from sim_motor.brick import SimBrick

@@ -10,10 +10,10 @@ from random import Random
 
 import pytest
 
-from host import client as client_module
-from host.client import Robot
-from host.links import make_link
-from host.log import Log
+from host.client import robot as client_module
+from host.client.robot import Robot
+from host.link.addresses import make_link
+from host.logs.log import Log
 from robot import program, wire
 from robot.loop import Loop
 from robot.motors import MonotonicClock

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from host.conversation import Conversation
+from host.client.conversation import Conversation
 from robot import server as server_module
 from robot import wire
 from robot.record import STATES

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from host.conversation import Conversation
+from host.client.conversation import Conversation
+from host.client.subscription import Subscription
 from host.errors import KickctlError
-from host.log import Log
-from host.subscription import Subscription
+from host.logs.log import Log
 from robot import wire
 from robot.blackbox import BlackBox
 from tests.rig import TOKEN, Rig

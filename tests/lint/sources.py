@@ -16,7 +16,7 @@ def robot_tests() -> list[str]:
     unit = (
         path
         for module in sorted((ROOT / "robot").glob("*.py"))
-        for path in sorted((ROOT / "tests/unit").glob("test_*.py"))
+        for path in sorted((ROOT / "tests/unit/robot").glob("test_*.py"))
         if path.stem == f"test_{module.stem}" or path.stem.startswith(f"test_{module.stem}_")
     )
     return [*(str(path.relative_to(ROOT)) for path in unit), "tests/link/test_wire.py", "tests/sysfs/test_panels.py"]

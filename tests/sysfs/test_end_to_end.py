@@ -7,10 +7,10 @@ from contextlib import contextmanager
 
 import pytest
 
-from host.client import connect
+from host.client.robot import connect
 from host.errors import RobotFault
-from host.kicking import kick_and_watch, wait_settled
-from host.log import Log
+from host.kicking.outcome import kick_and_watch, wait_settled
+from host.logs.log import Log
 from tests.sysfs.mount import ROOT, ended, inject, motor_folder, mounted, needs_mount, started
 
 pytestmark = needs_mount

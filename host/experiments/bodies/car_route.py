@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.experiments.bodies import made, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.stage import made, ran
+from host.runs.contract import Cell, Findings, Options, Row, Setting
 from sim_motor.bodies.presets import PUSHED, Preset, preset
 
 # Gain and time constant (s) of the neurons: the presets', slower ones, and the paper's of section 'Analytic modeling'.

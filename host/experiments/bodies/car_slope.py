@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
-from host.experiments.bodies import EDGE_M, headed, made, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import fraction, wilson
+from host.experiments.bodies.stage import EDGE_M, headed, made, ran
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import fraction, wilson
 from sim_motor.bodies.measures import FALLEN_RAD, STILL_RAD_S, reversals_s
 from sim_motor.bodies.presets import PUSHED, preset
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from host.bodies import CARS_OF_A_TRAIN
+from host.bodies.build import CARS_OF_A_TRAIN
 from sim_motor.bodies.measures import Course, course, order
 from sim_motor.bodies.presets import PUSHED, Preset
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from host.experiments.bodies import pushed_off, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.stage import pushed_off, ran
+from host.runs.contract import Cell, Findings, Options, Row, Setting
 from sim_motor.bodies.presets import preset
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from functools import partial
 
 import numpy as np
 
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
-from host.steering import CHOICES, KICK_S, LOOK_S, ON, Array, Drive, environment, learn, plan, seen_from
+from host.bodies.steering import CHOICES, KICK_S, LOOK_S, ON, Array, Drive, environment, learn, plan, seen_from
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import wilson
 
 # What to do at a pose, after a last choice, to come to a goal.
 Chooser = Callable[[Array, int, Array], int]

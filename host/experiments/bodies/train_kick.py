@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from host.experiments.bodies import ORDERED, pushed_off
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
+from host.experiments.bodies.stage import ORDERED, pushed_off
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import wilson
 from robot.kicks import MEMBRANE, POSITION, PULSE_BETA, Kick
 from sim_motor.bodies.measures import order
 from sim_motor.bodies.presets import preset

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from host.experiments.bodies import EDGE_M, ORDERED, headed, made, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.stage import EDGE_M, ORDERED, headed, made, ran
+from host.runs.contract import Cell, Findings, Options, Row, Setting
 from sim_motor.bodies.measures import FALLEN_RAD, reversals_s, started_s
 from sim_motor.bodies.presets import preset
 

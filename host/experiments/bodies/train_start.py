@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
-from host.experiments.bodies import ORDERED, PRESETS, made, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import fraction, wilson
+from host.experiments.bodies.stage import ORDERED, PRESETS, made, ran
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import fraction, wilson
 from sim_motor.bodies.presets import preset
 
 EVERY_S, JUDGED_S = 0.05, 1.0

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
-from host.experiments.bodies import ORDERED, Ran, made, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.stage import ORDERED, Ran, made, ran
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Options, Row, Setting
 from sim_motor.bodies.measures import reversals_s
 from sim_motor.bodies.presets import Preset, preset
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.experiments.bodies import BENT, pushed_off, ran
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.stage import BENT, pushed_off, ran
+from host.runs.contract import Cell, Findings, Options, Row, Setting
 from sim_motor.bodies.presets import preset
 
 Array = NDArray[np.float64]

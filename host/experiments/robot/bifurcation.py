@@ -21,15 +21,15 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim, break_away
-from host.client import Robot
+from host.client.robot import Robot
 from host.errors import NotDone
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import spread
-from host.kicking import require_running
-from host.log import Log
-from host.primitives import drive
-from host.showing import ramp
+from host.kicking.manoeuvres import ramp
+from host.kicking.outcome import require_running
+from host.kicking.primitives import drive
+from host.logs.log import Log
+from host.runs.claims import Claim, break_away
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import spread
 from robot.kicks import WHEELS
 from robot.record import STATES, Record
 from sim_motor.settling import COUNT_RAD

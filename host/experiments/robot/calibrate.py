@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.client import Robot
+from host.client.robot import Robot
 from host.errors import NotDone
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.identification import Drive, Found, Traits, break_away, constants_of, follow, identify, middle
-from host.log import Log
+from host.experiments.robot.identification import Drive, Found, Traits, break_away, constants_of, follow, identify, middle
+from host.logs.log import Log
+from host.runs.contract import Cell, Findings, Options, Row, Setting
 from robot.kicks import MAX_TICKS, PHASE, PULSE, WHEELS
 from robot.loop import BATTERY_TICKS
 from sim_motor.motor import Constants, load

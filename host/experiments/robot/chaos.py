@@ -17,12 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
-from host.client import Robot
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.lyapunov import Exponent, from_series, from_twins, of_noise
-from host.experiments.statistics import wilson
-from host.experiments.switching import (
+from host.client.robot import Robot
+from host.experiments.robot.switching import (
     CONDITIONS,
     DELAYED,
     ORDINARY,
@@ -36,9 +32,13 @@ from host.experiments.switching import (
     switches,
     wheels_run,
 )
-from host.kicking import require_running
-from host.log import Log
-from host.theory.model import acceleration
+from host.kicking.outcome import require_running
+from host.logs.log import Log
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.theory.analysis.series_exponents import Exponent, from_series, from_twins, of_noise
+from host.theory.model.wheel import acceleration
+from host.util.intervals import wilson
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS
 from robot.params import Params

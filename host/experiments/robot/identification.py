@@ -18,7 +18,7 @@ from scipy.optimize import least_squares
 from scipy.stats import t as student
 
 from host.errors import NotDone
-from host.experiments.statistics import CONFIDENCE
+from host.util.intervals import CONFIDENCE
 from sim_motor.compiled import assembled
 from sim_motor.motor import ANGLE, LAST_ANGLE, SAMPLE_SUBSTEPS, Array, Constants, advance, substep_at, substep_from
 

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.claims import Claim, quenched, surest
-from host.client import Robot
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.reliability import kick_settled
-from host.experiments.statistics import fraction, wilson
-from host.kicking import DIRECTIONS, OPPOSITE
-from host.log import Log
-from host.mapping import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, tally
-from host.planning import choose
+from host.client.robot import Robot
+from host.experiments.robot.reliability import kick_settled
+from host.kicking.kick_map import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, tally
+from host.kicking.outcome import DIRECTIONS, OPPOSITE
+from host.kicking.planning import choose
+from host.logs.log import Log
+from host.runs.claims import Claim, quenched, surest
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import fraction, wilson
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
 from robot.params import Params
 

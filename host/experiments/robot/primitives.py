@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim, Steady, coexistence, locomotion, steady
-from host.client import Robot
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import wilson
-from host.kicking import FORWARD, STOPPED, kick_and_watch, require_running
-from host.log import Log
-from host.motion import heading
-from host.primitives import PRIMITIVES, STOP_PULSE_S, drive
-from host.showing import starts
+from host.client.robot import Robot
+from host.kicking.manoeuvres import starts
+from host.kicking.outcome import FORWARD, STOPPED, kick_and_watch, require_running
+from host.kicking.primitives import PRIMITIVES, STOP_PULSE_S, drive
+from host.logs.log import Log
+from host.logs.motion import heading
+from host.runs.claims import Claim, Steady, coexistence, locomotion, steady
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import wilson
 from robot.kicks import DIRECTION_TICKS, PULSE, WHEELS
 
 simulate = None

@@ -10,15 +10,15 @@ from math import isnan
 
 import numpy as np
 
-from host.claims import Claim, inversions, quenched
-from host.client import Robot
+from host.client.robot import Robot
 from host.errors import NotDone
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import fraction
-from host.kicking import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
-from host.log import Log
-from host.mapping import request, shift_of
-from host.motion import settling_s
+from host.kicking.kick_map import request, shift_of
+from host.kicking.outcome import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
+from host.logs.log import Log
+from host.logs.motion import settling_s
+from host.runs.claims import Claim, inversions, quenched
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import fraction
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
 from robot.params import Params
 from sim_motor.batch import run

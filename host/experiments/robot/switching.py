@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from host.experiments import unattended
-from host.experiments.experiment import Setting
-from host.motion import directions
+from host.experiments.robot import unattended
+from host.logs.motion import directions
+from host.runs.contract import Setting
 from robot.kicks import DIRECTION_TICKS, JUMP, parse
 from robot.loop import Loop
 from robot.params import Params

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.claims import Claim, inversions
-from host.client import Robot
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import spread, wilson
-from host.kicking import kick_and_watch
-from host.log import Log
-from host.motion import settling_s
-from host.primitives import drive
+from host.client.robot import Robot
+from host.kicking.outcome import kick_and_watch
+from host.kicking.primitives import drive
+from host.logs.log import Log
+from host.logs.motion import settling_s
+from host.runs.claims import Claim, inversions
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import spread, wilson
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION, WHEELS
 
 simulate = None

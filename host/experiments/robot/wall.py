@@ -18,15 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.claims import WHEEL_RADIUS_M, Claim
-from host.client import Robot
-from host.experiments import unattended
-from host.experiments.experiment import Cell, Findings, Options, Row, Setting
-from host.experiments.statistics import fraction, wilson
-from host.kicking import FORWARD
-from host.log import Log
-from host.motion import directions, travels
-from host.primitives import SHIFT_TOWARD
+from host.client.robot import Robot
+from host.experiments.robot import unattended
+from host.kicking.outcome import FORWARD
+from host.kicking.primitives import SHIFT_TOWARD
+from host.logs.log import Log
+from host.logs.motion import directions, travels
+from host.runs.claims import WHEEL_RADIUS_M, Claim
+from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.util.intervals import fraction, wilson
 from robot.kicks import DIRECTION_TICKS, PHASE, WHEELS
 from robot.loop import Loop
 from sim_motor.brick import SimBrick

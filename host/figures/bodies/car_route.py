@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.car_route import KINDS, KS, NEURONS, car, rolling_rad_s
-from host.experiments.experiment import Findings, Row
+from host.experiments.bodies.car_route import KINDS, KS, NEURONS, car, rolling_rad_s
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 _SHADES = dict(zip(KINDS, ("#bbbbbb", COLOURS[4], COLOURS[5], COLOURS[0], COLOURS[1]), strict=True))
 _TICKS = (0.01, 0.03, 0.1, 0.3, 1.0)

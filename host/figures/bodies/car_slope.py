@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from host.experiments.car_slope import ANGLES, runs_of
-from host.experiments.experiment import Findings, Row
+from host.experiments.bodies.car_slope import ANGLES, runs_of
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 _FOOT_M = 4.0
 

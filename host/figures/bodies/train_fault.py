@@ -8,9 +8,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.train_fault import SIZES, WEAK
+from host.experiments.bodies.train_fault import SIZES, WEAK
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 _SHOWN = (("weaker", 0, "none"), ("weaker", -50, "weaker by 50 %"), ("weaker", -100, "dead"), ("sizes", SIZES, f"radii ±{SIZES:g} %"))
 # Faults that are no point on the axis of k stand beside it.

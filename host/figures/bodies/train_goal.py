@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.train_goal import LIMIT_S, PLANNED, RANDOM, REACHED_M, WAYS
+from host.bodies.steering import KICK_S, LEFT, LOOK_S, RIGHT
+from host.experiments.bodies.train_goal import LIMIT_S, PLANNED, RANDOM, REACHED_M, WAYS
 from host.figures.style import COLOURS, SIZE, styled
-from host.steering import KICK_S, LEFT, LOOK_S, RIGHT
+from host.runs.contract import Findings, Row
 
 _LOOKS: dict[str, dict[str, Any]] = {
     way: {"color": colour, "linestyle": dash}

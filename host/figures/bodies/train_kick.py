@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.train_kick import BRAKED, LENGTHS_S, MIXED, ON, REVERSED, STOPS, WHEELS
+from host.experiments.bodies.train_kick import BRAKED, LENGTHS_S, MIXED, ON, REVERSED, STOPS, WHEELS
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 from robot.kicks import MEMBRANE, POSITION
 
 _COLOURS = {REVERSED: COLOURS[0], ON: COLOURS[5], STOPS: "#999999", MIXED: COLOURS[4]}

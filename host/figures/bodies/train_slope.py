@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Cell, Findings, Row
-from host.experiments.train_slope import ANGLES, SHOWN, TRAINS
+from host.experiments.bodies.train_slope import ANGLES, SHOWN, TRAINS
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Cell, Findings, Row
 
 _FOOT_M = 4.0
 

@@ -6,8 +6,8 @@ from itertools import groupby
 
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 _WAYS = {1: ("forward", COLOURS[0], "-"), -1: ("backward", COLOURS[1], "--")}
 

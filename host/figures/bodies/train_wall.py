@@ -7,9 +7,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Cell, Findings, Row
-from host.experiments.train_wall import LEAST, TRAINS, name_of
+from host.experiments.bodies.train_wall import LEAST, TRAINS, name_of
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Cell, Findings, Row
 
 _WALL_M = 4.35
 _LINES: tuple[tuple[str, dict[str, bool], dict[str, Any]], ...] = (

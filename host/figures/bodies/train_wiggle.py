@@ -7,9 +7,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.train_wiggle import AUTHORS, AUTHORS_LAG_DEG, TRAINS
+from host.experiments.bodies.train_wiggle import AUTHORS, AUTHORS_LAG_DEG, TRAINS
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 _MARKS = "os^"
 

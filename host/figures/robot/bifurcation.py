@@ -7,10 +7,10 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.bifurcation import SIGN, STALL_TORQUE, held, least_k
-from host.experiments.experiment import Findings, Row
+from host.experiments.robot.bifurcation import SIGN, STALL_TORQUE, held, least_k
 from host.figures.style import COLOURS, SIZE, styled
-from host.kicking import FORWARD
+from host.kicking.outcome import FORWARD
+from host.runs.contract import Findings, Row
 
 _COLOUR = {"forward": COLOURS[0], "backward": COLOURS[1], "rest": "black"}
 _QUANTITIES = (("torque", "torque $M$", "$|M|$", 1.1, 0.45), ("hz", r"$\omega/2\pi$ (Hz)", r"$|\omega|/2\pi$ (Hz)", 2.3, 0.75))

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from host.experiments.calibrate import BASE, CHECK, STEPS, drive_of, kinds
-from host.experiments.experiment import Findings, Row
+from host.experiments.robot.calibrate import BASE, CHECK, STEPS, drive_of, kinds
+from host.experiments.robot.identification import Drive, Traits, constants_of, follow
 from host.figures.style import COLOURS, SIZE, styled
-from host.identification import Drive, Traits, constants_of, follow
+from host.runs.contract import Findings, Row
 from robot.kicks import WHEELS
 from sim_motor.motor import Array, load
 

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.chaos import SEEN, TAU_S, TWIN_S, UNSEEN, by_part, chosen, column, intervals_s, is_chaotic
-from host.experiments.experiment import Findings, Row
-from host.experiments.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES, switches
-from host.figures.kick import STALL_TORQUE
+from host.experiments.robot.chaos import SEEN, TAU_S, TWIN_S, UNSEEN, by_part, chosen, column, intervals_s, is_chaotic
+from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES, switches
+from host.figures.robot.kick import STALL_TORQUE
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 from sim_motor.settling import COUNT_RAD
 
 STRETCH_S = 20.0

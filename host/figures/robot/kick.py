@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from host.figures.style import SIZE, styled
-from host.log import Log
-from host.stream import Event
+from host.logs.log import Log
+from host.logs.tap import Event
 from robot.kicks import WHEELS
 
 # What to show of one kick: two turns of the wheels before it, and long enough after it for them to settle.

@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.kick_map import counts, of_kind, share
+from host.experiments.robot.kick_map import counts, of_kind, share
 from host.figures.style import SIZE, styled
-from host.kicking import DIRECTIONS
-from host.mapping import LENGTHS
+from host.kicking.kick_map import LENGTHS
+from host.kicking.outcome import DIRECTIONS
+from host.runs.contract import Findings, Row
 from robot.kicks import PHASE, POSITION
 
 _KINDS = {(POSITION, 0): "positions inverted", (PHASE, 1): r"phase shifted by $+3\pi/4$", (PHASE, -1): r"phase shifted by $-3\pi/4$"}

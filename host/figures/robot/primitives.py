@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.primitives import KS, STATES, rests, transitions
-from host.experiments.statistics import wilson
+from host.experiments.robot.primitives import KS, STATES, rests, transitions
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
+from host.util.intervals import wilson
 
 _WHEELS = {"left_hz": ("left", COLOURS[4], 3.4), "right_hz": ("right", COLOURS[0], 1.4)}
 _TRIES = {"runs": ("runs", COLOURS[2], "o"), "stays": ("stays at rest after a pulse of $k$ to 0", COLOURS[1], "s")}

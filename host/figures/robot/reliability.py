@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.reliability import LENGTHS, points, rate
-from host.experiments.statistics import wilson
+from host.experiments.robot.reliability import LENGTHS, points, rate
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
+from host.util.intervals import wilson
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
 _CURVES: tuple[tuple[str, str, bool | None], ...] = (

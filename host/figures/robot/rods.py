@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from host.figures.style import COLOURS, styled
-from host.rods import Course
+from host.films.rod_course import Course
 
 SIZE = (960, 480)
 _DPI = 100

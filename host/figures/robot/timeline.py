@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
-from host.experiments.timeline import KICKS, kicks, settling
+from host.experiments.robot.timeline import KICKS, kicks, settling
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 # The colours of the paper's figure.
 _LINES = {

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Cell, Findings, Row
-from host.experiments.statistics import wilson
-from host.experiments.wall import APARTS, BUMPERS, GRIPS, KS, PAPER, STIFFNESSES, WITH_BUMPER, of, rate
+from host.experiments.robot.wall import APARTS, BUMPERS, GRIPS, KS, PAPER, STIFFNESSES, WITH_BUMPER, of, rate
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Cell, Findings, Row
+from host.util.intervals import wilson
 
 Scale = tuple[str, tuple[float, ...], str, float]  # a field of the rows, its values, what it is called, and a factor for its unit
 

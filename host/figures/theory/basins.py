@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, styled
-from host.theory.basins import CONTINUOUS, LENGTHS_S, MODELS, SAMPLED, of_kick, part_of, reversals
-from host.theory.fates import BACK, BACKWARD, FORWARD, REST
+from host.runs.contract import Findings, Row
+from host.theory.analysis.fates import BACK, BACKWARD, FORWARD, REST
+from host.theory.studies.basins import CONTINUOUS, LENGTHS_S, MODELS, SAMPLED, of_kick, part_of, reversals
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
 _KINDS = {(POSITION, 0): "positions inverted", (PHASE, 1): r"phase shifted $+3\pi/4$", (PHASE, -1): r"phase shifted $-3\pi/4$"}

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, styled
+from host.runs.contract import Findings, Row
 
 _COLOUR = {"fixpoints": COLOURS[6], "merging": COLOURS[6], "FB": COLOURS[2], "LLM": COLOURS[0], "dry": COLOURS[1]}
 _NAME = {"FB": "forth and back (FB)", "LLM": "rotation (LLM)", "dry": "rotation with dry friction"}

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
-from host.theory.model import OMEGA, Wheel, numpy_rates, resting
+from host.runs.contract import Findings, Row
+from host.theory.model.wheel import OMEGA, Wheel, numpy_rates, resting
 
 _KINDS = (("even $n$", 0, COLOURS[0], "o"), ("odd $n$", 1, COLOURS[1], "s"))
 

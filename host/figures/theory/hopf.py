@@ -7,8 +7,8 @@ from math import pi
 import numpy as np
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.contract import Findings, Row
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:

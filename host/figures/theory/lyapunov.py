@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
-from host.theory.attractors import BACK, CHAOS, KINDS, REST, ROLL
-from host.theory.transients import ENTRY_S, FEWEST
+from host.runs.contract import Findings, Row
+from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL
+from host.theory.analysis.transients import ENTRY_S, FEWEST
 
 SHOWN_S = 40.0
 _COLOUR = {KINDS[REST]: COLOURS[6], KINDS[BACK]: COLOURS[4], KINDS[ROLL]: COLOURS[0], KINDS[CHAOS]: COLOURS[1]}

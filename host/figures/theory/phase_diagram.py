@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import SIZE, styled
-from host.theory.hopf import critical_k, estimate
-from host.theory.model import Array, Wheel
-from host.theory.phase_diagram import phases
+from host.runs.contract import Findings, Row
+from host.theory.analysis.hopf import critical_k, estimate
+from host.theory.model.wheel import Array, Wheel
+from host.theory.studies.phase_diagram import phases
 
 _QUANTITIES = (("omega_std", r"std($\omega$) (rad/s)"), ("omega_mean", r"$|\langle\omega\rangle|$ (rad/s)"))
 _DARK: Any = {"frameon": True, "facecolor": "#444444", "labelcolor": "white"}

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
-from host.theory.model import Array
+from host.runs.contract import Findings, Row
+from host.theory.model.wheel import Array
 
 _NAMES = {"S": "rest", "FB": "forth and back", "LLM": "locomotion", "C": "irregular"}
 _MARKERS = {"saddle": ("s", "white"), "stable": ("o", "black"), "unstable": ("o", "white")}

@@ -7,9 +7,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.experiment import Findings, Row
 from host.figures.style import COLOURS, SIZE, styled
-from host.theory.tick import CONTINUOUS, NEW, OLD, ORDERS, RUNNING_K, part_of
+from host.runs.contract import Findings, Row
+from host.theory.studies.tick import CONTINUOUS, NEW, OLD, ORDERS, RUNNING_K, part_of
 
 _COLOUR = {NEW: COLOURS[0], OLD: COLOURS[1], CONTINUOUS: "black"}
 _LINE = {"k_c": ("-", "rest ends"), "k_rolls": ("--", "rolling begins"), "k_stops": ("-.", "rolling ends")}

@@ -13,9 +13,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from host.theory.elementary import OPTIONS, sin
-from host.theory.ensemble import FINE, advance, wheel_rates
-from host.theory.model import OMEGA, Array
+from host.theory.engine.elementary import OPTIONS, sin
+from host.theory.engine.ensemble import FINE, advance, wheel_rates
+from host.theory.model.wheel import OMEGA, Array
 
 REST, BACK, ROLL, CHAOS = range(4)
 KINDS = ("at rest", "forth-and-back", "rolling", "chaotic")

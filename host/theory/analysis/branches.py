@@ -12,14 +12,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from host.theory.continuation import Curve, Point
-from host.theory.cycles import FORTH_AND_BACK, ROTATION, Shooting, rolling
-from host.theory.fixpoints import fixpoint
-from host.theory.hopf import hopf
-from host.theory.merging import course, mergings
-from host.theory.model import OMEGA, PHI, Array, Wheel
-from host.theory.special import MERGING, Followed, follow
-from host.theory.turning import constant_velocity, turning
+from host.theory.analysis.continuation import Curve, Point
+from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Shooting, rolling
+from host.theory.analysis.fixpoints import fixpoint
+from host.theory.analysis.hopf import hopf
+from host.theory.analysis.merging import course, mergings
+from host.theory.analysis.special import MERGING, Followed, follow
+from host.theory.model.turning import constant_velocity, turning
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 
 # The fields of Wheel by the paper's letters.
 FIELDS = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from host.errors import NotDone
-from host.theory.model import Array
+from host.theory.model.wheel import Array
 
 Problem = Callable[[Array], tuple[Array, Array]]
 

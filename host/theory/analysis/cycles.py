@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import NotDone, WrongUse
-from host.theory.flow import FINENESS, plain, run, steps_for, varied
-from host.theory.model import OMEGA, PHI, Array, Wheel, rates
+from host.theory.engine.flow import FINENESS, plain, run, steps_for, varied
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 
 # The coordinates of the section phi = 0.
 SECTION = [0, 1, OMEGA]
@@ -42,7 +42,7 @@ ROTATION = Family("LLM", _UNDO_QUARTER, pi / 2, 4.0)
 
 
 class Shooting:
-    """The cycles of a family as a problem (see host.theory.continuation) in the unknowns (x1, x2, omega, time, constant).
+    """The cycles of a family as a problem (see host.theory.analysis.continuation) in the unknowns (x1, x2, omega, time, constant).
 
     The first three are the state at phi = 0. time: what the reduced map takes, s. constant: of the wheel, that of the field `along`.
     """

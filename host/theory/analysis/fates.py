@@ -12,12 +12,12 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from host.theory.ensemble import Averages
-from host.theory.kicked import Model, Sampled, inverted, memory_s, seen_in
-from host.theory.model import OMEGA, PHI, Array, Wheel, resting
-from host.theory.onset import leading
-from host.theory.sampled import at_rest
-from host.theory.symbolic import jacobian_at
+from host.theory.analysis.onset import leading
+from host.theory.engine.ensemble import Averages
+from host.theory.engine.kicked import Model, Sampled, inverted, memory_s, seen_in
+from host.theory.engine.sampled import at_rest
+from host.theory.model.symbolic import jacobian_at
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, resting
 from robot.kicks import FROZEN_MODES
 
 REST, BACK, FORWARD, BACKWARD, OTHER = OUTCOMES = "rest", "forth-and-back", "forward", "backward", "other"

@@ -16,10 +16,10 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from host.errors import NotDone, WrongUse
-from host.theory.fixpoints import Fixpoint, NDComplex, fixpoint
-from host.theory.flow import FINENESS, plain, run, steps_for
-from host.theory.hopf import hopf
-from host.theory.model import OMEGA, PHI, Array, Wheel, rates
+from host.theory.analysis.fixpoints import Fixpoint, NDComplex, fixpoint
+from host.theory.analysis.hopf import hopf
+from host.theory.engine.flow import FINENESS, plain, run, steps_for
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 from robot.controller import actual_positions
 
 SADDLE = -pi / 4

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from host.theory import sampled
-from host.theory.kicked import Model
-from host.theory.model import OMEGA, PHI, Array, Wheel, resting
-from host.theory.sampled import Clock
+from host.theory.engine import sampled
+from host.theory.engine.kicked import Model
+from host.theory.engine.sampled import Clock
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, resting
 
 # Times a wheel's own k, between which its rest is watched.
 _SPAN = np.geomspace(1e-5, 1e5, 401)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from host.experiments.statistics import spread
+from host.util.intervals import spread
 
 Array = NDArray[np.float64]
 

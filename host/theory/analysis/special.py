@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from host.errors import NotDone
-from host.theory.continuation import Curve, Point
-from host.theory.cycles import Shooting
-from host.theory.fixpoints import NDComplex
-from host.theory.merging import saddle
-from host.theory.model import OMEGA
+from host.theory.analysis.continuation import Curve, Point
+from host.theory.analysis.cycles import Shooting
+from host.theory.analysis.fixpoints import NDComplex
+from host.theory.analysis.merging import saddle
+from host.theory.model.wheel import OMEGA
 
 FOLD, PITCHFORK, NEIMARK_SACKER = "fold", "pitchfork", "neimark-sacker"
 # Where a curve may end.

@@ -1,7 +1,7 @@
 """How fast small differences between wheels grow, by two algorithms: the variational equations, and pairs of near wheels.
 
 A wheel and one vector that its Jacobian drives are a column of eight rows, so that as many as one likes are followed at once
-(host.theory.ensemble); for several vectors of a wheel there are several columns of it.
+(host.theory.engine.ensemble); for several vectors of a wheel there are several columns of it.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import numba
 import numpy as np
 import sympy
 
-from host.theory.attractors import settled
-from host.theory.elementary import MATHEMATICS, OPTIONS, inlined
-from host.theory.ensemble import FINE, advance, rate_per_s
-from host.theory.model import Array, Wheel
-from host.theory.symbolic import CONSTANTS, STATE, field, jacobian_at
+from host.theory.analysis.attractors import settled
+from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.engine.ensemble import FINE, advance, rate_per_s
+from host.theory.model.symbolic import CONSTANTS, STATE, field, jacobian_at
+from host.theory.model.wheel import Array, Wheel
 from sim_motor.compiled import retold
 
 # Between two orthonormalisations all vectors turn towards the fastest, on average by a factor of e^6 or less, of the 16 digits they
@@ -69,7 +69,7 @@ def growth(
     """How `count` vectors grow that are made orthonormal again and again (Benettin et al., Meccanica 15, 1980).
 
     In the long run their rates are the Lyapunov exponents, the greatest first. vectors: to begin with; else some, always the same.
-    Raises WrongUse as host.theory.ensemble.advance does.
+    Raises WrongUse as host.theory.engine.ensemble.advance does.
     """
     wheels, rounds = states.shape[1], _intervals(parameters, seconds, count)
     if vectors is None:

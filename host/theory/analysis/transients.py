@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import expon, goodness_of_fit
 
-from host.theory.attractors import CHAOS, settled, starts, watch
-from host.theory.model import OMEGA, Array, Wheel
+from host.theory.analysis.attractors import CHAOS, settled, starts, watch
+from host.theory.model.wheel import OMEGA, Array, Wheel
 
 # A wheel that has not turned round for so long has stopped switching: near the edge of its basin, rolling may last for a minute and be
 # no end. Reversals are noticed to within LOOK_S.

@@ -13,9 +13,9 @@ from typing import Any
 import numba
 import numpy as np
 
-from host.theory import runge_kutta
-from host.theory.elementary import OPTIONS
-from host.theory.model import Array
+from host.theory.engine import runge_kutta
+from host.theory.engine.elementary import OPTIONS
+from host.theory.model.wheel import Array
 
 ORDER = 10
 

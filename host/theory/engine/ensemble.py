@@ -1,6 +1,7 @@
 """Many wheels of the analytic model at once, with fixed steps, over all cores and vector units.
 
-The rates are host.theory.model.rates, and through it robot/controller.py, compiled with sin, cos and exp of host.theory.elementary.
+The rates are those of host.theory.model.wheel, and so of robot/controller.py, compiled with sin, cos and exp of
+host.theory.engine.elementary.
 Wheels stand side by side in memory, so that the compiler lets one instruction do several of them.
 """
 
@@ -13,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from host.theory import adams, runge_kutta
-from host.theory.elementary import MATHEMATICS, OPTIONS, inlined
-from host.theory.model import OMEGA, PHI, Array, Wheel, rates
+from host.theory.engine import adams, runge_kutta
+from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 from sim_motor.compiled import prange, retold
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond the fewest takes many more steps than

@@ -1,6 +1,6 @@
 """One wheel at a time, step by step, with the derivatives of where it gets to: what shooting and bisection need.
 
-The method is Runge and Kutta's of order 8 with fixed steps, as in host.theory.ensemble, which is for many wheels.
+The method is Runge and Kutta's of order 8 with fixed steps, as in host.theory.engine.ensemble, which is for many wheels.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import numpy as np
 import sympy
 from scipy.integrate import DOP853
 
-from host.theory.ensemble import rate_per_s, too_stiff
-from host.theory.model import Array, Wheel, rates
-from host.theory.symbolic import CONSTANTS, field, function, jacobian
+from host.theory.engine.ensemble import rate_per_s, too_stiff
+from host.theory.model.symbolic import CONSTANTS, field, function, jacobian
+from host.theory.model.wheel import Array, Wheel, rates
 from sim_motor.compiled import assembled, compiled, retold
 
 # The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is the step's own.
 _TABLEAU = np.vstack([DOP853.A, DOP853.B]).astype(np.float64)
 _STAGES = len(DOP853.B)
-# Steps per unit of a wheel's rate (see host.theory.ensemble); at this, the error of a period is of the order of rounding.
+# Steps per unit of a wheel's rate (see host.theory.engine.ensemble); at this, the error of a period is of the order of rounding.
 FINENESS = 3.0
 _LEAST_STEPS = 16
 # A piece of a period that takes more is that of a stiff wheel, for which an explicit method is the wrong one.

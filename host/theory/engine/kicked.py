@@ -12,11 +12,11 @@ from typing import Any, NamedTuple, Protocol
 import numba
 import numpy as np
 
-from host.theory import ensemble, sampled
-from host.theory.elementary import MATHEMATICS, OPTIONS, inlined
-from host.theory.ensemble import FINE, Averages
-from host.theory.model import OMEGA, Array, Wheel, seen_rates
-from host.theory.sampled import Clock, Seen, ticks_in
+from host.theory.engine import ensemble, sampled
+from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.engine.ensemble import FINE, Averages
+from host.theory.engine.sampled import Clock, Seen, ticks_in
+from host.theory.model.wheel import OMEGA, Array, Wheel, seen_rates
 from robot.controller import actual_positions
 from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, POSITION, invert_membrane, parse, pulsed, seen_positions
 from robot.params import Params
@@ -40,7 +40,7 @@ class Model(Protocol):
 
 
 class Continuous(NamedTuple):
-    """The paper's equations, in steps as fine as host.theory.ensemble has them."""
+    """The paper's equations, in steps as fine as host.theory.engine.ensemble has them."""
 
     fineness: float = FINE
 

@@ -8,8 +8,8 @@ import numba
 import numpy as np
 from scipy.integrate import DOP853
 
-from host.theory.elementary import OPTIONS
-from host.theory.model import Array
+from host.theory.engine.elementary import OPTIONS
+from host.theory.model.wheel import Array
 
 # The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate: its rows, and the weights as the last. Half of it is
 # zeros; of the others, one pass over the memory adds four.

@@ -1,8 +1,8 @@
 """The wheel as a brick drives it: neurons that step once a tick (robot/controller.py), and a force that is held from tick to tick.
 
 Between ticks I domega/dt = F - f omega with F constant has an exact solution, so that a tick is a map. Its state is (x1, x2, phi, omega,
-F): that of host.theory.model, and the force that acts until the next one does. Arrays of states are (5, wheels), of parameters (6,
-wheels), as in host.theory.ensemble; there is no motor here that could saturate or stick.
+F): that of host.theory.model.wheel, and the force that acts until the next one does. Arrays of states are (5, wheels), of parameters (6,
+wheels), as in host.theory.engine.ensemble; there is no motor here that could saturate or stick.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ import numpy as np
 
 import robot.wheel
 from host.errors import WrongUse
-from host.theory.elementary import MATHEMATICS, inlined
-from host.theory.ensemble import Averages
-from host.theory.model import PHI, Array, Wheel
+from host.theory.engine.elementary import MATHEMATICS, inlined
+from host.theory.engine.ensemble import Averages
+from host.theory.model.wheel import PHI, Array, Wheel
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS, Kick, seen_positions
 from robot.params import Params
@@ -27,7 +27,7 @@ from sim_motor.compiled import assembled_parallel, compiled, prange, retold
 HELD = 4
 # A wheel that needs more ticks has a tick too short for what it is asked.
 MOST_TICKS = 50_000_000
-# What host.theory.elementary can take.
+# What host.theory.engine.elementary can take.
 _LARGEST_EXPONENT = 700.0
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import sympy
 
-from host.theory.model import Array, Wheel, rates
+from host.theory.model.wheel import Array, Wheel, rates
 from sim_motor.compiled import retold
 
 STATE = sympy.symbols("x1 x2 phi omega", real=True)

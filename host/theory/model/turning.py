@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from host.theory.model import Array, Wheel, numpy_positions
+from host.theory.model.wheel import Array, Wheel, numpy_positions
 from robot.controller import actual_positions, membrane_rate
 
 # After so many time constants nothing is left of how the neurons began.

@@ -7,6 +7,7 @@ rods' forces, moments of inertia in these times s^2, friction in these times s. 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import isfinite
 from typing import Any, NamedTuple
 
@@ -88,6 +89,12 @@ class Wheel(NamedTuple):
         for name, values in varied.items():
             parameters[self._fields.index(name)] = values
         return parameters
+
+
+def wheel_of(options: Mapping[str, Any]) -> Wheel:
+    """The wheel with the constants that options name by the paper's letters; the others are the paper's. Raises WrongUse."""
+    named = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
+    return Wheel(**{named[letter]: options[letter] for letter in named if options.get(letter) is not None}).checked()
 
 
 def resting(phi: Array) -> Array:

@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory import fates
-from host.theory.ensemble import FINE, rate_per_s
-from host.theory.fates import BACK, BACKWARD, FORWARD, OUTCOMES, QUARTER, REST, SETTLED, WATCHED, mirrored, started, watched
-from host.theory.kicked import KICKS, Continuous, Model, Sampled, memory_s
-from host.theory.model import PHI, Array, Wheel, numpy_rates
-from host.theory.run import wheel_of
-from host.theory.sampled import Clock, as_robot, ticks_in
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis import fates
+from host.theory.analysis.fates import BACK, BACKWARD, FORWARD, OUTCOMES, QUARTER, REST, SETTLED, WATCHED, mirrored, started, watched
+from host.theory.engine.ensemble import FINE, rate_per_s
+from host.theory.engine.kicked import KICKS, Continuous, Model, Sampled, memory_s
+from host.theory.engine.sampled import Clock, as_robot, ticks_in
+from host.theory.model.wheel import PHI, Array, Wheel, numpy_rates, wheel_of
 from robot.kicks import FROZEN_MODES
 from robot.params import Params
 
@@ -39,7 +38,7 @@ MOST_STEPS = 200_000
 LENGTHS_S = {CONTINUOUS: [round(0.005 * number, 3) for number in range(81)], SAMPLED: [CLOCK.tick_s * ticks for ticks in range(13)]}
 
 
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """Bands of the grid of starts, kinds of kicks, and a check, of either model. Raises WrongUse of wheels that take too long."""
     wheel = wheel_of(options)
     steps = memory_s(wheel) * (SETTLED + 2 * WATCHED) * float(rate_per_s(wheel.columns(1))[0])

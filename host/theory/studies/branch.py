@@ -14,18 +14,17 @@ from typing import Any
 import numpy as np
 
 from host.errors import NotDone
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory.branch_report import findings
-from host.theory.branches import FIELDS, Branch, hopf_values, rotation, rotations, swings, turned, with_constant
-from host.theory.cycle_rows import branch_rows, checks, pairs
-from host.theory.cycles import ROTATION, Shooting
-from host.theory.fixpoints import fixpoint
-from host.theory.flow import FINENESS
-from host.theory.hopf import hopf
-from host.theory.merging import NEAR, Merging, merging_line, mergings, neutral_tau_s
-from host.theory.model import OMEGA, PHI, Array, Wheel
-from host.theory.run import wheel_of
-from host.theory.turning import constant_velocity, driven, potentials
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis.branches import FIELDS, Branch, hopf_values, rotation, rotations, swings, turned, with_constant
+from host.theory.analysis.cycles import ROTATION, Shooting
+from host.theory.analysis.fixpoints import fixpoint
+from host.theory.analysis.hopf import hopf
+from host.theory.analysis.merging import NEAR, Merging, merging_line, mergings, neutral_tau_s
+from host.theory.engine.flow import FINENESS
+from host.theory.model.turning import constant_velocity, driven, potentials
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, wheel_of
+from host.theory.studies.branch_report import findings
+from host.theory.studies.cycle_rows import branch_rows, checks, pairs
 
 # The constant is followed from this part of the end's value on.
 _SPAN = 1e-3
@@ -34,7 +33,7 @@ SHOWN_K = (1.85, 8.0)
 _FIXPOINTS, _TAUS, _ANGLES = 121, 25, 73
 
 
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """A branch each, the global bifurcation, its line over tau, and the turning wheel."""
     parts = ["fixpoints", "merging", "FB", "LLM", *(["dry"] if options["dry"] > 0.0 else []), "line", "turning"]
     return [{"part": part} for part in parts]

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
-from host.experiments.experiment import Findings, Row, Setting
-from host.theory.hopf import estimate, hopf
-from host.theory.model import Wheel
-from host.theory.run import wheel_of
-from host.theory.turning import constant_velocity
+from host.runs.claims import Claim
+from host.runs.contract import Findings, Row, Setting
+from host.theory.analysis.hopf import estimate, hopf
+from host.theory.model.turning import constant_velocity
+from host.theory.model.wheel import Wheel, wheel_of
 
 # How many reduced maps make a period; mergings are extrapolated from so many cycles before the end of a branch.
 _POWER, _LAST = {"FB": 2, "LLM": 4, "dry": 4}, 25

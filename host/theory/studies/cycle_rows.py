@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from host.experiments.experiment import Row
-from host.theory.continuation import Point
-from host.theory.cycles import Shooting
-from host.theory.ensemble import averages
-from host.theory.model import OMEGA, PHI
-from host.theory.special import Followed
-from host.theory.turning import constant_velocity
+from host.runs.contract import Row
+from host.theory.analysis.continuation import Point
+from host.theory.analysis.cycles import Shooting
+from host.theory.analysis.special import Followed
+from host.theory.engine.ensemble import averages
+from host.theory.model.turning import constant_velocity
+from host.theory.model.wheel import OMEGA, PHI
 
 # A disturbance is given until it has died out so far.
 _DIED = 1e-11

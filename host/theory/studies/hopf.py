@@ -1,28 +1,17 @@
-"""Where a resting wheel begins to swing: the Hopf bifurcation of the even fixpoints, exactly, and what the paper's expansion says of it.
-
-At phi = 0 the potential x1 decouples; with S = x_t(1) the others have the characteristic polynomial
-I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S), from which `hopf` follows by Routh and Hurwitz.
-"""
+"""Where a resting wheel begins to swing: the exact line in (k, tau), and the paper's estimate beside it."""
 
 from __future__ import annotations
 
-from functools import cache
-from itertools import pairwise, product
-from math import cos, inf, sin, sqrt
-from typing import Any, NamedTuple
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
-import sympy
-from scipy.optimize import brentq
 
-from host.claims import Claim
-from host.errors import WrongUse
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory.fixpoints import ANGLES, fixpoint
-from host.theory.model import Array, Wheel
-from host.theory.run import wheel_of
-from host.theory.symbolic import STATE, Floats, field, function, jacobian_at
-from robot.controller import target_position
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis.fixpoints import ANGLES
+from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, estimate, hopf, line
+from host.theory.model.wheel import wheel_of
 
 # The line is drawn over time constants from a hundredth to a hundred times the wheel's.
 LINE = 101
@@ -30,99 +19,7 @@ LINE = 101
 LIMIT = 0.01
 
 
-class Hopf(NamedTuple):
-    """A Hopf bifurcation. k: where; omega: of the swinging (rad/s).
-
-    l1: the first Lyapunov coefficient (1; Kuznetsov, Elements of Applied Bifurcation Theory, section 5.4, with eigenvectors of length
-    1); cycles are born stable, supercritically, if it is negative. Above k, while mu is the real part of the eigenvalues there, they
-    are states z q + its conjugate with |z|^2 = mu / (-l1 omega).
-    """
-
-    k: float
-    omega: float
-    l1: float
-
-
-def hopf(wheel: Wheel) -> Hopf:
-    """The Hopf bifurcation of the even fixpoints in k, whatever the wheel's own k.
-
-    Raises WrongUse if there is none: without friction every resting wheel is unstable, and with a = 0 the rods do not pull.
-    """
-    if wheel.checked().friction == 0.0 or wheel.a == 0.0:
-        why = "without friction every k makes a resting wheel swing" if wheel.a else "with a = 0 the rods do not pull"
-        raise WrongUse(f"there is no Hopf bifurcation: {why}", f"give {'f' if wheel.a else 'a'} above 0")
-    k = critical_k(wheel)
-    # omega^2 = (f - k S tau) / (I tau), without the difference, which nearly vanishes for small tau.
-    omega = sqrt(k * (wheel.a / 2 - float(target_position(1.0, wheel.a))) / (wheel.inertia + wheel.friction * wheel.tau_s))
-    return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega))
-
-
-def critical_k(wheel: Wheel) -> float:
-    """The k above which rest is unstable, in closed form: 0 without friction, infinite with a = 0."""
-    tau_s, inertia, friction = wheel.tau_s, wheel.inertia, wheel.friction
-    pull = tau_s * (target_position(1.0, wheel.a) * friction * tau_s + inertia * wheel.a / 2)
-    return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
-
-
-@cache
-def _derivatives() -> tuple[Floats, Floats]:
-    """The functions of the second and of the third derivatives of the rates by the state."""
-    second, third = (
-        function([sympy.diff(rate, *variables) for rate in field() for variables in product(STATE, repeat=order)]) for order in (2, 3)
-    )
-    return second, third
-
-
-def _lyapunov_coefficient(wheel: Wheel, omega: float) -> float:
-    state = (1.0, 0.0, 0.0, 0.0)
-    second, third = (np.array(of(*state, *wheel)) for of in _derivatives())
-    quadratic, cubic = second.reshape(4, 4, 4), third.reshape(4, 4, 4, 4)
-    matrix = jacobian_at(state, wheel)
-    values, vectors = np.linalg.eig(matrix)
-    q = vectors[:, np.argmin(np.abs(values - 1j * omega))]
-    values, vectors = np.linalg.eig(matrix.T)
-    p = vectors[:, np.argmin(np.abs(values + 1j * omega))]
-    p = p / np.vdot(q, p)  # so that <p, q> = 1
-
-    def twice(u: Any, v: Any) -> Any:
-        return np.einsum("ijk,j,k", quadratic, u, v)
-
-    mean = np.linalg.solve(matrix, twice(q, q.conj()))
-    double = np.linalg.solve(2j * omega * np.eye(4) - matrix, twice(q, q))
-    inner = np.einsum("ijkl,j,k,l", cubic, q, q, q.conj()) - 2 * twice(q, mean) + twice(q.conj(), double)
-    return float(np.vdot(p, inner).real / (2 * omega))
-
-
-def estimate(wheel: Wheel) -> float:
-    """The paper's critical k = 2 f / (a tau), infinite with a = 0. Eq. k_critical."""
-    return 2 * wheel.friction / (wheel.a * wheel.tau_s) if wheel.a else inf
-
-
-def adaptive_friction(phi: float, wheel: Wheel) -> float:
-    """gamma(phi), the coefficient of omega in the paper's expansion for slow wheels; a resting wheel swings where it is positive.
-
-    Eq. friction_gamma, in which 4 y (1 - y) = 1 - x_t^2.
-    """
-    slopes = [1.0 - target_position(x, wheel.a) ** 2 for x in (cos(phi), sin(phi))]
-    return float(wheel.k * wheel.a * wheel.tau_s / 2 * (slopes[0] * sin(phi) ** 2 + slopes[1] * cos(phi) ** 2) - wheel.friction)
-
-
-def by_eigenvalues(wheel: Wheel) -> float:
-    """The same k by searching where the eigenvalues of the 4-D Jacobian cross the imaginary axis: a check."""
-    k = hopf(wheel).k
-
-    def growth(factor: float) -> float:
-        return float(fixpoint(ANGLES[0], wheel._replace(k=factor * k)).eigenvalues[0].real)
-
-    return k * float(brentq(growth, 0.5, 2.0, xtol=1e-14, rtol=1e-13))
-
-
-def line(wheel: Wheel, taus_s: Array) -> list[tuple[float, Hopf]]:
-    """(tau, Hopf bifurcation) at each of these time constants."""
-    return [(tau_s, hopf(wheel._replace(tau_s=tau_s))) for tau_s in map(float, taus_s)]
-
-
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """The point, the line through it, and the limit for which the estimate is made. Raises WrongUse as `hopf` does."""
     hopf(wheel_of(options))
     return [{"part": "point"}, {"part": "line"}, {"part": "limit"}]

@@ -20,21 +20,20 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory.attractors import KINDS, ROLL, settled, starts, watch
-from host.theory.ensemble import rate_per_s
-from host.theory.model import Array, Wheel, numpy_rates
-from host.theory.route import along, checked, of_series, rolling_end, route, spectrum, spectrum_claim, tally
-from host.theory.run import wheel_of
-from host.theory.tangent import divergence, growth, pair_growth, smooth_mean
-from host.theory.transients import crisis, least_chaotic_k, lives, sample
-from host.theory.turning import begun_rolling
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis.attractors import KINDS, ROLL, settled, starts, watch
+from host.theory.analysis.tangent import divergence, growth, pair_growth, smooth_mean
+from host.theory.analysis.transients import crisis, least_chaotic_k, lives, sample
+from host.theory.engine.ensemble import rate_per_s
+from host.theory.model.turning import begun_rolling
+from host.theory.model.wheel import Array, Wheel, numpy_rates, wheel_of
+from host.theory.studies.route import along, checked, of_series, rolling_end, route, spectrum, spectrum_claim, tally
 
 PARTS = ("point", "series", "line", "plane", "rolling", "lives", "check")
 PAPER_K, PAPER_TAU_S = 15.0, 1.0
 ANY, ROLLS = "any", "rolls"
 SETTLE_S, WATCH_S, MEASURE_S = 200.0, 100.0, 100.0
-# Steps for whatever needs no more than a kind and an exponent (see host.theory.ensemble); `check` says how good that is.
+# Steps for whatever needs no more than a kind and an exponent (see host.theory.engine.ensemble); `check` says how good that is.
 FINENESS = 0.6
 # The point: wheels, how long one is followed at most, and blocks, much longer than what a chaotic wheel remembers.
 WHEELS, LONGEST_S, ALIGN_S, BLOCK_S = 64, 2000.0, 20.0, 100.0
@@ -59,7 +58,7 @@ def tau_axis(options: dict[str, Any]) -> Array:
     return np.asarray((np.arange(PLANE) + 0.5) * max(MOST_TAU_S, BEYOND * options["tau"]) / PLANE)
 
 
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """All pieces. Raises WrongUse of wheels that are too fast to be followed for long."""
     wheel = wheel_of(options)
     extremes = [wheel._replace(k=k, tau_s=tau) for k in k_axis(options, LINE_KS)[[-1]] for tau in (options["tau"], tau_axis(options)[0])]

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory.ensemble import FINE, Averages, averages
-from host.theory.hopf import critical_k, estimate
-from host.theory.model import PHI, Array, Wheel, resting
-from host.theory.run import wheel_of
-from host.theory.turning import begun_rolling
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis.hopf import critical_k, estimate
+from host.theory.engine.ensemble import FINE, Averages, averages
+from host.theory.model.turning import begun_rolling
+from host.theory.model.wheel import PHI, Array, Wheel, resting, wheel_of
 
 # The paper's inset.
 INSET_K, INSET_TAU = 5.0, 0.5
@@ -53,7 +52,7 @@ def ways(options: dict[str, Any]) -> tuple[str, ...]:
     return ("up", "down") if options["start"] == "sweep" else (options["start"],)
 
 
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """Bands of time constants, and a sample that is done twice."""
     bands: list[Cell] = [
         {"panel": panel, "first": first, "end": min(first + BAND, options["points"])}

@@ -13,15 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from host.claims import Claim
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory.ensemble import advance
-from host.theory.fixpoints import fixpoint, fixpoints
-from host.theory.flow import FINENESS, plain, run, steps_for
-from host.theory.hopf import critical_k
-from host.theory.model import OMEGA, PHI, Array, Wheel
-from host.theory.run import wheel_of
-from host.theory.turning import turning
+from host.runs.claims import Claim
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis.fixpoints import fixpoint, fixpoints
+from host.theory.analysis.hopf import critical_k
+from host.theory.engine.ensemble import advance
+from host.theory.engine.flow import FINENESS, plain, run, steps_for
+from host.theory.model.turning import turning
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, wheel_of
 
 PAPERS_K = {1.4: "S", 1.65: "FB", 1.85: "LLM"}
 # Unstable manifolds begin so far from the saddle (in its eigenvector's units) and are followed for so long, sampled so often.
@@ -118,7 +117,7 @@ def kind_of(found: Array | None) -> str:
     return "LLM" if abs(found[-1, PHI] - found[0, PHI]) > pi else "FB"
 
 
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """One portrait each. Raises WrongUse as `fixpoint` does."""
     ks = PAPERS_K if options["k"] is None else (options["k"],)
     for k in ks:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from host.entries import Entry, Option
+from host.runs.registry import Entry, Option
 
 # The constants of a wheel, by the paper's letters.
 A = Option("a", 4.0, 0.0, 100.0, "gain of the neurons")

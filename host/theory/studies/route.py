@@ -1,4 +1,4 @@
-"""What the rows of host.theory.lyapunov come to: the spectrum at a point, and the route to chaos along k."""
+"""What the rows of host.theory.studies.lyapunov come to: the spectrum at a point, and the route to chaos along k."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from host.claims import Claim
 from host.errors import NotDone
-from host.experiments.experiment import Row
-from host.experiments.lyapunov import from_series, of_noise
-from host.experiments.statistics import wilson
-from host.theory.attractors import BACK, CHAOS, KINDS, REST, ROLL
-from host.theory.model import Array, Wheel
-from host.theory.tangent import divergence, kaplan_yorke
-from host.theory.transients import Crisis, Sample
+from host.runs.claims import Claim
+from host.runs.contract import Row
+from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL
+from host.theory.analysis.series_exponents import from_series, of_noise
+from host.theory.analysis.tangent import divergence, kaplan_yorke
+from host.theory.analysis.transients import Crisis, Sample
+from host.theory.model.wheel import Array, Wheel
+from host.util.intervals import wilson
 
 ORDERS = range(1, 5)
 # A normal distribution's 95 % and 99.7 %.
@@ -23,7 +23,7 @@ SURE, VERY_SURE = 1.96, 3.0
 NEAR_ZERO = 0.05
 # A period of the motion, in the series.
 APART_S = 2.0
-# A rolling wheel has reached its cycle if its windows (see host.theory.attractors) agree so well.
+# A rolling wheel has reached its cycle if its windows (see host.theory.analysis.attractors) agree so well.
 REACHED = 1e-7
 # So many of the slowest dampings make the curve that is followed to 0.
 NEAREST = 12

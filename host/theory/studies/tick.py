@@ -12,16 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from host.experiments.experiment import Cell, Findings, Row, Setting
-from host.theory import sampled
-from host.theory.ensemble import rate_per_s
-from host.theory.hopf import estimate, hopf
-from host.theory.kicked import Continuous, Model, Sampled, memory_s
-from host.theory.model import PHI, Wheel, resting
-from host.theory.onset import critical_k, leading, multipliers, rolling_ends, swinging_ends
-from host.theory.run import wheel_of
-from host.theory.sampled import Clock
-from host.theory.symbolic import jacobian_at
+from host.runs.contract import Cell, Findings, Row, Setting
+from host.theory.analysis.hopf import estimate, hopf
+from host.theory.analysis.onset import critical_k, leading, multipliers, rolling_ends, swinging_ends
+from host.theory.engine import sampled
+from host.theory.engine.ensemble import rate_per_s
+from host.theory.engine.kicked import Continuous, Model, Sampled, memory_s
+from host.theory.engine.sampled import Clock
+from host.theory.model.symbolic import jacobian_at
+from host.theory.model.wheel import PHI, Wheel, resting, wheel_of
 
 CONTINUOUS, NEW, OLD = "continuous", "new", "old"
 ORDERS = (NEW, OLD)
@@ -44,7 +43,7 @@ NEAR, PATIENCE = 1e-5, 1_000_000
 _SWING_RAD = 1e-4
 
 
-def cells(options: dict[str, Any]) -> list[Cell]:
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """The continuous limit; each tick and each latency by both orders; and what speaks of accuracy. Raises WrongUse."""
     hopf(wheel_of(options))
     Clock(options["tick"], options["latency"]).checked()

@@ -12,13 +12,15 @@ from multiprocessing import active_children
 import numpy as np
 import pytest
 
-from host.claims import Claim
 from host.errors import NotDone, WrongUse
-from host.experiments import car_route, car_slope, processes, reproduce, train_fault, train_kick, train_start, train_wall, train_wiggle
-from host.experiments.bodies import Ran, pushed_off
-from host.experiments.experiment import Setting
-from host.experiments.run import perform
-from host.experiments.table import BODIES, TABLE
+from host.perform import reproduce
+from host.experiments.bodies import car_route, car_slope, train_fault, train_kick, train_start, train_wall, train_wiggle
+from host.experiments.bodies.stage import Ran, pushed_off
+from host.experiments.registry import BODIES, TABLE
+from host.perform.run import perform
+from host.runs import processes
+from host.runs.claims import Claim
+from host.runs.contract import Setting
 from sim_motor.bodies.measures import Course
 from sim_motor.bodies.presets import preset
 
@@ -30,7 +32,7 @@ def setting(name, seed=1, **options):
 
 
 def module(name):
-    return importlib.import_module("host.experiments." + name.replace("-", "_"))
+    return importlib.import_module("host.experiments.bodies." + name.replace("-", "_"))
 
 
 def plain(data):
@@ -72,7 +74,7 @@ def test_a_short_run_ends_in_numbers_and_a_figure(name, monkeypatch):
     findings = experiment.report(rows, chosen)
     assert [claim.id for claim in findings.claims] == list(TABLE[name].claims)
     assert plain(findings.numbers) == findings.numbers
-    figure = importlib.import_module("host.figures." + name.replace("-", "_")).draw(rows, findings)
+    figure = importlib.import_module("host.figures.bodies." + name.replace("-", "_")).draw(rows, findings)
     figure.canvas.draw()
     assert all(axes.has_data() for axes in figure.axes)
 

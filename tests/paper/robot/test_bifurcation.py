@@ -2,11 +2,11 @@
 
 import pytest
 
-from host.client import connect
-from host.experiments import bifurcation
-from host.experiments.experiment import Setting
-from host.figures.bifurcation import draw
-from host.log import Log
+from host.client.robot import connect
+from host.experiments.robot import bifurcation
+from host.figures.robot.bifurcation import draw
+from host.logs.log import Log
+from host.runs.contract import Setting
 from robot.kicks import WHEELS
 
 SETTING = Setting(1, {"points": 33})

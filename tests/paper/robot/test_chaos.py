@@ -6,14 +6,14 @@ from math import log, pi
 import numpy as np
 import pytest
 
-from host.client import connect
+from host.client.robot import connect
 from host.errors import NotDone
-from host.experiments import chaos
-from host.experiments.experiment import Setting
-from host.experiments.lyapunov import from_series, from_twins, of_noise
-from host.experiments.switching import CONDITIONS, DELAYED, ORDINARY, RESTS, ROLLS, SWITCHES, Jump, ending, switches, wheels_run
-from host.figures.chaos import draw
-from host.log import Log
+from host.experiments.robot import chaos
+from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, RESTS, ROLLS, SWITCHES, Jump, ending, switches, wheels_run
+from host.figures.robot.chaos import draw
+from host.logs.log import Log
+from host.runs.contract import Setting
+from host.theory.analysis.series_exponents import from_series, from_twins, of_noise
 from robot.controller import motor_torque
 from robot.params import Params
 from sim_motor.batch import CHANNELS

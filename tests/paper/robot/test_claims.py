@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from host.motion import heading_of
+from host.logs.motion import heading_of
 from robot.kicks import WHEELS
 from robot.loop import Loop
 from sim_motor.brick import SimBrick

@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import pytest
 
-from host.experiments import primitives
-from host.experiments.experiment import Setting
-from host.experiments.run import perform
+from host.experiments.robot import primitives
+from host.perform.run import perform
+from host.runs.contract import Setting
 
 KS = (0.4, 0.5, 8.0)
 

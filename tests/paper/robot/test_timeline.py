@@ -6,11 +6,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from host.client import connect
-from host.experiments import timeline
-from host.experiments.experiment import Setting
-from host.figures.timeline import draw
-from host.log import Log
+from host.client.robot import connect
+from host.experiments.robot import timeline
+from host.figures.robot.timeline import draw
+from host.logs.log import Log
+from host.runs.contract import Setting
 
 SETTING = Setting(1, {"trials": 2})
 

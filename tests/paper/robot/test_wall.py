@@ -6,11 +6,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from host.client import connect
-from host.experiments import wall
-from host.experiments.experiment import Setting
-from host.figures.wall import draw
-from host.log import Log
+from host.client.robot import connect
+from host.experiments.robot import wall
+from host.figures.robot.wall import draw
+from host.logs.log import Log
+from host.runs.contract import Setting
 from robot.kicks import WHEELS
 
 SETTING = Setting(1, {"bounces": 50})

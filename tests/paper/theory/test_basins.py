@@ -7,14 +7,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
-from host.experiments.experiment import Findings, Setting
-from host.figures.basins import draw
-from host.theory import basins, fates, sampled
-from host.theory.ensemble import Averages
-from host.theory.fates import BACK, BACKWARD, FORWARD, OTHER, REST, after_kicks, mirrored, rolling, started, watched
-from host.theory.kicked import KICKS, Continuous, Sampled, inverted, seen_in
-from host.theory.model import OMEGA, PHI, Wheel, seen_rates
-from host.theory.sampled import PLAIN, Clock, Seen
+from host.figures.theory.basins import draw
+from host.runs.contract import Findings, Setting
+from host.theory.analysis import fates
+from host.theory.analysis.fates import BACK, BACKWARD, FORWARD, OTHER, REST, after_kicks, mirrored, rolling, started, watched
+from host.theory.engine import sampled
+from host.theory.engine.ensemble import Averages
+from host.theory.engine.kicked import KICKS, Continuous, Sampled, inverted, seen_in
+from host.theory.engine.sampled import PLAIN, Clock, Seen
+from host.theory.model.wheel import OMEGA, PHI, Wheel, seen_rates
+from host.theory.studies import basins
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import MEMBRANE, PHASE, POSITION, parse
 from robot.params import Params

@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from host.entries import checked
-from host.experiments.experiment import Setting
-from host.figures.branch import draw
-from host.theory import branch
-from host.theory.table import TABLE
+from host.figures.theory.branch import draw
+from host.runs.contract import Setting
+from host.runs.registry import checked
+from host.theory.studies import branch
+from host.theory.studies.registry import TABLE
 
 
 def setting(**options):

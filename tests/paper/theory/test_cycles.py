@@ -5,14 +5,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from host.errors import NotDone, WrongUse
-from host.theory.branches import hopf_values, rotation, rotations, swings, turned
-from host.theory.continuation import Curve, Point
-from host.theory.cycles import FORTH_AND_BACK, ROTATION, Family, Shooting
-from host.theory.hopf import hopf
-from host.theory.merging import course, merging, mergings, neutral_tau_s, passes
-from host.theory.model import OMEGA, PHI, Wheel, rates
-from host.theory.special import FOLD, LOST, MERGING, NEIMARK_SACKER, PITCHFORK, RANGE, follow
-from host.theory.turning import constant_velocity, driven, potentials
+from host.theory.analysis.branches import hopf_values, rotation, rotations, swings, turned
+from host.theory.analysis.continuation import Curve, Point
+from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Family, Shooting
+from host.theory.analysis.hopf import hopf
+from host.theory.analysis.merging import course, merging, mergings, neutral_tau_s, passes
+from host.theory.analysis.special import FOLD, LOST, MERGING, NEIMARK_SACKER, PITCHFORK, RANGE, follow
+from host.theory.model.turning import constant_velocity, driven, potentials
+from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
 
 PAPER = Wheel()
 K_MERGE = merging(PAPER).k

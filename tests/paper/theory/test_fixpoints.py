@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from host.errors import WrongUse
-from host.theory.fixpoints import ANGLES, fixpoint, fixpoints, growth_by_time_course
-from host.theory.hopf import adaptive_friction, by_eigenvalues, critical_k, estimate, hopf
-from host.theory.model import OMEGA, PHI, Wheel, numpy_rates, rates, resting
-from host.theory.portrait import cycle, kind_of
-from host.theory.symbolic import jacobian_at, jacobian_by_differences
+from host.theory.analysis.fixpoints import ANGLES, fixpoint, fixpoints, growth_by_time_course
+from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, critical_k, estimate, hopf
+from host.theory.model.symbolic import jacobian_at, jacobian_by_differences
+from host.theory.model.wheel import OMEGA, PHI, Wheel, numpy_rates, rates, resting
+from host.theory.studies.portrait import cycle, kind_of
 from robot.controller import target_position
 
 WHEELS = st.builds(

@@ -5,18 +5,18 @@ import json
 import numpy as np
 import pytest
 
-import host.theory.lyapunov as study
-from host.claims import Claim
+import host.theory.studies.lyapunov as study
 from host.errors import WrongUse
-from host.experiments.experiment import Setting
-from host.theory.attractors import BACK, CHAOS, REST, ROLL, settled, starts, watch
-from host.theory.model import PHI, Wheel, rates, resting
-from host.theory.route import rolling_end
-from host.theory.run import perform
-from host.theory.symbolic import jacobian_at
-from host.theory.tangent import divergence, growth, kaplan_yorke, pair_growth, smooth_mean, tangent_rates
-from host.theory.transients import crisis, lives, sample
-from host.theory.turning import begun_rolling
+from host.perform.run import perform
+from host.runs.claims import Claim
+from host.runs.contract import Setting
+from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL, settled, starts, watch
+from host.theory.analysis.tangent import divergence, growth, kaplan_yorke, pair_growth, smooth_mean, tangent_rates
+from host.theory.analysis.transients import crisis, lives, sample
+from host.theory.model.symbolic import jacobian_at
+from host.theory.model.turning import begun_rolling
+from host.theory.model.wheel import PHI, Wheel, rates, resting
+from host.theory.studies.route import rolling_end
 
 RESTING, SWINGING, ROLLING, CHAOTIC = Wheel(k=1.4), Wheel(k=1.65), Wheel(k=8.0), Wheel(k=15.0, tau_s=1.0)
 OPTIONS = {"a": 4.0, "tau": 1.0, "k": 15.0, "f": 0.5, "I": 0.05, "seconds": 2000.0}
@@ -210,8 +210,8 @@ def small(monkeypatch):
         "MEASURE_S": 20.0,
     }.items():
         monkeypatch.setattr(study, name, value)
-    monkeypatch.setattr("host.theory.transients.SEARCH_STEPS", 4)
-    monkeypatch.setattr("host.theory.transients.SEARCH_S", 60.0)
+    monkeypatch.setattr("host.theory.analysis.transients.SEARCH_STEPS", 4)
+    monkeypatch.setattr("host.theory.analysis.transients.SEARCH_S", 60.0)
 
 
 @pytest.mark.parametrize(("options", "kind"), [({"k": 8.0, "tau": 0.25}, "rolling"), ({"k": 0.0}, "at rest")])

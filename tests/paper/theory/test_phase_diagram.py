@@ -7,13 +7,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from host.experiments.experiment import Setting
-from host.theory import phase_diagram, portrait
-from host.theory.ensemble import advance
-from host.theory.fixpoints import fixpoint
-from host.theory.hopf import critical_k
-from host.theory.model import OMEGA, PHI, Wheel
-from host.theory.turning import begun_rolling, constant_velocity, turning
+from host.runs.contract import Setting
+from host.theory.analysis.fixpoints import fixpoint
+from host.theory.analysis.hopf import critical_k
+from host.theory.engine.ensemble import advance
+from host.theory.model.turning import begun_rolling, constant_velocity, turning
+from host.theory.model.wheel import OMEGA, PHI, Wheel
+from host.theory.studies import phase_diagram, portrait
 
 OPTIONS = {"a": 4.0, "f": 0.5, "I": 0.05, "points": 10, "k_to": 20.0, "tau_to": 1.5, "start": "sweep", "transient": 60.0, "seconds": 40.0}
 

@@ -7,14 +7,15 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
-from host.experiments.experiment import Setting
-from host.figures.tick import draw
-from host.theory import onset, sampled
-from host.theory import tick as study
-from host.theory.hopf import hopf
-from host.theory.kicked import Continuous, Sampled
-from host.theory.model import OMEGA, PHI, Wheel
-from host.theory.sampled import Clock, at_rest, coast, jacobian
+from host.figures.theory.tick import draw
+from host.runs.contract import Setting
+from host.theory.analysis import onset
+from host.theory.analysis.hopf import hopf
+from host.theory.engine import sampled
+from host.theory.engine.kicked import Continuous, Sampled
+from host.theory.engine.sampled import Clock, at_rest, coast, jacobian
+from host.theory.model.wheel import OMEGA, PHI, Wheel
+from host.theory.studies import tick as study
 from robot.controller import target_position
 from robot.kicks import PHASE, POSITION, parse
 from robot.params import Params

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from host.bodies import Asked, body_of, preset_of, push_of, run, spec_of
+from host.bodies.build import Asked, body_of, preset_of, push_of, run, spec_of
 from host.errors import NotDone, WrongUse
 from robot.kicks import MEMBRANE, PHASE, WHEELS, Kick, parse
 from robot.params import Params

@@ -10,12 +10,12 @@ import gymnasium
 import numpy as np
 import pytest
 
-from host import steering
+from host.bodies import steering
+from host.bodies.steering import ALL_PAIRS, CHOICES, LEFT, ON, RIGHT, plan, seen_from
 from host.errors import WrongUse
-from host.experiments import train_goal
-from host.experiments.experiment import Setting
-from host.figures.train_goal import draw
-from host.steering import ALL_PAIRS, CHOICES, LEFT, ON, RIGHT, plan, seen_from
+from host.experiments.bodies import train_goal
+from host.figures.bodies.train_goal import draw
+from host.runs.contract import Setting
 from robot.kicks import MEMBRANE, NO_PULSE, PHASE, POSITION, PULSE_BETA, PULSE_SHIFT, reversing_shift
 from sim_motor.bodies.environment import ID, JOINT_RAD_S, KICKS, WHEEL_RAD_S, Train
 from sim_motor.bodies.presets import preset

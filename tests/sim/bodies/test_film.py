@@ -12,14 +12,14 @@ import pytest
 from imageio_ffmpeg import get_ffmpeg_exe
 from PIL import Image
 
-from host import film
-from host.bodies import Asked, body_of
+from host.bodies.build import Asked, body_of
 from host.errors import NotDone, WrongUse
-from host.figures import rods as figure
-from host.film import Camera, Film
-from host.log import Log
-from host.movie import Movie
-from host.rods import WINDOW_S, course
+from host.figures.robot import rods as figure
+from host.films import body as film
+from host.films.body import Camera, Film
+from host.films.movie import Movie
+from host.films.rod_course import WINDOW_S, course
+from host.logs.log import Log
 from robot.controller import motor_torque, rod_force, tangential_force
 from tests.lint.sources import ROOT
 
@@ -115,9 +115,9 @@ def test_a_full_disk_is_told_and_an_empty_film_leaves_no_file(tmp_path):
 NO_GL = """
 import sys
 from pathlib import Path
-from host.bodies import Asked, body_of
+from host.bodies.build import Asked, body_of
 from host.errors import NotDone
-from host.film import Film
+from host.films.body import Film
 try:
     Film(Path(sys.argv[1]), body_of(Asked()).model, 1)
 except NotDone as error:

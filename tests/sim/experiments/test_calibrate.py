@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from host.client import Robot, connect
+from host.client.robot import Robot, connect
 from host.errors import NotDone, WrongUse
-from host.experiments import calibrate
-from host.experiments.experiment import Setting
-from host.figures.calibrate import draw
-from host.identification import Drive, Traits, break_away, constants_of, identify, middle, traits
-from host.log import Log
-from host.sim_link import SimLink
+from host.experiments.robot import calibrate
+from host.experiments.robot.identification import Drive, Traits, break_away, constants_of, identify, middle, traits
+from host.figures.robot.calibrate import draw
+from host.link.sim import SimLink
+from host.logs.log import Log
+from host.runs.contract import Setting
 from robot.kicks import MEMBRANE, WHEELS, Kick
 from robot.params import Params
 from sim_motor import batch

@@ -10,11 +10,10 @@ from distributed import LocalCluster
 from matplotlib.figure import Figure
 
 from host.errors import NoLink, WrongUse
-from host.experiments import kick_map
-from host.experiments.cluster import spread
-from host.experiments.experiment import Setting
-from host.experiments.run import perform
-from host.theory.run import perform as study
+from host.experiments.robot import kick_map
+from host.perform.run import perform
+from host.runs.cluster import spread
+from host.runs.contract import Setting
 
 KICKS = 36 * 30
 
@@ -28,7 +27,7 @@ def cluster():
 
 @pytest.mark.timeout(300)  # three processes compile the batch, perhaps beside other work
 def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
-    monkeypatch.setattr("host.figures.kick_map.draw", lambda rows, findings: Figure())
+    monkeypatch.setattr("host.figures.robot.kick_map.draw", lambda rows, findings: Figure())
     there = perform("kick-map", kicks=KICKS, seed=3, out=tmp_path, scheduler=cluster.scheduler_address)
     setting = Setting(3, {"kicks": KICKS})
     cells = kick_map.cells(setting.options, batch=True)
@@ -40,8 +39,8 @@ def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
 
 
 def test_a_study_of_the_model_has_the_same_numbers_from_a_cluster(cluster, tmp_path):
-    there = study("hopf", out=tmp_path / "there", scheduler=cluster.scheduler_address)
-    here = study("hopf", out=tmp_path / "here")
+    there = perform("hopf", out=tmp_path / "there", scheduler=cluster.scheduler_address)
+    here = perform("hopf", out=tmp_path / "here")
     assert there["numbers"] == here["numbers"]
     assert Path(there["table"]).read_bytes() == Path(here["table"]).read_bytes()
 
@@ -83,7 +82,7 @@ def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
 
 
 def test_no_scheduler_is_told_in_words(monkeypatch):
-    monkeypatch.setattr("host.experiments.cluster.CONNECT_S", 0.5)
+    monkeypatch.setattr("host.runs.cluster.CONNECT_S", 0.5)
     with pytest.raises(NoLink, match="no Dask scheduler answers"):
         next(spread("tcp://127.0.0.1:1", kick_map.simulate, [], Setting(1, {})))
 

@@ -6,14 +6,14 @@ from math import pi
 import numpy as np
 import pytest
 
-from host import planning
-from host.client import connect
-from host.experiments import kick_map
-from host.experiments.experiment import Setting
-from host.experiments.run import perform
-from host.log import Log
-from host.mapping import KINDS, LENGTHS, PHASE_BINS, bin_edges_rad, count, lengths, phase_bin, tally
-from host.planning import Plan, choose, reversal
+from host.client.robot import connect
+from host.experiments.robot import kick_map
+from host.kicking import planning
+from host.kicking.kick_map import KINDS, LENGTHS, PHASE_BINS, bin_edges_rad, count, lengths, phase_bin, tally
+from host.kicking.planning import Plan, choose, reversal
+from host.logs.log import Log
+from host.perform.run import perform
+from host.runs.contract import Setting
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, Kick
 from robot.params import Params
 from sim_motor import batch

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from host.motion import settling_of
+from host.logs.motion import settling_of
 from robot import controller, kicks
 from robot.kicks import DIRECTION_TICKS, JUMP, MEMBRANE, PHASE, POSITION, PULSE_BETA, PULSE_SHIFT, WHEELS, Kick
 from robot.loop import Loop

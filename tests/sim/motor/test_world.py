@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from host.errors import WrongUse
-from host.links import make_link
+from host.link.addresses import make_link
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.motor import GRAVITY, SUBSTEP_S, data

@@ -11,11 +11,11 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from host.figures.kick import Span, draw, spans
-from host.log import Log
+from host.figures.robot.kick import Span, draw, spans
+from host.logs.log import Log
 from tests.fakes import Rig
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PAPER = {"left_x1": "saddlebrown", "left_x2": "darkorange", "right_x1": "mediumblue", "right_x2": "deepskyblue"}
 
 
@@ -165,5 +165,5 @@ def test_a_log_without_ticks_cannot_be_drawn(tmp_path):
 
 
 def test_drawing_needs_no_display():
-    code = "import sys, host.figures.kick; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, host.figures.robot.kick; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from host.log import Log
+from host.logs.log import Log
 from robot.record import NAMES
 from tests.fakes import Rig, eventful
 
@@ -125,5 +125,5 @@ def test_a_log_introduces_itself():
 
 
 def test_a_log_alone_loads_nothing_heavy():
-    code = "import sys, host.log; sys.exit(bool({'numpy', 'mcap', 'matplotlib'} & set(sys.modules)))"
+    code = "import sys, host.logs.log; sys.exit(bool({'numpy', 'mcap', 'matplotlib'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
-from host import recording
-from host.log import Log
-from host.recording import LogError, McapTap, list_logs, new_path
+from host.logs import mcap_files as recording
+from host.logs.log import Log
+from host.logs.mcap_files import LogError, McapTap, list_logs, new_path
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, STRUCT, Record, unpack
 from tests.fakes import Rig, eventful
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 ZERO_S = 1795360500.25
 INFO = {
     "brick": "tcp://127.0.0.1:9",
@@ -163,8 +163,8 @@ def test_a_file_that_nobody_closed_holds_all_but_the_last_second(tmp_path):
 
 _KILLED = """
 import os, signal, sys
-from host.recording import McapTap
-from tests.unit.test_recording import INFO, running
+from host.logs.mcap_files import McapTap
+from tests.unit.logs.test_mcap_files import INFO, running
 log = running(100)
 tap = McapTap(sys.argv[1], INFO)
 log.play(tap)

@@ -6,8 +6,8 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from host.log import Log
-from host.motion import directions, heading, heading_of, settled, settling_of, settling_s
+from host.logs.log import Log
+from host.logs.motion import directions, heading, heading_of, settled, settling_of, settling_s
 from robot.kicks import DIRECTION_TICKS, WHEELS, direction
 from sim_motor.settling import COUNT_RAD
 from tests.fakes import Rig

@@ -4,8 +4,8 @@ from struct import pack, unpack
 
 import pytest
 
-from host.log import Log
-from host.replay import replay
+from host.logs.log import Log
+from host.logs.replay import replay
 from robot.loop import BATTERY_TICKS
 from robot.motors import Battery
 from robot.power import Power

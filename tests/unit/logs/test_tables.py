@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from host.export import COLUMNS
+from host.logs.tables import COLUMNS
 from robot.record import KICK_NAMES, STATES
 from tests.fakes import eventful
 

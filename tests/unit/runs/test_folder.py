@@ -6,7 +6,7 @@ from contextlib import closing
 import pytest
 
 from host.errors import WrongUse
-from host.experiments.study import Study
+from host.runs.folder import Study
 
 SETTINGS = {"experiment": "toy", "seed": 1, "options": {"trials": 3}}
 CELLS = [{"ticks": ticks, "mode": "phase"} for ticks in range(3)]

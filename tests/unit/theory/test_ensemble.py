@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
-from host.theory import elementary
-from host.theory.adams import ORDER, weights
-from host.theory.ensemble import FINE, LANES, advance, averages, rate_per_s
-from host.theory.model import OMEGA, PHI, Wheel, rates
+from host.theory.engine import elementary
+from host.theory.engine.adams import ORDER, weights
+from host.theory.engine.ensemble import FINE, LANES, advance, averages, rate_per_s
+from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
 
 # At rest, forth and back, rolling slowly and fast, and with a short memory.
 WHEELS = [Wheel(k=1.4), Wheel(k=1.65), Wheel(k=1.85), Wheel(k=14.0), Wheel(tau_s=0.03, k=12.0)]

@@ -1,6 +1,6 @@
 """What a log learns of long work; terminals have a bar."""
 
-from host import progress
+from host.util import progress
 
 
 def test_a_log_gets_a_line_now_and_then_with_the_time_left(capsys, monkeypatch):

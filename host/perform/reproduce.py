@@ -7,15 +7,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from host import report
-from host.claims import Claim
-from host.entries import Entry
 from host.errors import WrongUse
-from host.experiments.run import RESULTS, address, perform
-from host.experiments.table import BODIES, TABLE
-from host.links import sim_options
-from host.theory.run import perform as study
-from host.theory.table import TABLE as STUDIES
+from host.experiments.registry import BODIES, TABLE
+from host.link.addresses import sim_options
+from host.perform.run import RESULTS, address, perform
+from host.runs import html_report as report
+from host.runs.claims import Claim
+from host.runs.registry import Entry
+from host.theory.studies.registry import TABLE as STUDIES
 
 # What a robot on a table does not have around it; asked for by name, it is taken to be there.
 NEEDS = {"R13": "needs two walls, a robot's length and more apart: build them, and ask for it by name (--only R13)"}
@@ -69,15 +68,15 @@ def reproduce(
     summaries: list[dict[str, Any]] = []
     claims: dict[str, Claim] = {}
 
-    def run(table: Mapping[str, Entry], perform: Callable[[str], dict[str, Any]]) -> None:
+    def run(table: Mapping[str, Entry], uri: str | None) -> None:
         for name, entry in table.items():
             if any(number in wanted for number in entry.claims):
-                summaries.append(summary := perform(name))
+                summaries.append(summary := perform(name, uri, seed, token=token, out=out, say=say))
                 found = [Claim.from_dict(claim) for claim in summary["claims"]]
                 claims.update((claim.id, claim) for claim in found if claim.id in entry.claims and claim.id in wanted)
 
-    run(TABLE, lambda name: perform(name, uri, seed, token=token, out=out, say=say))
-    run(STUDIES, lambda name: study(name, seed, out=out, say=say))
+    run(TABLE, uri)
+    run(STUDIES, None)
     name = "-".join(["report", *(wanted if only else [])])
     page = report.write(Path(out) / f"{name}.html", [claims[number] for number in wanted], summaries, skipped)
     return Reproduction([claims[number] for number in wanted], skipped, page)

@@ -1,0 +1,1 @@
+"""Simulated cars and trains for people: built from what was asked for, steered, written to files."""

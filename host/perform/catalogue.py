@@ -1,0 +1,39 @@
+"""Everything that can be run by a name: its entry, its module and its figure."""
+
+from __future__ import annotations
+
+import importlib
+from typing import NamedTuple, cast
+
+from host.experiments.registry import BODIES, ROBOT
+from host.runs.contract import Experiment
+from host.runs.registry import Entry, entry_of
+from host.runs.runner import Draw
+from host.theory.studies.registry import TABLE as STUDIES
+
+# The kinds: what people call them, their entries, and the packages of their modules and of their figures.
+EXPERIMENT, BODY, STUDY = "experiment", "experiment on bodies", "study"
+KINDS = {
+    EXPERIMENT: (ROBOT, "host.experiments.robot", "host.figures.robot"),
+    BODY: (BODIES, "host.experiments.bodies", "host.figures.bodies"),
+    STUDY: (STUDIES, "host.theory.studies", "host.figures.theory"),
+}
+
+
+class Found(NamedTuple):
+    """Something that can be run: its kind, a key of KINDS; its entry; its module; and what draws its figure."""
+
+    kind: str
+    entry: Entry
+    work: Experiment
+    draw: Draw
+
+
+def find(name: str) -> Found:
+    """What has this name. Raises WrongUse if nothing has."""
+    entry = entry_of("experiment or study", {**ROBOT, **BODIES, **STUDIES}, name)
+    kind = next(kind for kind, (table, _, _) in KINDS.items() if name in table)
+    _, works, figures = KINDS[kind]
+    module = "." + name.replace("-", "_")
+    work = cast("Experiment", importlib.import_module(works + module))
+    return Found(kind, entry, work, cast("Draw", importlib.import_module(figures + module).draw))

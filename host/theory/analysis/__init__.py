@@ -1,0 +1,1 @@
+"""The mathematics: fixpoints, bifurcations, cycles, continuation, growth rates, attractors."""

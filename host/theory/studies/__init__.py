@@ -1,0 +1,1 @@
+"""The studies that `kickctl theory` runs: cells, rows and reports."""

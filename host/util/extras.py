@@ -1,0 +1,21 @@
+"""Libraries that an extra of the package brings, such as MuJoCo."""
+
+from __future__ import annotations
+
+import importlib
+
+from host.errors import NotDone, WrongUse
+
+
+def need(module: str, extra: str) -> None:
+    """Raise WrongUse if a library of an extra is not installed."""
+    try:
+        importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        raise WrongUse(
+            f"this needs {module}, which is not installed", f"install it with the extra: pip install 'kickctl[{extra}]'"
+        ) from error
+    except (RuntimeError, AttributeError, ImportError, OSError) as error:  # as mujoco does with a MUJOCO_GL that it cannot use
+        raise NotDone(
+            f"{module} cannot be loaded: {error}", "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa"
+        ) from error
