@@ -1,1 +1,4 @@
-"""What a person uses on the laptop: the command line, the clients of the robot, recordings and experiments."""
+"""What a person uses on the laptop.
+
+The command line, the clients of the robot, recordings and experiments.
+"""

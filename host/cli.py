@@ -58,7 +58,9 @@ def make_parser() -> argparse.ArgumentParser:
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name in VERBS:
         module = importlib.import_module("host.commands." + name)
-        verb = verbs.add_parser(name, help=module.HELP, description=module.HELP, parents=[common(defaults=False)])
+        verb = verbs.add_parser(
+            name, help=module.HELP, description=module.HELP, parents=[common(defaults=False)]
+        )
         module.add_arguments(verb)
         verb.set_defaults(run=module.run)
     return parser
@@ -72,8 +74,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         argcomplete.autocomplete(parser)
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _interrupt)  # a verb that moves the robot stops it then, and a log is closed
-    options = parser.parse_args(_join_negative(sys.argv[1:] if arguments is None else list(arguments)))
+        signal.signal(
+            signal.SIGTERM, _interrupt
+        )  # a verb that moves the robot stops it then, and a log is closed
+    options = parser.parse_args(
+        _join_negative(sys.argv[1:] if arguments is None else list(arguments))
+    )
     hook, sys.unraisablehook = sys.unraisablehook, _interrupt_again
     try:
         status = int(options.run(options))
@@ -81,8 +87,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return status
     except KickctlError as error:
         if options.json:
-            print(json.dumps({"error": {"message": error.message, "hint": error.hint, "status": error.status}}))
-        print(f"kickctl: {error.message}" + (f"\n  {error.hint}" if error.hint else ""), file=sys.stderr)
+            print(
+                json.dumps(
+                    {
+                        "error": {
+                            "message": error.message,
+                            "hint": error.hint,
+                            "status": error.status,
+                        }
+                    }
+                )
+            )
+        print(
+            f"kickctl: {error.message}" + (f"\n  {error.hint}" if error.hint else ""),
+            file=sys.stderr,
+        )
         return error.status
     except BrokenPipeError:
         _drop_output()
@@ -92,7 +111,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         place = f"{error.filename} " if error.filename else ""
         message = f"{place}cannot be written or read: {error.strerror or error}"
         if options.json:
-            print(json.dumps({"error": {"message": message, "hint": "is the disk full?", "status": 1}}))
+            print(
+                json.dumps(
+                    {"error": {"message": message, "hint": "is the disk full?", "status": 1}}
+                )
+            )
         print(f"kickctl: {message}\n  is the disk full?", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
@@ -113,7 +136,10 @@ def _interrupt(number: int, frame: object) -> None:
 
 
 def _interrupt_again(lost: sys.UnraisableHookArgs) -> None:
-    """Python lets nothing out of a destructor, of which the compiler's has many: an interrupt that came in one comes once more."""
+    """Python lets nothing out of a destructor, of which the compiler's has many.
+
+    An interrupt that came in one comes once more.
+    """
     if lost.exc_type is KeyboardInterrupt:
         again = threading.Timer(0.05, _thread.interrupt_main)
         again.daemon = True
@@ -126,7 +152,12 @@ def _join_negative(arguments: list[str]) -> list[str]:
     """'--shift -3pi/4' as '--shift=-3pi/4': argparse takes a negative angle for an option."""
     joined: list[str] = []
     for argument in arguments:
-        if joined and joined[-1] in ("--shift", "--value", "--delta") and argument[:1] == "-" and argument[1:2] not in ("-", ""):
+        if (
+            joined
+            and joined[-1] in ("--shift", "--value", "--delta")
+            and argument[:1] == "-"
+            and argument[1:2] not in ("-", "")
+        ):
             joined[-1] += "=" + argument
         else:
             joined.append(argument)

@@ -2,7 +2,10 @@
 
 
 class KickctlError(Exception):
-    """An error to be told in words: what happened and why, and what to do next. `status` is the exit status."""
+    """An error to be told in words: what happened and why, and what to do next.
+
+    `status` is the exit status.
+    """
 
     status = 1
 
@@ -60,7 +63,10 @@ _STATUS_BY_CODE = {
 def from_robot(error: dict[str, object]) -> KickctlError:
     """The exception for a refusal as the robot sends it: {code, message, hint}."""
     kind = _STATUS_BY_CODE.get(str(error.get("code")), RefusedByRobot)
-    return kind("the robot refuses: " + printable(str(error.get("message"))), printable(str(error.get("hint", ""))))
+    return kind(
+        "the robot refuses: " + printable(str(error.get("message"))),
+        printable(str(error.get("hint", ""))),
+    )
 
 
 def printable(text: str) -> str:

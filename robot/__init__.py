@@ -1,3 +1,6 @@
-"""The robot: what runs on the brick. CPython 3.5, standard library only; imports nothing of the other rooms."""
+"""The robot: what runs on the brick. CPython 3.5, standard library only.
+
+Imports nothing of the other rooms.
+"""
 
 __version__ = "0.1.0"

@@ -19,7 +19,10 @@ PORTS = ("outA", "outB", "outC", "outD")
 
 
 def _claim(root):
-    """A socket whose name only one process at a time can have for the motors under `root`; None if another has it."""
+    """A socket whose name only one process at a time can have for the motors under `root`.
+
+    None if another has it.
+    """
     claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
     try:
         claim.bind("\0kickctl " + os.path.realpath(root)[-90:])
@@ -32,29 +35,55 @@ def _claim(root):
 def main():
     """Run until interrupted. Returns the exit status."""
     arguments = parser("The robot's program on the brick.", host=EVERYWHERE)
-    arguments.add_argument("--left", default="outB", choices=PORTS, help="port of the left motor (default %(default)s)")
-    arguments.add_argument("--right", default="outC", choices=PORTS, help="port of the right motor (default %(default)s)")
-    arguments.add_argument("--sysfs", default="/sys/class", metavar="FOLDER", help="where the kernel's devices are (default %(default)s)")
+    arguments.add_argument(
+        "--left", default="outB", choices=PORTS, help="port of the left motor (default %(default)s)"
+    )
+    arguments.add_argument(
+        "--right",
+        default="outC",
+        choices=PORTS,
+        help="port of the right motor (default %(default)s)",
+    )
+    arguments.add_argument(
+        "--sysfs",
+        default="/sys/class",
+        metavar="FOLDER",
+        help="where the kernel's devices are (default %(default)s)",
+    )
     options = arguments.parse_args()
     if options.left == options.right:
         arguments.error("both motors cannot be at {}".format(options.left))
     try:
         from robot.ev3 import Ev3Battery, Ev3Motor
     except ImportError as error:
-        print("{}: the robot runs on ev3dev, which has python3-ev3dev2; elsewhere try python -m sim_motor".format(error), file=sys.stderr)
+        print(
+            "{}: the robot runs on ev3dev, which has python3-ev3dev2; elsewhere try python -m"
+            " sim_motor".format(error),
+            file=sys.stderr,
+        )
         return 2
-    # Before anything of the motors is touched; the watchdog, a fork of this process, holds it for as long as it may have to stop them.
+    # Before anything of the motors is touched; the watchdog, a fork of this process, holds it for
+    # as long as it may have to stop them.
     alone = _claim(options.sysfs)
     if alone is None:
-        print("another robot's program drives the motors under {}: end that one first".format(options.sysfs), file=sys.stderr)
+        print(
+            "another robot's program drives the motors under {}: end that one first".format(
+                options.sysfs
+            ),
+            file=sys.stderr,
+        )
         return 2
     watchdog = Watchdog(options.sysfs)
-    motors = (Ev3Motor("left", options.left, options.sysfs), Ev3Motor("right", options.right, options.sysfs))
+    motors = (
+        Ev3Motor("left", options.left, options.sysfs),
+        Ev3Motor("right", options.right, options.sysfs),
+    )
     for motor in motors:
         try:
             motor.find()
         except MotorFault as fault:
-            # The first tick makes a fault of it, which the host sees, and which can be cleared when the motor is there.
+            # The first tick makes a fault of it, which the host sees, and which can be cleared when
+            # the motor is there.
             print(fault, file=sys.stderr)
     try:
         battery = Ev3Battery(options.sysfs)

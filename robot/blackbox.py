@@ -1,4 +1,6 @@
-"""The bounded record of the last minutes: every tick's packed record, and the journal of what changed the robot's course.
+"""The bounded record of the last minutes.
+
+Every tick's packed record, and the journal of what changed the robot's course.
 
 A client that lost its link catches up from here; one that was away for longer is told what is gone.
 """
@@ -12,7 +14,10 @@ JOURNAL_CAPACITY = 2000
 
 
 class Snapshot(object):
-    """What a tick's outcome depends on besides the wheels: the parameters in force and the kick that acts, as plain data."""
+    """What a tick's outcome depends on besides the wheels.
+
+    The parameters in force and the kick that acts, as plain data.
+    """
 
     def __init__(self, params, kick=None):
         self.params = dict(params)
@@ -54,22 +59,33 @@ class BlackBox(object):
 
     def append(self, fields):
         """Keep a tick's record, given as the fields of `robot.record.CHANNELS` after the tick's number, and number it."""
-        STRUCT.pack_into(self._ring, self.next_tick % self._capacity * STRUCT.size, self.next_tick, *fields)
+        STRUCT.pack_into(
+            self._ring, self.next_tick % self._capacity * STRUCT.size, self.next_tick, *fields
+        )
         self.next_tick += 1
 
     def note(self, event, **details):
-        """Put an event into the journal, with its number and the first tick that it concerns: the one about to run. Returns that tick."""
+        """Put an event into the journal, with its number and the first tick that it concerns.
+
+        The one about to run. Returns that tick.
+        """
         entry = dict(details, event=event, tick=self.next_tick, number=self.next_event)
         self._journal.append((self.next_event, entry))
         self.next_event += 1
-        while len(self._journal) > JOURNAL_CAPACITY or self._journal[0][1]["tick"] < self.next_tick - self._capacity:
+        while (
+            len(self._journal) > JOURNAL_CAPACITY
+            or self._journal[0][1]["tick"] < self.next_tick - self._capacity
+        ):
             dropped = self._journal.popleft()[1]
             self._base.take(dropped)
             self._base_tick = dropped["tick"] + 1
         return self.next_tick
 
     def read(self, tick, count):
-        """Packed records from `tick` on: up to `count`, fewer at the end of the ring or of the record."""
+        """Packed records from `tick` on.
+
+        Up to `count`, fewer at the end of the ring or of the record.
+        """
         start = tick % self._capacity
         count = min(count, self.next_tick - tick, self._capacity - start)
         return bytes(self._ring[start * STRUCT.size : (start + count) * STRUCT.size])

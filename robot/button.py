@@ -4,7 +4,8 @@ import os
 import struct
 
 DEVICE = "/dev/input/by-path/platform-gpio_keys-event"
-# The kernel's struct input_event in the sizes of the machine that this runs on: seconds, microseconds, type, code, value.
+# The kernel's struct input_event in the sizes of the machine that this runs on: seconds,
+# microseconds, type, code, value.
 EVENT = struct.Struct("llHHi")
 KEY, BACK, PRESSED = 1, 14, 1
 EVENTS_PER_READ = 16
@@ -39,4 +40,6 @@ class BackButton(object):
             self.close()
             return False
         events = EVENT.iter_unpack(data[: len(data) // EVENT.size * EVENT.size])
-        return any((kind, code, value) == (KEY, BACK, PRESSED) for _, _, kind, code, value in events)
+        return any(
+            (kind, code, value) == (KEY, BACK, PRESSED) for _, _, kind, code, value in events
+        )

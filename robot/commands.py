@@ -31,15 +31,25 @@ def _describe(loop, session, message):
     tables = {"params": params.describe, "channels": record.describe, "commands": describe}
     table = message.get("table")
     if not isinstance(table, str) or table not in tables:
-        raise Refused("usage", "there is no table {!r}".format(table), "tables are: " + ", ".join(sorted(tables)))
+        raise Refused(
+            "usage",
+            "there is no table {!r}".format(table),
+            "tables are: " + ", ".join(sorted(tables)),
+        )
     return {"table": tables[table]()}
 
 
 def _subscribe(loop, session, message):
     tick = message.get("from")
-    if tick is not None and (isinstance(tick, bool) or not isinstance(tick, int) or not 0 <= tick <= loop.blackbox.next_tick):
+    if tick is not None and (
+        isinstance(tick, bool)
+        or not isinstance(tick, int)
+        or not 0 <= tick <= loop.blackbox.next_tick
+    ):
         raise Refused(
-            "range", "cannot send records from tick {!r}".format(tick), "ticks 0 to {} have begun".format(loop.blackbox.next_tick)
+            "range",
+            "cannot send records from tick {!r}".format(tick),
+            "ticks 0 to {} have begun".format(loop.blackbox.next_tick),
         )
     return {"tick": session.subscribe(loop.blackbox.next_tick if tick is None else tick)}
 
@@ -98,18 +108,52 @@ def _set(loop, session, message):
 
 
 _ROWS = (
-    Command("status", False, (), "state, parameters in force, battery, who controls, and how punctual the ticks are", _status),
-    Command("describe", False, ("table",), "one of the robot's tables: params, channels, commands", _describe),
-    Command("subscribe", False, ("from",), "send records and events from a tick on, by default from the next", _subscribe),
+    Command(
+        "status",
+        False,
+        (),
+        "state, parameters in force, battery, who controls, and how punctual the ticks are",
+        _status,
+    ),
+    Command(
+        "describe",
+        False,
+        ("table",),
+        "one of the robot's tables: params, channels, commands",
+        _describe,
+    ),
+    Command(
+        "subscribe",
+        False,
+        ("from",),
+        "send records and events from a tick on, by default from the next",
+        _subscribe,
+    ),
     Command("unsubscribe", False, (), "send no more records", _unsubscribe),
     Command("lease", True, (), "take control; refused while another host has it", _lease),
     Command("release", True, (), "give control back; the robot goes on as it is", _release),
-    Command("heartbeat", True, (), "tell the robot that the host that controls it is alive", _heartbeat),
+    Command(
+        "heartbeat", True, (), "tell the robot that the host that controls it is alive", _heartbeat
+    ),
     Command("start", True, (), "run, from random membrane potentials", _controlled(_start)),
-    Command("stop", True, (), "stop the motors; anyone may also send a stop frame", _controlled(_stop)),
+    Command(
+        "stop", True, (), "stop the motors; anyone may also send a stop frame", _controlled(_stop)
+    ),
     Command("clear", True, (), "leave a fault once its cause is mended", _controlled(_clear)),
-    Command("kick", True, ("kick",), "begin a kick in the next tick; a repeated id is answered, not repeated", _controlled(_kick)),
-    Command("set", True, ("set",), "change parameters from the next tick on, all of them or none", _controlled(_set)),
+    Command(
+        "kick",
+        True,
+        ("kick",),
+        "begin a kick in the next tick; a repeated id is answered, not repeated",
+        _controlled(_kick),
+    ),
+    Command(
+        "set",
+        True,
+        ("set",),
+        "change parameters from the next tick on, all of them or none",
+        _controlled(_set),
+    ),
 )
 TABLE = OrderedDict((row.name, row) for row in _ROWS)
 
@@ -120,14 +164,27 @@ def describe():
 
 
 def execute(loop, session, message, sealed):
-    """Carry out a message that names a command; `sealed` tells whether it came with a valid MAC. Returns the result, or raises Refused."""
+    """Carry out a message that names a command; `sealed` tells whether it came with a valid MAC.
+
+    Returns the result, or raises Refused.
+    """
     name = message.get("do")
     row = TABLE.get(name) if isinstance(name, str) else None
     if row is None:
-        raise Refused("unknown", "there is no command {!r}".format(name), "commands are: " + ", ".join(TABLE))
+        raise Refused(
+            "unknown", "there is no command {!r}".format(name), "commands are: " + ", ".join(TABLE)
+        )
     if row.sealed and not sealed:
-        raise Refused("token", "'{}' moves the robot or changes it".format(name), "prove that you have the robot's token first")
+        raise Refused(
+            "token",
+            "'{}' moves the robot or changes it".format(name),
+            "prove that you have the robot's token first",
+        )
     for key in message:
         if key not in ("id", "do") + row.arguments:
-            raise Refused("usage", "'{}' takes no '{}'".format(name, key), "it takes " + (", ".join(row.arguments) or "nothing"))
+            raise Refused(
+                "usage",
+                "'{}' takes no '{}'".format(name, key),
+                "it takes " + (", ".join(row.arguments) or "nothing"),
+            )
     return row.run(loop, session, message)

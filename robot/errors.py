@@ -1,10 +1,15 @@
 """The one way in which the robot says no."""
 
-LONGEST_MESSAGE = 200  # characters, of which JSON may need twelve bytes each: what is refused may be long, its refusal fits into a frame
+# Characters, of which JSON may need twelve bytes each: what is refused may be long, its refusal
+# fits into a frame
+LONGEST_MESSAGE = 200
 
 
 class Refused(Exception):
-    """A request that was not carried out and changed nothing. `code` is for programs, `message` says what and why, `hint` what to do."""
+    """A request that was not carried out and changed nothing.
+
+    `code` is for programs, `message` says what and why, `hint` what to do.
+    """
 
     def __init__(self, code, message, hint=""):
         Exception.__init__(self, message)

@@ -1,6 +1,7 @@
 """The brick's motors and its battery, through the kernel's files.
 
-python-ev3dev2 finds a motor by its port and sets it up; the tick itself reads and writes through descriptors that are opened once.
+python-ev3dev2 finds a motor by its port and sets it up; the tick itself reads and writes through
+descriptors that are opened once.
 """
 
 import errno
@@ -17,11 +18,13 @@ DRIVER = "lego-ev3-l-motor"
 RAD_PER_DEGREE = pi / 180
 READ_BYTES = 16
 STOP_TRIES = 3
-# What goes into the file for each duty cycle that there is: whoever asks for another gets a MotorFault, not the kernel's EINVAL.
+# What goes into the file for each duty cycle that there is: whoever asks for another gets a
+# MotorFault, not the kernel's EINVAL.
 DUTY_TEXT = {duty: b"%d" % duty for duty in range(-100, 101)}
 
-# In V, from LEGO's firmware as brickd has it: it warns of a low lithium pack at 6.5 and of low AA cells at 5.5, and switches off at
-# 6.0 and 4.5. The stop comes before that; brick and motors no longer work well below 5 V.
+# In V, from LEGO's firmware as brickd has it: it warns of a low lithium pack at 6.5 and of low AA
+# cells at 5.5, and switches off at 6.0 and 4.5. The stop comes before that; brick and motors no
+# longer work well below 5 V.
 LITHIUM_WARN_V, LITHIUM_STOP_V = 6.5, 6.2
 OTHER_WARN_V, OTHER_STOP_V = 5.5, 5.0
 
@@ -30,13 +33,18 @@ _CAUSES = {
     errno.ENODEV: ("its cable came off", _CABLE),
     errno.ENOENT: ("its cable came off", _CABLE),
     errno.EIO: ("the kernel cannot talk to it (EIO)", "check its cable, then clear the fault"),
-    errno.EINVAL: ("the kernel refuses a value (EINVAL)", "clear the fault; if it comes back, report it"),
+    errno.EINVAL: (
+        "the kernel refuses a value (EINVAL)",
+        "clear the fault; if it comes back, report it",
+    ),
 }
 _NOT_READY = "wait a second and try again; if it stays so, add this user to the group ev3dev"
 
 
 class Ev3Motor(Motor):
-    """The large motor at a port ('outB'). It is lost until `find` has found it, and again when it fails.
+    """The large motor at a port ('outB').
+
+    It is lost until `find` has found it, and again when it fails.
 
     name: what people call it; root: where the kernel's classes of devices are.
     """
@@ -52,7 +60,9 @@ class Ev3Motor(Motor):
 
     def angle_rad(self):
         try:
-            self._angle = angle = self._zero + int(os.pread(self._position, READ_BYTES, 0)) * RAD_PER_DEGREE
+            self._angle = angle = (
+                self._zero + int(os.pread(self._position, READ_BYTES, 0)) * RAD_PER_DEGREE
+            )
         except OSError as error:
             raise self._fault(error) from error
         return angle
@@ -65,13 +75,18 @@ class Ev3Motor(Motor):
         except OSError as error:
             raise self._fault(error) from error
         except KeyError:
-            raise MotorFault("{}: no duty cycle is {!r}: write a whole number from -100 to 100".format(self._label, duty_pct)) from None
+            raise MotorFault(
+                "{}: no duty cycle is {!r}: write a whole number from -100 to 100".format(
+                    self._label, duty_pct
+                )
+            ) from None
 
     def stop(self):
         self._running = False
         for left in reversed(range(STOP_TRIES)):
             try:
-                # Duty 0 first: it brakes at once, and is what remains of a command that the motor misses.
+                # Duty 0 first: it brakes at once, and is what remains of a command that the motor
+                # misses.
                 os.pwrite(self._duty, DUTY_TEXT[0], 0)
                 os.pwrite(self._command, b"stop", 0)
                 if int(os.pread(self._applied, READ_BYTES, 0)) == 0:
@@ -94,7 +109,8 @@ class Ev3Motor(Motor):
         except (OSError, ev3dev2.DeviceNotFound) as error:
             self._close()
             self._lost = self._missing(error)
-            # The library's frames hold the error whose trace holds them, and with them its files, until the garbage collector comes.
+            # The library's frames hold the error whose trace holds them, and with them its files,
+            # until the garbage collector comes.
             raise MotorFault(self._lost) from error.with_traceback(None)
 
     def _set_up(self):
@@ -105,7 +121,9 @@ class Ev3Motor(Motor):
         ev3dev2.Device.DEVICE_ROOT_PATH = self._root
         motor = LargeMotor(name_pattern=name, name_exact=True)
         if motor.driver_name != DRIVER:
-            self._lost = "{}: a {} is there: plug in a large motor, then clear the fault".format(self._label, motor.driver_name)
+            self._lost = "{}: a {} is there: plug in a large motor, then clear the fault".format(
+                self._label, motor.driver_name
+            )
             raise MotorFault(self._lost)
         motor.reset()
         motor.stop_action = LargeMotor.STOP_ACTION_BRAKE
@@ -134,22 +152,30 @@ class Ev3Motor(Motor):
         """The MotorFault for an error of the kernel. From now on the motor counts as lost."""
         # EBADF: there is nothing open, for a reason that is known.
         if error.errno != errno.EBADF:
-            cause, remedy = _CAUSES.get(error.errno, ("the kernel reports: {}".format(error.strerror), "clear the fault"))
+            cause, remedy = _CAUSES.get(
+                error.errno, ("the kernel reports: {}".format(error.strerror), "clear the fault")
+            )
             self._lost = "{}: {}: {}".format(self._label, cause, remedy)
         return MotorFault(self._lost)
 
     def _missing(self, error):
-        # python-ev3dev2 has one error for a motor that is not there and for one that goes meanwhile, and another without a number for
-        # files that udev has not opened to this user yet.
+        # python-ev3dev2 has one error for a motor that is not there and for one that goes
+        # meanwhile, and another without a number for files that udev has not opened to this user
+        # yet.
         if isinstance(error, ev3dev2.DeviceNotFound) or error.errno in (errno.ENODEV, errno.ENOENT):
             return "{}: there is none: {}".format(self._label, _CABLE)
         if error.errno in (None, errno.EACCES, errno.EPERM):
-            return "{}: it is there, but this user may not command it yet: {}".format(self._label, _NOT_READY)
+            return "{}: it is there, but this user may not command it yet: {}".format(
+                self._label, _NOT_READY
+            )
         return str(self._fault(error))
 
 
 class Ev3Battery(Battery):
-    """The brick's battery. root: where the kernel's classes of devices are. Raises OSError if there is none."""
+    """The brick's battery. root: where the kernel's classes of devices are.
+
+    Raises OSError if there is none.
+    """
 
     def __init__(self, root=SYSFS):
         folder = os.path.join(root, "power_supply", "lego-ev3-battery")

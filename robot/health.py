@@ -1,4 +1,7 @@
-"""Whether the robot's program on this machine is well: python3 -m robot.health. deploy.sh has the brick ask before it trusts a release."""
+"""Whether the robot's program on this machine is well: python3 -m robot.health.
+
+Deploy.sh has the brick ask before it trusts a release.
+"""
 
 import argparse
 import binascii
@@ -24,7 +27,10 @@ class Unwell(Exception):
 
 
 class Questioner(object):
-    """A conversation with the robot that listens on a port of this machine. Raises OSError, BadMessage and Unwell."""
+    """A conversation with the robot that listens on a port of this machine.
+
+    Raises OSError, BadMessage and Unwell.
+    """
 
     def __init__(self, port):
         self._link = socket.create_connection((HOST, port), timeout=PATIENCE_S)
@@ -44,7 +50,8 @@ class Questioner(object):
                 data = self._link.recv(wire.MAX_PAYLOAD)
             except socket.timeout:
                 raise Unwell(
-                    "it hangs, without a word for {:g} s; the watchdog stops the motors of a program that hangs".format(PATIENCE_S)
+                    "it hangs, without a word for {:g} s; the watchdog stops the motors of a"
+                    " program that hangs".format(PATIENCE_S)
                 ) from None
             if not data:
                 raise Unwell("it hangs up")
@@ -68,9 +75,15 @@ def examine(port, secret):
     try:
         nonce = os.urandom(wire.NONCE_BYTES)
         text = binascii.hexlify(nonce).decode("ascii")
-        hello = robot.ask(wire.HELLO, protocol=wire.PROTOCOL, name="health", client="health", nonce=text)
+        hello = robot.ask(
+            wire.HELLO, protocol=wire.PROTOCOL, name="health", client="health", nonce=text
+        )
         if hello["software"] != __version__:
-            raise Unwell("it is of release {}, not {}: another program answers".format(hello["software"], __version__))
+            raise Unwell(
+                "it is of release {}, not {}: another program answers".format(
+                    hello["software"], __version__
+                )
+            )
         shake = wire.Handshake(secret, nonce, binascii.unhexlify(hello["nonce"]))
         answer = robot.ask(wire.AUTH, proof=binascii.hexlify(shake.host_proof).decode("ascii"))
         if not wire.same(binascii.unhexlify(answer["proof"]), shake.robot_proof):
@@ -88,8 +101,13 @@ def examine(port, secret):
 
 
 def main():
-    """Print in a line how the robot is. Returns WELL, UNWELL, or IN_FAULT if the program is well and its motors, for example, are not."""
-    arguments = argparse.ArgumentParser(description="Asks the robot's program on this machine whether it is well.")
+    """Print in a line how the robot is.
+
+    Returns WELL, UNWELL, or IN_FAULT if the program is well and its motors, for example, are not.
+    """
+    arguments = argparse.ArgumentParser(
+        description="Asks the robot's program on this machine whether it is well."
+    )
     arguments.add_argument("--port", type=int, default=PORT)
     arguments.add_argument("--token", default=token.default_path())
     options = arguments.parse_args()
@@ -98,7 +116,9 @@ def main():
     except (OSError, ValueError, KeyError, wire.BadMessage, token.TokenError, Unwell) as error:
         print("the robot's program at port {} is not well: {}".format(options.port, error))
         return UNWELL
-    battery = "" if status["battery_v"] is None else ", battery {:.1f} V".format(status["battery_v"])
+    battery = (
+        "" if status["battery_v"] is None else ", battery {:.1f} V".format(status["battery_v"])
+    )
     fault = status["state"] == "fault"
     remedy = "; mend that, then `kickctl clear` and `kickctl start`" if fault else ""
     print("{} ({}){}{}".format(status["state"], status["reason"], battery, remedy))

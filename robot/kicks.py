@@ -1,8 +1,9 @@
 """Kick control: the kick as data, and its effect on a wheel as pure functions.
 
-A frozen kick jumps the neurons' variables once; a quenched kick changes one parameter for some ticks (section 'Kick control' of
-the paper). Position inversion is a pulse of beta, the phase shift a pulse of the shift that multiplies gamma; both alter only what
-the neurons see. The numeric functions use nothing but `math` and scalars, so that numba compiles them unchanged.
+A frozen kick jumps the neurons' variables once; a quenched kick changes one parameter for some
+ticks (section 'Kick control' of the paper). Position inversion is a pulse of beta, the phase shift
+a pulse of the shift that multiplies gamma; both alter only what the neurons see. The numeric
+functions use nothing but `math` and scalars, so that numba compiles them unchanged.
 """
 
 from math import cos, isfinite, pi, sin
@@ -18,7 +19,13 @@ RECTANGULAR, SMOOTH = "rectangular", "smooth"
 
 # What a quenched kick may pulse. The numbers are what compiled code carries in place of the names.
 NO_PULSE, PULSE_A, PULSE_TAU, PULSE_K, PULSE_BETA, PULSE_SHIFT = range(6)
-PULSED = {"a": PULSE_A, "tau_s": PULSE_TAU, "k": PULSE_K, "beta": PULSE_BETA, "shift_rad": PULSE_SHIFT}
+PULSED = {
+    "a": PULSE_A,
+    "tau_s": PULSE_TAU,
+    "k": PULSE_K,
+    "beta": PULSE_BETA,
+    "shift_rad": PULSE_SHIFT,
+}
 
 DEFAULT_SHIFT_RAD = 3 * pi / 4
 DEFAULT_TICKS = {MEMBRANE: 1, POSITION: 3, PHASE: 4, PULSE: 4, JUMP: 1}
@@ -26,7 +33,8 @@ MAX_TICKS = 10000
 MAX_JUMP = 2.0
 X_LIMIT = 10.0
 
-# A wheel's direction is the sign of its travel over this many ticks; up to two counts of the 1 degree encoder are rest.
+# A wheel's direction is the sign of its travel over this many ticks; up to two counts of the 1
+# degree encoder are rest.
 DIRECTION_TICKS = 8
 REST_TRAVEL_RAD = 2.5 * pi / 180
 
@@ -41,7 +49,10 @@ def direction(travel_rad):
 
 
 def reversing_shift(wheel_direction):
-    """The phase shift (rad) that turns a wheel around: positive takes forward to backward. Caption of fig. resultsKickControl."""
+    """The phase shift (rad) that turns a wheel around: positive takes forward to backward.
+
+    Caption of fig. resultsKickControl.
+    """
     return -DEFAULT_SHIFT_RAD if wheel_direction < 0 else DEFAULT_SHIFT_RAD
 
 
@@ -53,19 +64,26 @@ def invert_membrane(x1, x2):
 def seen_positions(phi, beta, shift_rad):
     """What the neurons see of a wheel at angle phi: (1 - 2 beta) (cos, sin)(phi + shift).
 
-    Eqs. kickControl_xa_inversion and kickControl_delta_phi in one; with beta = shift = 0 these are the actual positions.
+    Eqs. kickControl_xa_inversion and kickControl_delta_phi in one; with beta = shift = 0 these are
+    the actual positions.
     """
     sign = 1.0 - 2.0 * beta
     return sign * cos(phi + shift_rad), sign * sin(phi + shift_rad)
 
 
 def pulse_weight(age, ticks, smooth):
-    """How much of a pulse acts in its tick number age = 0 .. ticks - 1: 1 if rectangular, sin^2 shaped (up to 1) if smooth."""
+    """How much of a pulse acts in its tick number age = 0 .. ticks - 1.
+
+    1 if rectangular, sin^2 shaped (up to 1) if smooth.
+    """
     return sin(pi * (age + 0.5) / ticks) ** 2 if smooth else 1.0
 
 
 def pulsed(pulse, value, weight, a, tau_s, k):
-    """(a, tau_s, k, beta, shift_rad) while the parameter numbered `pulse` is on its way to value. Eq. quenched_kick_kontrol."""
+    """(a, tau_s, k, beta, shift_rad) while the parameter numbered `pulse` is on its way to value.
+
+    Eq. quenched_kick_kontrol.
+    """
     beta = 0.0
     shift_rad = 0.0
     if pulse == PULSE_A:
@@ -82,19 +100,46 @@ def pulsed(pulse, value, weight, a, tau_s, k):
 
 
 def jump(x, delta):
-    """x -> x + delta, kept within the range in which the neurons' exponential is finite. Eq. frozen_kick_kontrol."""
+    """x -> x + delta, kept within the range in which the neurons' exponential is finite. Eq.
+
+    frozen_kick_kontrol.
+    """
     return max(-X_LIMIT, min(X_LIMIT, x + delta))
 
 
 class Kick(object):
     """One kick, checked and complete: nothing about it is left to be decided when it acts.
 
-    `values` are the pulse's target on the left and the right wheel; `variable` and `delta` belong to a jump.
+    `values` are the pulse's target on the left and the right wheel; `variable` and `delta` belong
+    to a jump.
     """
 
-    __slots__ = ("id", "mode", "wheels", "ticks", "smooth", "pulse", "values", "variable", "delta", "begin")
+    __slots__ = (
+        "id",
+        "mode",
+        "wheels",
+        "ticks",
+        "smooth",
+        "pulse",
+        "values",
+        "variable",
+        "delta",
+        "begin",
+    )
 
-    def __init__(self, id, mode, wheels, ticks, smooth=False, pulse=NO_PULSE, values=(0.0, 0.0), variable=None, delta=0.0, begin=0):
+    def __init__(
+        self,
+        id,
+        mode,
+        wheels,
+        ticks,
+        smooth=False,
+        pulse=NO_PULSE,
+        values=(0.0, 0.0),
+        variable=None,
+        delta=0.0,
+        begin=0,
+    ):
         self.id = id
         self.mode = mode
         self.wheels = tuple(wheels)
@@ -118,9 +163,22 @@ class Kick(object):
 def _number(request, name, limit):
     value = request.get(name)
     if value is None:
-        raise Refused("usage", "{} is missing".format(name), "give a number from {:g} to {:g}".format(-limit, limit))
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= limit or not isfinite(value):
-        raise Refused("range", "{} cannot be {!r}".format(name, value), "give a number from {:g} to {:g}".format(-limit, limit))
+        raise Refused(
+            "usage",
+            "{} is missing".format(name),
+            "give a number from {:g} to {:g}".format(-limit, limit),
+        )
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float))
+        or not abs(value) <= limit
+        or not isfinite(value)
+    ):
+        raise Refused(
+            "range",
+            "{} cannot be {!r}".format(name, value),
+            "give a number from {:g} to {:g}".format(-limit, limit),
+        )
     return float(value)
 
 
@@ -129,33 +187,55 @@ def _choice(request, name, choices, default):
     if value is None:
         raise Refused("usage", "{} is missing".format(name), "it is one of " + ", ".join(choices))
     if value not in choices:
-        raise Refused("usage", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(choices))
+        raise Refused(
+            "usage", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(choices)
+        )
     return value
 
 
 def parse(request, directions, params, begin):
     """The Kick that a request asks for, to begin in tick `begin`.
 
-    request: id, mode and, as the mode needs them, wheel, ticks, shape, shift (rad), param and value, variable and delta.
-    directions: the present direction of the left and the right wheel, from which a phase kick takes its sign if none is given.
-    Raises Refused if anything in the request is unknown, missing or out of range.
+    request: id, mode and, as the mode needs them, wheel, ticks, shape, shift (rad), param and
+    value, variable and delta. directions: the present direction of the left and the right wheel,
+    from which a phase kick takes its sign if none is given. Raises Refused if anything in the
+    request is unknown, missing or out of range.
     """
-    known = ("id", "mode", "wheel", "ticks", "shape", "shift", "param", "value", "variable", "delta")
+    known = (
+        "id",
+        "mode",
+        "wheel",
+        "ticks",
+        "shape",
+        "shift",
+        "param",
+        "value",
+        "variable",
+        "delta",
+    )
     for name in request:
         if name not in known:
             raise Refused("usage", "a kick has no '{}'".format(name), "it has " + ", ".join(known))
     identity = request.get("id")
     if not isinstance(identity, str) or not 0 < len(identity) <= 64:
-        raise Refused("usage", "a kick needs an id of 1 to 64 characters", "any text that was not used before")
+        raise Refused(
+            "usage", "a kick needs an id of 1 to 64 characters", "any text that was not used before"
+        )
     mode = _choice(request, "mode", MODES, None)
     wheel = _choice(request, "wheel", WHEELS + ("both",), "both")
     smooth = _choice(request, "shape", (RECTANGULAR, SMOOTH), RECTANGULAR) == SMOOTH
     ticks = request.get("ticks", DEFAULT_TICKS[mode])
     if isinstance(ticks, bool) or not isinstance(ticks, int) or not 1 <= ticks <= MAX_TICKS:
-        raise Refused("range", "ticks cannot be {!r}".format(ticks), "give a whole number from 1 to {}".format(MAX_TICKS))
+        raise Refused(
+            "range",
+            "ticks cannot be {!r}".format(ticks),
+            "give a whole number from 1 to {}".format(MAX_TICKS),
+        )
     kick = Kick(identity, mode, WHEELS if wheel == "both" else (wheel,), ticks, smooth, begin=begin)
     if mode in FROZEN_MODES and (ticks != 1 or smooth):
-        raise Refused("usage", "a {} kick is one jump in one tick".format(mode), "leave out ticks and shape")
+        raise Refused(
+            "usage", "a {} kick is one jump in one tick".format(mode), "leave out ticks and shape"
+        )
     _reject_foreign(request, mode)
     if mode == POSITION:
         kick.pulse, kick.values = PULSE_BETA, (1.0, 1.0)
@@ -180,13 +260,21 @@ def _reject_foreign(request, mode):
     for owner in sorted(_OWN_FIELDS):
         for name in _OWN_FIELDS[owner]:
             if owner != mode and request.get(name) is not None:
-                raise Refused("usage", "{} does not belong to a {} kick".format(name, mode), "it belongs to mode " + owner)
+                raise Refused(
+                    "usage",
+                    "{} does not belong to a {} kick".format(name, mode),
+                    "it belongs to mode " + owner,
+                )
 
 
 def _parse_pulse(request, params):
     name = _choice(request, "param", tuple(sorted(PULSED)), None)
     if request.get("value") is None:
-        raise Refused("usage", "value is missing", "give the value that {} takes at the pulse's height".format(name))
+        raise Refused(
+            "usage",
+            "value is missing",
+            "give the value that {} takes at the pulse's height".format(name),
+        )
     if name in TABLE:
         value = check_value(name, request.get("value"))
         if name == "tau_s":

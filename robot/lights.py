@@ -4,7 +4,12 @@ import os
 
 from robot.record import STATES
 
-DARK, RED, GREEN, ORANGE = (0, 0), (255, 0), (0, 255), (255, 255)  # brightness of the red and the green half
+DARK, RED, GREEN, ORANGE = (
+    (0, 0),
+    (255, 0),
+    (0, 255),
+    (255, 255),
+)  # brightness of the red and the green half
 LEFT_AND_RIGHT = {
     "idle": (ORANGE, ORANGE),
     "running": (GREEN, GREEN),
@@ -15,7 +20,10 @@ LEFT_AND_RIGHT = {
 
 
 class Lights(object):
-    """Both lights. root: where the kernel's classes of devices are. Lights that are not there, or not ours, stay as they are."""
+    """Both lights. root: where the kernel's classes of devices are.
+
+    Lights that are not there, or not ours, stay as they are.
+    """
 
     def __init__(self, root):
         self._folder = os.path.join(root, "leds")

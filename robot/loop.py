@@ -1,4 +1,7 @@
-"""The fixed tick. What runs in it, in order: read the angles, step the neurons under a kick, limit, write the duties, record."""
+"""The fixed tick. What runs in it, in order.
+
+Read the angles, step the neurons under a kick, limit, write the duties, record.
+"""
 
 import random
 from bisect import bisect_left
@@ -34,8 +37,9 @@ class Side(namedtuple("Side", "wheel motor travel")):
 class Loop(object):
     """A robot of two wheels: parts in, one tick at a time.
 
-    motors: the left and the right robot.motors.Motor; battery: a robot.motors.Battery or None; clock: see robot.motors;
-    seed: fixes the neurons' start values. Times are of the clock, record times since the loop was made.
+    motors: the left and the right robot.motors.Motor; battery: a robot.motors.Battery or None;
+    clock: see robot.motors; seed: fixes the neurons' start values. Times are of the clock, record
+    times since the loop was made.
     """
 
     def __init__(self, motors, battery, clock, seed):
@@ -51,7 +55,10 @@ class Loop(object):
         self.incurable = ""  # why no fault can be cleared while this program runs, if that is so
         self._power = Power(battery)
         self._random = random.Random(seed)
-        self._sides = [Side(Wheel(name), motor, deque(maxlen=DIRECTION_TICKS + 1)) for name, motor in zip(WHEELS, motors)]
+        self._sides = [
+            Side(Wheel(name), motor, deque(maxlen=DIRECTION_TICKS + 1))
+            for name, motor in zip(WHEELS, motors)
+        ]
         self._kick = None
         self._kick_begins = {}
         self._kick_ids = deque()
@@ -59,7 +66,10 @@ class Loop(object):
         self.epoch = self._before = self.deadline = clock.now()
 
     def run(self, serve):
-        """Tick until `done`, serving links in between by serve(timeout_s). Motors are stopped however this ends."""
+        """Tick until `done`, serving links in between by serve(timeout_s).
+
+        Motors are stopped however this ends.
+        """
         try:
             while not self.done:
                 self.clock.wait(self.deadline, serve)
@@ -85,7 +95,10 @@ class Loop(object):
             self.overruns += 1
 
     def _keep_schedule(self, now):
-        """(how late this tick is, how many deadlines passed without one); the grid of deadlines itself never moves."""
+        """(how late this tick is, how many deadlines passed without one).
+
+        The grid of deadlines itself never moves.
+        """
         period = self.params.tick_s
         late_s = now - self.deadline
         missed = int(late_s // period) if late_s >= period else 0
@@ -108,7 +121,10 @@ class Loop(object):
     def _control(self, dt_s):
         """Both wheels' duty cycles in %, as written. Raises MotorFault."""
         left, right = self._sides
-        duties = self._drive(left, self.params.polarity_left, dt_s), self._drive(right, self.params.polarity_right, dt_s)
+        duties = (
+            self._drive(left, self.params.polarity_left, dt_s),
+            self._drive(right, self.params.polarity_right, dt_s),
+        )
         if self.safety.state == FAULT:
             self._stop_motors()  # again, for one that did not obey
         return duties
@@ -155,12 +171,19 @@ class Loop(object):
             self.blackbox.note("battery", reason=warning)
         if exhaustion and self.safety.state in (RUNNING, HELD):
             self.stop(exhaustion)
-        scale = power.duty_scale() if self.params.battery_compensation == "on" else self.params.duty_scale
+        scale = (
+            power.duty_scale()
+            if self.params.battery_compensation == "on"
+            else self.params.duty_scale
+        )
         if scale != self.params.duty_scale:
             self.set_params({"duty_scale": scale})
 
     def start(self):
-        """Set the neurons to random potentials and run from the next tick on. Returns that tick. Raises Refused."""
+        """Set the neurons to random potentials and run from the next tick on. Returns that tick.
+
+        Raises Refused.
+        """
         self._power.read()
         exhaustion = self._power.exhaustion()
         if exhaustion:
@@ -173,7 +196,10 @@ class Loop(object):
         return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in wheels])
 
     def stop(self, reason):
-        """Stop the motors at once. Returns the next tick. A robot that is stopped already, or in fault, keeps its reason."""
+        """Stop the motors at once. Returns the next tick.
+
+        A robot that is stopped already, or in fault, keeps its reason.
+        """
         self._stop_motors()
         if self.safety.state not in (STOPPED, FAULT):
             self.safety.stop(reason)
@@ -186,10 +212,17 @@ class Loop(object):
         self._stop_motors()
 
     def clear(self):
-        """Leave a fault for the stopped state, once every motor is there. Returns the tick. Raises Refused."""
+        """Leave a fault for the stopped state, once every motor is there. Returns the tick.
+
+        Raises Refused.
+        """
         if self.safety.state == FAULT:
             if self.incurable:
-                raise Refused("fault", "the fault stays: " + self.incurable, "start the robot's program anew: it cannot mend this itself")
+                raise Refused(
+                    "fault",
+                    "the fault stays: " + self.incurable,
+                    "start the robot's program anew: it cannot mend this itself",
+                )
             for side in self._sides:
                 try:
                     side.motor.find()
@@ -199,18 +232,29 @@ class Loop(object):
         return self.blackbox.note("clear")
 
     def kick(self, request):
-        """Begin a kick in the next tick. Returns the tick in which it begins, or began if its id is known. Raises Refused."""
-        begun = self._kick_begins.get(request.get("id")) if isinstance(request.get("id"), str) else None
+        """Begin a kick in the next tick.
+
+        Returns the tick in which it begins, or began if its id is known. Raises Refused.
+        """
+        begun = (
+            self._kick_begins.get(request.get("id")) if isinstance(request.get("id"), str) else None
+        )
         if begun is not None:
             return begun
         tick = self.blackbox.next_tick
         directions = [side.direction() for side in self._sides]
         kick = parse(request, directions, self.params, tick)
         if self.safety.state != RUNNING:
-            raise Refused("state", "the robot does not run, so there is nothing to kick", "start it first")
+            raise Refused(
+                "state", "the robot does not run, so there is nothing to kick", "start it first"
+            )
         if self._kick is not None:
             raise Refused(
-                "busy", "a {} kick acts until tick {}".format(self._kick.mode, self._kick.begin + self._kick.ticks), "kick again then"
+                "busy",
+                "a {} kick acts until tick {}".format(
+                    self._kick.mode, self._kick.begin + self._kick.ticks
+                ),
+                "kick again then",
             )
         self._kick = kick
         self._kick_begins[kick.id] = tick
@@ -220,10 +264,17 @@ class Loop(object):
         return self.blackbox.note("kick", kick=kick.as_dict())
 
     def set_params(self, changes):
-        """Change parameters from the next tick on. Returns that tick. Raises Refused, and changes nothing then."""
+        """Change parameters from the next tick on. Returns that tick.
+
+        Raises Refused, and changes nothing then.
+        """
         checked = self.params.check(changes, at_rest=self.safety.state not in (RUNNING, HELD))
         if "tick_s" in checked and self._kick is not None:
-            raise Refused("busy", "tick_s cannot change while a kick of so many ticks acts", "set it when the kick is over")
+            raise Refused(
+                "busy",
+                "tick_s cannot change while a kick of so many ticks acts",
+                "set it when the kick is over",
+            )
         self.params.apply(checked)
         for side in self._sides:
             if "polarity_" + side.wheel.side in checked:

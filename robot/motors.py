@@ -1,4 +1,7 @@
-"""The seams to hardware: a motor, a battery, a clock. The brick and the simulator implement them; the loop knows no more."""
+"""The seams to hardware: a motor, a battery, a clock. The brick and the simulator implement them.
+
+The loop knows no more.
+"""
 
 import select
 import time
@@ -9,29 +12,46 @@ class MotorFault(Exception):
 
 
 class Motor:
-    """One wheel's motor, on its own axis: positive is the motor's own positive turn, whatever its mounting."""
+    """One wheel's motor, on its own axis.
+
+    Positive is the motor's own positive turn, whatever its mounting.
+    """
 
     def angle_rad(self):
-        """The tacho angle in rad since the motor was found; in whole degrees on the EV3. Raises MotorFault."""
+        """The tacho angle in rad since the motor was found; in whole degrees on the EV3.
+
+        Raises MotorFault.
+        """
         raise NotImplementedError
 
     def write_duty(self, duty_pct):
-        """Run at duty_pct, an int in -100 .. 100, percent of full PWM; 0 brakes. Raises MotorFault."""
+        """Run at duty_pct, an int in -100 .. 100, percent of full PWM; 0 brakes.
+
+        Raises MotorFault.
+        """
         raise NotImplementedError
 
     def stop(self):
-        """Stop and hold by the electrical brake. May be called at any time, any number of times; raises MotorFault if it failed."""
+        """Stop and hold by the electrical brake. May be called at any time, any number of times.
+
+        Raises MotorFault if it failed.
+        """
         raise NotImplementedError
 
     def find(self):
-        """Find a motor that failed again, braked, its angle going on from where it was; nothing if it is well. Raises MotorFault.
+        """Find a motor that failed again, braked, its angle going on from where it was.
+
+        Nothing if it is well. Raises MotorFault.
 
         What cannot be lost need not have this method of its own.
         """
 
 
 class Battery:
-    """Where the motors' power comes from. Below warn_v (V) it should be charged, below stop_v it no longer can drive the robot."""
+    """Where the motors' power comes from.
+
+    Below warn_v (V) it should be charged, below stop_v it no longer can drive the robot.
+    """
 
     warn_v = stop_v = 0.0
 

@@ -1,4 +1,7 @@
-"""The one table of parameters. Checks, command line, documentation and dashboards are derived from it."""
+"""The one table of parameters.
+
+Checks, command line, documentation and dashboards are derived from it.
+"""
 
 from collections import OrderedDict, namedtuple
 from math import isfinite
@@ -16,7 +19,8 @@ def _choice(name, default, choices, doc, at_rest_only=False):
     return Param(name, "", None, None, default, choices, at_rest_only, doc)
 
 
-# A late tick's delta t is cut off at this many ticks, so tau must be at least that long or an Euler step could overshoot.
+# A late tick's delta t is cut off at this many ticks, so tau must be at least that long or an Euler
+# step could overshoot.
 LONGEST_STEP_TICKS = 3
 
 _ROWS = (
@@ -25,13 +29,41 @@ _ROWS = (
     _number("k", "1", 0.0, 100.0, 8.0, "spring constant of the simulated rods"),
     _number("tick_s", "s", 0.01, 0.1, 0.03, "control period; tau_s must be at least three of them"),
     _number("max_duty_pct", "%", 0.0, 100.0, 85.0, "duty cycle at torque M = 1"),
-    _choice("battery_compensation", "off", ("off", "on"), "whether the robot itself sets duty_scale, to nominal / battery voltage"),
-    _number("duty_scale", "1", 0.5, 2.0, 1.0, "factor on every duty cycle; max_duty_pct bounds the product all the same"),
+    _choice(
+        "battery_compensation",
+        "off",
+        ("off", "on"),
+        "whether the robot itself sets duty_scale, to nominal / battery voltage",
+    ),
+    _number(
+        "duty_scale",
+        "1",
+        0.5,
+        2.0,
+        1.0,
+        "factor on every duty cycle; max_duty_pct bounds the product all the same",
+    ),
     _choice("rods", 2, (1, 2), "transmission rods on each wheel"),
-    _choice("polarity_left", 1, (1, -1), "-1 if the left motor is mounted mirrored", at_rest_only=True),
-    _choice("polarity_right", 1, (1, -1), "-1 if the right motor is mounted mirrored", at_rest_only=True),
-    _choice("link_loss", "stop", ("stop", "hold", "continue"), "what the robot does when the host that holds the lease is lost"),
-    _number("link_loss_s", "s", 0.2, 10.0, 0.5, "silence of the host that holds the lease that counts as its loss"),
+    _choice(
+        "polarity_left", 1, (1, -1), "-1 if the left motor is mounted mirrored", at_rest_only=True
+    ),
+    _choice(
+        "polarity_right", 1, (1, -1), "-1 if the right motor is mounted mirrored", at_rest_only=True
+    ),
+    _choice(
+        "link_loss",
+        "stop",
+        ("stop", "hold", "continue"),
+        "what the robot does when the host that holds the lease is lost",
+    ),
+    _number(
+        "link_loss_s",
+        "s",
+        0.2,
+        10.0,
+        0.5,
+        "silence of the host that holds the lease that counts as its loss",
+    ),
 )
 TABLE = OrderedDict((row.name, row) for row in _ROWS)
 
@@ -43,20 +75,38 @@ def describe():
 
 
 def check_value(name, value):
-    """The value in its parameter's own type. Raises Refused for an unknown name, a wrong type, NaN or a value out of range."""
+    """The value in its parameter's own type.
+
+    Raises Refused for an unknown name, a wrong type, NaN or a value out of range.
+    """
     row = TABLE.get(name)
     if row is None:
-        raise Refused("unknown", "there is no parameter '{}'".format(name), "parameters are: " + ", ".join(TABLE))
+        raise Refused(
+            "unknown",
+            "there is no parameter '{}'".format(name),
+            "parameters are: " + ", ".join(TABLE),
+        )
     if row.choices is not None:
         for choice in row.choices:
             if not isinstance(value, bool) and value == choice:
                 return choice
-        raise Refused("range", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(str(choice) for choice in row.choices))
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not row.minimum <= value <= row.maximum or not isfinite(value):
         raise Refused(
             "range",
             "{} cannot be {!r}".format(name, value),
-            "it is a number from {:g} to {:g} {}".format(row.minimum, row.maximum, row.unit.replace("1", "")).rstrip(),
+            "it is one of " + ", ".join(str(choice) for choice in row.choices),
+        )
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float))
+        or not row.minimum <= value <= row.maximum
+        or not isfinite(value)
+    ):
+        raise Refused(
+            "range",
+            "{} cannot be {!r}".format(name, value),
+            "it is a number from {:g} to {:g} {}".format(
+                row.minimum, row.maximum, row.unit.replace("1", "")
+            ).rstrip(),
         )
     return float(value)
 
@@ -66,8 +116,11 @@ def check_step(tick_s, tau_s):
     if tau_s < LONGEST_STEP_TICKS * tick_s:
         raise Refused(
             "range",
-            "tau_s {:g} s is shorter than {} ticks of {:g} s".format(tau_s, LONGEST_STEP_TICKS, tick_s),
-            "the Euler step after a late tick would overshoot: take a longer tau_s or a shorter tick_s",
+            "tau_s {:g} s is shorter than {} ticks of {:g} s".format(
+                tau_s, LONGEST_STEP_TICKS, tick_s
+            ),
+            "the Euler step after a late tick would overshoot: take a longer tau_s or a shorter"
+            " tick_s",
         )
 
 
@@ -83,13 +136,20 @@ class Params(object):
         return OrderedDict((name, getattr(self, name)) for name in TABLE)
 
     def check(self, changes, at_rest=True):
-        """The changes in the parameters' own types; nothing is changed. Raises Refused if any of them is wrong."""
+        """The changes in the parameters' own types; nothing is changed.
+
+        Raises Refused if any of them is wrong.
+        """
         if not isinstance(changes, dict) or not changes:
             raise Refused("usage", "no parameter is named", "name at least one, as in k=8")
         checked = OrderedDict((name, check_value(name, changes[name])) for name in sorted(changes))
         for name in checked:
             if TABLE[name].at_rest_only and not at_rest and checked[name] != getattr(self, name):
-                raise Refused("state", "{} cannot change while the robot runs".format(name), "stop the robot first")
+                raise Refused(
+                    "state",
+                    "{} cannot change while the robot runs".format(name),
+                    "stop the robot first",
+                )
         check_step(checked.get("tick_s", self.tick_s), checked.get("tau_s", self.tau_s))
         return checked
 

@@ -1,15 +1,22 @@
-"""What the loop makes of its battery: readings, a warning, the end, and by how much duty cycles make up for a low voltage."""
+"""What the loop makes of its battery.
+
+Readings, a warning, the end, and by how much duty cycles make up for a low voltage.
+"""
 
 # The voltage at which max_duty_pct means what it says: brickd's 'full' of the lithium pack.
 NOMINAL_V = 7.5
-# Under load the voltage sags by some tenths of a volt for a moment; this much of each reading counts.
+# Under load the voltage sags by some tenths of a volt for a moment; this much of each reading
+# counts.
 SMOOTHING = 0.5
 # A battery is as good as new again when it has risen so far above the warning.
 RECOVERED_V = 0.3
 
 
 class Power(object):
-    """A robot.motors.Battery or None, read when asked to. `latest_v` is the last reading, `mean_v` what it has lately been; or None."""
+    """A robot.motors.Battery or None, read when asked to.
+
+    `latest_v` is the last reading, `mean_v` what it has lately been; or None.
+    """
 
     def __init__(self, battery):
         self._battery = battery
@@ -22,10 +29,15 @@ class Power(object):
         volts = None if self._battery is None else self._battery.voltage_v()
         self.latest_v = volts
         if volts is not None:
-            self.mean_v = volts if self.mean_v is None else self.mean_v + SMOOTHING * (volts - self.mean_v)
+            self.mean_v = (
+                volts if self.mean_v is None else self.mean_v + SMOOTHING * (volts - self.mean_v)
+            )
 
     def warning(self):
-        """What is to be said of a battery that is low: once, until it has been charged; empty if nothing."""
+        """What is to be said of a battery that is low: once, until it has been charged.
+
+        Empty if nothing.
+        """
         if self.mean_v is None:
             return ""
         due = self.mean_v < self._battery.warn_v and not self._warned

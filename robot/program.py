@@ -1,4 +1,7 @@
-"""The robot's program: from arguments to parts to the loop. The brick and the simulated brick differ only in the parts they hand in."""
+"""The robot's program: from arguments to parts to the loop.
+
+The brick and the simulated brick differ only in the parts they hand in.
+"""
 
 import argparse
 import os
@@ -18,12 +21,33 @@ def parser(description, host):
     """The arguments of every robot program; `host` is the address it listens on by default."""
     made = argparse.ArgumentParser(description=description)
     made.add_argument("--host", default=host, help="address to listen on (default %(default)s)")
-    made.add_argument("--port", type=int, default=PORT, help="TCP port to listen on, 0 for any that is free (default %(default)s)")
-    made.add_argument("--serial", metavar="DEVICE[@BAUD]", help="serve this serial line as well (default baud rate {})".format(BAUD))
-    made.add_argument("--token", default=token.default_path(), help="token file, made if there is none (default %(default)s)")
+    made.add_argument(
+        "--port",
+        type=int,
+        default=PORT,
+        help="TCP port to listen on, 0 for any that is free (default %(default)s)",
+    )
+    made.add_argument(
+        "--serial",
+        metavar="DEVICE[@BAUD]",
+        help="serve this serial line as well (default baud rate {})".format(BAUD),
+    )
+    made.add_argument(
+        "--token",
+        default=token.default_path(),
+        help="token file, made if there is none (default %(default)s)",
+    )
     made.add_argument("--seed", type=int, help="fixes the neurons' start values; random by default")
-    made.add_argument("--idle", action="store_true", help="leave the motors off until told to start")
-    made.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a parameter to begin with; may be repeated")
+    made.add_argument(
+        "--idle", action="store_true", help="leave the motors off until told to start"
+    )
+    made.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a parameter to begin with; may be repeated",
+    )
     made.add_argument("--tick", type=float, metavar="S", help="control period in s")
     return made
 
@@ -34,9 +58,12 @@ def choose_seed(options):
 
 
 def run(options, motors, battery, clock, seed, panels=()):
-    """Serve and tick until SIGINT or SIGTERM. Prints READY when it listens. Returns the exit status.
+    """Serve and tick until SIGINT or SIGTERM. Prints READY when it listens.
 
-    panels: what people see and touch on the robot; their serve(loop) is called in the time that ticks leave, and must return at once.
+    Returns the exit status.
+
+    panels: what people see and touch on the robot; their serve(loop) is called in the time that
+    ticks leave, and must return at once.
     """
     try:
         secret, new = token.load_or_make(options.token)
@@ -68,7 +95,11 @@ def _settings(options):
     for text in options.set:
         name, equals, value = text.partition("=")
         if not equals:
-            raise Refused("usage", "--set {} sets nothing".format(text), "it is --set NAME=VALUE, as --set polarity_left=-1")
+            raise Refused(
+                "usage",
+                "--set {} sets nothing".format(text),
+                "it is --set NAME=VALUE, as --set polarity_left=-1",
+            )
         try:
             settings[name] = float(value)
         except ValueError:
@@ -128,7 +159,10 @@ def _give_up(message):
 
 
 def _line_opener(argument):
-    """A function that opens the serial line 'DEVICE' or 'DEVICE@BAUD' without blocking. It raises OSError."""
+    """A function that opens the serial line 'DEVICE' or 'DEVICE@BAUD' without blocking.
+
+    It raises OSError.
+    """
     device, _, baud = argument.partition("@")
 
     def open_line():

@@ -1,4 +1,7 @@
-"""What one tick leaves behind: the table of channels, and its packed form on the wire and in the black box."""
+"""What one tick leaves behind.
+
+The table of channels, and its packed form on the wire and in the black box.
+"""
 
 import struct
 from collections import OrderedDict, namedtuple
@@ -14,11 +17,25 @@ Channel = namedtuple("Channel", "name code unit doc")
 _TICK = (
     Channel("tick", "I", "1", "number of the tick, without gaps since the robot's program began"),
     Channel("t_s", "d", "s", "the robot's clock when the tick began, since its program began"),
-    Channel("dt_s", "d", "s", "delta t of the Euler step: measured since the tick before, within bounds"),
+    Channel(
+        "dt_s", "d", "s", "delta t of the Euler step: measured since the tick before, within bounds"
+    ),
     Channel("late_s", "f", "s", "how long after its deadline the tick began"),
     Channel("missed", "H", "1", "deadlines that passed without a tick since the tick before"),
-    Channel("state", "B", "1", "state of the robot: " + ", ".join("{} {}".format(i, name) for i, name in enumerate(STATES))),
-    Channel("kick", "B", "1", "the kick that acts: " + ", ".join("{} {}".format(i, name or "none") for i, name in enumerate(KICK_NAMES))),
+    Channel(
+        "state",
+        "B",
+        "1",
+        "state of the robot: "
+        + ", ".join("{} {}".format(i, name) for i, name in enumerate(STATES)),
+    ),
+    Channel(
+        "kick",
+        "B",
+        "1",
+        "the kick that acts: "
+        + ", ".join("{} {}".format(i, name or "none") for i, name in enumerate(KICK_NAMES)),
+    ),
 )
 _WHEEL = (
     Channel("phi_rad", "d", "rad", "wheel angle read in this tick, forward positive"),
@@ -29,7 +46,9 @@ _WHEEL = (
     Channel("duty_pct", "b", "%", "duty cycle written to the motor, forward positive"),
 )
 
-CHANNELS = _TICK + tuple(channel._replace(name=side + "_" + channel.name) for side in WHEELS for channel in _WHEEL)
+CHANNELS = _TICK + tuple(
+    channel._replace(name=side + "_" + channel.name) for side in WHEELS for channel in _WHEEL
+)
 NAMES = tuple(channel.name for channel in CHANNELS)
 STRUCT = struct.Struct("<" + "".join(channel.code for channel in CHANNELS))
 Record = namedtuple("Record", NAMES)
@@ -41,5 +60,8 @@ def describe():
 
 
 def unpack(data):
-    """The Records in packed data, oldest first. Raises struct.error if the data is not a whole number of records."""
+    """The Records in packed data, oldest first.
+
+    Raises struct.error if the data is not a whole number of records.
+    """
     return [Record(*fields) for fields in STRUCT.iter_unpack(data)]

@@ -1,4 +1,7 @@
-"""What stands between the controller and the motors: the limiter, the robot's states, and the dead-man of the lease."""
+"""What stands between the controller and the motors.
+
+The limiter, the robot's states, and the dead-man of the lease.
+"""
 
 from math import isnan
 
@@ -9,7 +12,10 @@ IDLE, RUNNING, HELD, STOPPED, FAULT = range(len(STATES))
 
 
 def limit_duty(torque, max_duty_pct):
-    """The duty cycle for a relative torque: a whole number of percent, never beyond +-max_duty_pct nor +-100; 0 for NaN."""
+    """The duty cycle for a relative torque.
+
+    A whole number of percent, never beyond +-max_duty_pct nor +-100; 0 for NaN.
+    """
     duty = max_duty_pct * torque
     if isnan(duty):
         return 0
@@ -27,7 +33,11 @@ class Safety(object):
     def start(self):
         """To running. Raises Refused in a fault or when running already."""
         if self.state == FAULT:
-            raise Refused("fault", "the robot is in fault: " + self.reason, "mend the cause, then clear the fault")
+            raise Refused(
+                "fault",
+                "the robot is in fault: " + self.reason,
+                "mend the cause, then clear the fault",
+            )
         if self.state in (RUNNING, HELD):
             raise Refused("state", "the robot runs already", "stop it first to start anew")
         self._enter(RUNNING, "started")
@@ -68,9 +78,16 @@ class Lease(object):
         self.holder = self.name = self._heard = None
 
     def take(self, holder, name, now):
-        """Give the lease to `holder`, who may hold it already. Raises Refused while another has it."""
+        """Give the lease to `holder`, who may hold it already.
+
+        Raises Refused while another has it.
+        """
         if self.holder not in (None, holder):
-            raise Refused("lease", "'{}' controls the robot".format(self.name), "wait until it lets go; anyone may stop the robot")
+            raise Refused(
+                "lease",
+                "'{}' controls the robot".format(self.name),
+                "wait until it lets go; anyone may stop the robot",
+            )
         self.holder = holder
         self.name = name
         self._heard = now
@@ -91,7 +108,10 @@ class Lease(object):
             self.holder = None
 
     def expire(self, now, patience_s):
-        """True, once, when the holder has been silent for longer than patience_s; the lease is free then."""
+        """True, once, when the holder has been silent for longer than patience_s.
+
+        The lease is free then.
+        """
         if self.holder is None or now - self._heard <= patience_s:
             return False
         self.holder = None

@@ -17,7 +17,8 @@ STREAM_BYTES = 16384
 SEND_BUFFER_BYTES = 65536
 GREETING_S = 5.0
 LINE_RETRY_S = 1.0
-# Nobody pauses for so long within a frame: what a line that is silent seems to have begun was noise.
+# Nobody pauses for so long within a frame: what a line that is silent seems to have begun was
+# noise.
 LINE_SILENCE_S = 0.2
 _LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
 
@@ -37,7 +38,8 @@ class Peer(object):
     def read(self, now):
         """Take in what has arrived. False if the link is at its end."""
         if self.lasting and not select.select((self.fd,), (), (), 0.0)[0]:
-            # Without anything to read a serial line answers with nothing, as it does at its end; a connection says "later".
+            # Without anything to read a serial line answers with nothing, as it does at its end; a
+            # connection says "later".
             if now - self.heard > LINE_SILENCE_S:
                 self.decoder.skip()
             return True
@@ -57,7 +59,9 @@ class Peer(object):
         frame = self.decoder.next()
         if self.decoder.discarded and not self.lasting:
             # TCP delivers what was sent, so this peer sends something else than frames.
-            self.out += self.session.refuse("broken", "that was no frame", "see PROTOCOL.md for what the robot understands")
+            self.out += self.session.refuse(
+                "broken", "that was no frame", "see PROTOCOL.md for what the robot understands"
+            )
         elif frame is not None:
             self.out += self.session.receive(*frame)
             return True
@@ -103,7 +107,10 @@ class Server(object):
         self._lines = []
 
     def listen(self, host, port):
-        """Accept TCP connections. Returns the port, which the system chooses if `port` is 0. Raises OSError."""
+        """Accept TCP connections. Returns the port, which the system chooses if `port` is 0.
+
+        Raises OSError.
+        """
         self._listener = socket.socket()
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self._listener.bind((host, port))
@@ -112,14 +119,20 @@ class Server(object):
         return self._listener.getsockname()[1]
 
     def adopt(self, link, lasting=False):
-        """The Peer at an open, non-blocking link with fileno() and close(); a lasting one, a serial line, survives noise."""
+        """The Peer at an open, non-blocking link with fileno() and close().
+
+        A lasting one, a serial line, survives noise.
+        """
         session = Session(self._loop, self._token, self.boot)
         peer = Peer(link, session, self._loop.clock.now(), lasting)
         self._peers.append(peer)
         return peer
 
     def attach(self, open_line):
-        """Talk over the serial line that open_line() opens, and open it again whenever it breaks. open_line may raise OSError."""
+        """Talk over the serial line that open_line() opens, and open it again whenever it breaks.
+
+        open_line may raise OSError.
+        """
         self._lines.append(_Line(open_line))
 
     def close(self):
@@ -131,7 +144,10 @@ class Server(object):
             self._listener = None
 
     def serve(self, timeout_s):
-        """Answer and send what is due, for about timeout_s; at the least one frame of each peer, so that a stop is always heard."""
+        """Answer and send what is due, for about timeout_s.
+
+        At the least one frame of each peer, so that a stop is always heard.
+        """
         clock = self._loop.clock
         until = clock.now() + timeout_s
         more = self._talk()
@@ -167,7 +183,10 @@ class Server(object):
         return more
 
     def _accept(self):
-        """Take in one connection, so that it is heard before the next could push it out. Returns whether there was one."""
+        """Take in one connection, so that it is heard before the next could push it out.
+
+        Returns whether there was one.
+        """
         try:
             link = self._listener.accept()[0]
         except OSError:
@@ -195,7 +214,13 @@ class Server(object):
         """The peer that has been here longest gives way, those without the token first, whoever holds the lease last."""
         holder = self._loop.lease.holder
         candidates = [peer for peer in self._peers if not peer.lasting]
-        candidates.sort(key=lambda peer: (peer.session.trusted, holder is not None and peer.session.client == holder, peer.since))
+        candidates.sort(
+            key=lambda peer: (
+                peer.session.trusted,
+                holder is not None and peer.session.client == holder,
+                peer.since,
+            )
+        )
         self._drop(candidates[0])
 
     def _drop(self, peer):

@@ -1,4 +1,7 @@
-"""One peer's conversation with the robot, without any I/O: frames in, frames out. The order of it is in PROTOCOL.md."""
+"""One peer's conversation with the robot, without any I/O: frames in, frames out.
+
+The order of it is in PROTOCOL.md.
+"""
 
 import binascii
 import os
@@ -25,7 +28,10 @@ def _identity(message):
 
 
 class Session(object):
-    """What the robot knows of one peer. `closing` is set when the conversation is over and only the last frames are to be sent."""
+    """What the robot knows of one peer.
+
+    `closing` is set when the conversation is over and only the last frames are to be sent.
+    """
 
     def __init__(self, loop, token, boot):
         self.client = None
@@ -53,24 +59,41 @@ class Session(object):
             if kind == wire.HELLO:
                 return self._hello(wire.load(payload))
             if kind == wire.STOP:
-                return wire.encode_json(wire.REPLY, {"id": None, "result": {"tick": self._loop.stop("stop frame from " + self._peer())}})
+                return wire.encode_json(
+                    wire.REPLY,
+                    {
+                        "id": None,
+                        "result": {"tick": self._loop.stop("stop frame from " + self._peer())},
+                    },
+                )
             if not self.greeted:
                 raise wire.BadMessage("there was no hello before it")
             if kind == wire.AUTH:
                 return self._authenticate(wire.load(payload))
             if kind == wire.COMMAND:
                 if not self.trusted:
-                    return self.refuse("token", "commands need the robot's token", "without it a peer may look, and stop the robot")
+                    return self.refuse(
+                        "token",
+                        "commands need the robot's token",
+                        "without it a peer may look, and stop the robot",
+                    )
                 payload = self._unseal(payload)
             elif kind != wire.ASK:
                 raise wire.BadMessage("frames of type {} come from the robot only".format(kind))
             message = wire.load(payload)
             identity = _identity(message)
-            answer = {"result": commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)}
+            answer = {
+                "result": commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
+            }
         except Refused as refusal:
             answer = {"error": refusal.as_dict()}
-        except (wire.BadMessage, RecursionError) as error:  # what is nested too deeply to be shown in a refusal
-            return self.refuse("broken", str(error), "see PROTOCOL.md for what the robot understands")
+        except (
+            wire.BadMessage,
+            RecursionError,
+        ) as error:  # what is nested too deeply to be shown in a refusal
+            return self.refuse(
+                "broken", str(error), "see PROTOCOL.md for what the robot understands"
+            )
         return wire.encode_json(wire.REPLY, dict(answer, id=identity))
 
     def refuse(self, code, message, hint):
@@ -79,7 +102,9 @@ class Session(object):
         self.trusted = False
         self._handshake = None
         self._cursor = None
-        return wire.encode_json(wire.REPLY, {"id": None, "error": Refused(code, message, hint).as_dict()})
+        return wire.encode_json(
+            wire.REPLY, {"id": None, "error": Refused(code, message, hint).as_dict()}
+        )
 
     def _peer(self):
         return "'{}'".format(self.name) if self.name else "a peer without a name"
@@ -88,14 +113,27 @@ class Session(object):
         protocol = message.get("protocol")
         if not isinstance(protocol, list) or len(protocol) != 2 or protocol[0] != wire.PROTOCOL[0]:
             ours = "{}.{}".format(*wire.PROTOCOL)
-            return self.refuse("version", "protocol {!r} is not {}".format(protocol, ours), "run the same release on host and robot")
+            return self.refuse(
+                "version",
+                "protocol {!r} is not {}".format(protocol, ours),
+                "run the same release on host and robot",
+            )
         name, client = message.get("name"), message.get("client")
         try:
             nonce = binascii.unhexlify(message.get("nonce"))
         except (TypeError, ValueError):
             nonce = b""
-        if len(nonce) != wire.NONCE_BYTES or not isinstance(client, str) or not 0 < len(client) <= 64 or not isinstance(name, str):
-            raise wire.BadMessage("a hello needs protocol, name, client and a nonce of {} bytes".format(wire.NONCE_BYTES))
+        if (
+            len(nonce) != wire.NONCE_BYTES
+            or not isinstance(client, str)
+            or not 0 < len(client) <= 64
+            or not isinstance(name, str)
+        ):
+            raise wire.BadMessage(
+                "a hello needs protocol, name, client and a nonce of {} bytes".format(
+                    wire.NONCE_BYTES
+                )
+            )
         self.name = "".join(letter for letter in name[:40] if letter.isprintable())
         self.client = client
         self.trusted = False
@@ -104,10 +142,24 @@ class Session(object):
         own_nonce = new_id()
         self._handshake = wire.Handshake(self._token, nonce, binascii.unhexlify(own_nonce))
         loop = self._loop
-        answer = {"protocol": wire.PROTOCOL, "software": __version__, "boot": self._boot, "nonce": own_nonce, "seed": loop.seed}
+        answer = {
+            "protocol": wire.PROTOCOL,
+            "software": __version__,
+            "boot": self._boot,
+            "nonce": own_nonce,
+            "seed": loop.seed,
+        }
         answer.update(host_nonce=binascii.hexlify(nonce).decode("ascii"))
-        answer.update(tick=loop.blackbox.next_tick, oldest_tick=loop.blackbox.oldest_tick, clock_s=loop.clock.now() - loop.epoch)
-        answer.update(machine="{} {} {}".format(platform.machine(), platform.python_implementation(), platform.python_version()))
+        answer.update(
+            tick=loop.blackbox.next_tick,
+            oldest_tick=loop.blackbox.oldest_tick,
+            clock_s=loop.clock.now() - loop.epoch,
+        )
+        answer.update(
+            machine="{} {} {}".format(
+                platform.machine(), platform.python_implementation(), platform.python_version()
+            )
+        )
         return wire.encode_json(wire.HELLO, answer)
 
     def _authenticate(self, message):
@@ -116,7 +168,11 @@ class Session(object):
         except (TypeError, ValueError):
             proof = b""
         if not wire.same(proof, self._handshake.host_proof):
-            return self.refuse("token", "the token is not this robot's", "copy the robot's token file to this machine, mode 600")
+            return self.refuse(
+                "token",
+                "the token is not this robot's",
+                "copy the robot's token file to this machine, mode 600",
+            )
         self.trusted = True
         robot_proof = binascii.hexlify(self._handshake.robot_proof).decode("ascii")
         return wire.encode_json(wire.AUTH, {"proof": robot_proof})
@@ -127,7 +183,10 @@ class Session(object):
         return payload
 
     def subscribe(self, tick):
-        """Send records from `tick` on, or from the oldest that is left. Returns the first tick that will be sent."""
+        """Send records from `tick` on, or from the oldest that is left.
+
+        Returns the first tick that will be sent.
+        """
         self._cursor = tick
         self._introduced = False
         return max(tick, self._loop.blackbox.oldest_tick)
@@ -137,7 +196,10 @@ class Session(object):
         self._cursor = None
 
     def stream(self):
-        """The next frame of the subscription, or None if the peer has everything: events stand before the record they concern."""
+        """The next frame of the subscription, or None if the peer has everything.
+
+        Events stand before the record they concern.
+        """
         if self._cursor is None:
             return None
         box = self._loop.blackbox

@@ -1,4 +1,7 @@
-"""The secret that robot and host share: 32 random bytes, as hexadecimal text in a file that only its owner can read."""
+"""The secret that robot and host share.
+
+32 random bytes, as hexadecimal text in a file that only its owner can read.
+"""
 
 import binascii
 import os
@@ -29,18 +32,27 @@ def load(path):
     except (OSError, ValueError) as error:
         raise TokenError("the token file {} cannot be read: {}".format(path, error)) from error
     if mode & (stat.S_IRWXG | stat.S_IRWXO):
-        raise TokenError("the token file {} is open to others; close it: chmod 600 {}".format(path, path))
+        raise TokenError(
+            "the token file {} is open to others; close it: chmod 600 {}".format(path, path)
+        )
     try:
         token = binascii.unhexlify(text.strip())
     except ValueError:
         token = b""
     if len(token) != TOKEN_BYTES:
-        raise TokenError("{} holds no token of {} hexadecimal digits; delete it to have a new one made".format(path, 2 * TOKEN_BYTES))
+        raise TokenError(
+            "{} holds no token of {} hexadecimal digits; delete it to have a new one made".format(
+                path, 2 * TOKEN_BYTES
+            )
+        )
     return token
 
 
 def load_or_make(path):
-    """(token, whether it is new): the token in the file, made first if there is no such file. Raises TokenError."""
+    """(token, whether it is new): the token in the file, made first if there is no such file.
+
+    Raises TokenError.
+    """
     try:
         os.makedirs(os.path.dirname(path) or ".", mode=0o700, exist_ok=True)
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)

@@ -1,7 +1,18 @@
-"""One wheel's neurons from tick to tick: the controller's equations under the kick that acts, if one does."""
+"""One wheel's neurons from tick to tick.
+
+The controller's equations under the kick that acts, if one does.
+"""
 
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import MEMBRANE, WHEELS, invert_membrane, jump, pulse_weight, pulsed, seen_positions
+from robot.kicks import (
+    MEMBRANE,
+    WHEELS,
+    invert_membrane,
+    jump,
+    pulse_weight,
+    pulsed,
+    seen_positions,
+)
 
 
 class Wheel(object):
@@ -24,7 +35,9 @@ class Wheel(object):
         if kick is not None and self.side in kick.wheels and kick.acts_at(tick):
             if kick.pulse:
                 weight = pulse_weight(tick - kick.begin, kick.ticks, kick.smooth)
-                a, tau_s, k, beta, shift_rad = pulsed(kick.pulse, kick.values[self.index], weight, a, tau_s, k)
+                a, tau_s, k, beta, shift_rad = pulsed(
+                    kick.pulse, kick.values[self.index], weight, a, tau_s, k
+                )
                 seen_1, seen_2 = seen_positions(self.phi, beta, shift_rad)
             elif kick.mode == MEMBRANE:
                 self.x1, self.x2 = invert_membrane(self.x1, self.x2)

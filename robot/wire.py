@@ -16,7 +16,8 @@ _SEAL = struct.Struct(">Q16s")
 MAX_PAYLOAD = 4096
 MAX_SAMPLES = MAX_PAYLOAD - _SAMPLES.size
 OVERHEAD = _HEADER.size + _CHECK.size
-# Noise can look like the beginning of a frame. A peer that makes it do so on purpose costs a checksum each time, hence the bound.
+# Noise can look like the beginning of a frame. A peer that makes it do so on purpose costs a
+# checksum each time, hence the bound.
 MAX_FALSE_STARTS = 16
 
 # Frame types. Numbers are never used anew for something else.
@@ -32,9 +33,16 @@ class BadMessage(Exception):
 
 
 def encode(kind, payload):
-    """The frame of type `kind` around `payload` bytes. Raises ValueError if the payload is too long for a frame."""
+    """The frame of type `kind` around `payload` bytes.
+
+    Raises ValueError if the payload is too long for a frame.
+    """
     if len(payload) > MAX_PAYLOAD:
-        raise ValueError("a payload of {} bytes does not fit into a frame of {}".format(len(payload), MAX_PAYLOAD))
+        raise ValueError(
+            "a payload of {} bytes does not fit into a frame of {}".format(
+                len(payload), MAX_PAYLOAD
+            )
+        )
     frame = _HEADER.pack(SYNC, kind, len(payload)) + payload
     return frame + _CHECK.pack(zlib.crc32(frame) & 0xFFFFFFFF)
 
@@ -45,7 +53,10 @@ def encode_json(kind, message):
 
 
 def dump(message):
-    """A dictionary as compact JSON bytes. Raises ValueError for NaN and infinities, which JSON has no words for."""
+    """A dictionary as compact JSON bytes.
+
+    Raises ValueError for NaN and infinities, which JSON has no words for.
+    """
     return json.dumps(message, allow_nan=False, separators=(",", ":")).encode("utf-8")
 
 
@@ -77,7 +88,10 @@ def load(payload):
 
 
 class Decoder(object):
-    """Bytes in, frames out, one at a time. Whatever arrives, it never raises; it holds what was fed and not yet taken."""
+    """Bytes in, frames out, one at a time. Whatever arrives, it never raises.
+
+    It holds what was fed and not yet taken.
+    """
 
     def __init__(self):
         self._buffer = bytearray()
@@ -92,7 +106,10 @@ class Decoder(object):
         self._discard(min(1, len(self._buffer)))
 
     def next(self):
-        """The next whole frame as (type, payload), or None until more is fed. Bytes of no sound frame are skipped and counted."""
+        """The next whole frame as (type, payload), or None until more is fed.
+
+        Bytes of no sound frame are skipped and counted.
+        """
         for _ in range(MAX_FALSE_STARTS):
             self._discard_to_sync()
             if len(self._buffer) < _HEADER.size:
@@ -124,7 +141,10 @@ class Decoder(object):
 
 
 def digest(key, *parts):
-    """HMAC-SHA256 of the parts under a key; each part is preceded by its length, so that no two lists of parts look alike."""
+    """HMAC-SHA256 of the parts under a key.
+
+    Each part is preceded by its length, so that no two lists of parts look alike.
+    """
     code = hmac.new(key, digestmod=hashlib.sha256)
     for part in parts:
         code.update(struct.pack(">I", len(part)))
@@ -133,7 +153,10 @@ def digest(key, *parts):
 
 
 class Handshake(object):
-    """What both ends derive from the token and the two nonces: the two proofs, and the key that seals a session's commands."""
+    """What both ends derive from the token and the two nonces.
+
+    The two proofs, and the key that seals a session's commands.
+    """
 
     def __init__(self, token, host_nonce, robot_nonce):
         self.host_proof = digest(token, b"host", host_nonce, robot_nonce)
@@ -152,7 +175,10 @@ def seal(key, counter, payload):
 
 
 def unseal(key, counter, payload):
-    """(counter, payload) of a sealed command. Raises BadMessage if the MAC is wrong or the counter is not above `counter`."""
+    """(counter, payload) of a sealed command.
+
+    Raises BadMessage if the MAC is wrong or the counter is not above `counter`.
+    """
     if len(payload) < _SEAL.size:
         raise BadMessage("too short to be sealed")
     number, mac = _SEAL.unpack_from(payload)

@@ -1,7 +1,10 @@
-"""Thousands of wheels at once: the controller and the motor compiled into one loop, spread over all cores.
+"""Thousands of wheels at once.
 
-Each wheel runs as in robot.loop on a SimBrick, from the same functions: same readings, same arithmetic, same latency. It stands
-alone, which the motor's model allows (see sim_motor.motor). Only a link, a lease and a fault have no place here.
+The controller and the motor compiled into one loop, spread over all cores.
+
+Each wheel runs as in robot.loop on a SimBrick, from the same functions: same readings, same
+arithmetic, same latency. It stands alone, which the motor's model allows (see sim_motor.motor).
+Only a link, a lease and a fault have no place here.
 """
 
 from dataclasses import dataclass
@@ -18,14 +21,33 @@ from robot.params import LONGEST_STEP_TICKS, Params
 from robot.safety import limit_duty
 from sim_motor.brick import lateness_s
 from sim_motor.compiled import assembled, assembled_parallel, compiled, prange
-from sim_motor.motor import ANGLE, LAST_ANGLE, SUBSTEP_S, Array, Constants, advance, encoder, load, substep_at, substep_from
+from sim_motor.motor import (
+    ANGLE,
+    LAST_ANGLE,
+    SUBSTEP_S,
+    Array,
+    Constants,
+    advance,
+    encoder,
+    load,
+    substep_at,
+    substep_from,
+)
 from sim_motor.settling import settling_s
 
-_actual_positions, _step_wheel, _limit_duty = compiled(actual_positions), compiled(step_wheel), compiled(limit_duty)
+_actual_positions, _step_wheel, _limit_duty = (
+    compiled(actual_positions),
+    compiled(step_wheel),
+    compiled(limit_duty),
+)
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 _settling_s = compiled(settling_s)
 _invert_membrane, _jump = compiled(kicks.invert_membrane), compiled(kicks.jump)
-_seen_positions, _pulse_weight, _pulsed = compiled(kicks.seen_positions), compiled(kicks.pulse_weight), compiled(kicks.pulsed)
+_seen_positions, _pulse_weight, _pulsed = (
+    compiled(kicks.seen_positions),
+    compiled(kicks.pulse_weight),
+    compiled(kicks.pulsed),
+)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
 NO_KICK, FROZEN_MEMBRANE, FROZEN_JUMP_1, FROZEN_JUMP_2, QUENCHED = range(5)
@@ -46,10 +68,11 @@ class Start:
 class Result:
     """What became of the wheels.
 
-    before, after: each wheel's direction when the kick began, and in the end. settled_s: how long after the kick's first tick the
-    wheel had settled, as sim_motor.settling has it, NaN if it has not. kick_phi_rad: the angle that the kick's first tick read, NaN
-    without a kick. times: when ticks began, (1 or wheels, ticks). records: CHANNELS of each tick of the wheels that were recorded,
-    (wheels, ticks, channels).
+    before, after: each wheel's direction when the kick began, and in the end. settled_s: how long
+    after the kick's first tick the wheel had settled, as sim_motor.settling has it, NaN if it has
+    not. kick_phi_rad: the angle that the kick's first tick read, NaN without a kick. times: when
+    ticks began, (1 or wheels, ticks). records: CHANNELS of each tick of the wheels that were
+    recorded, (wheels, ticks, channels).
     """
 
     before: NDArray[np.int64]
@@ -75,7 +98,10 @@ def random_start(wheels: int, rng: np.random.Generator, constants: Constants) ->
 
 
 def random_times(rows: int, ticks: int, tick_s: float, rng: np.random.Generator) -> Array:
-    """When each tick begins (s), (rows, ticks): late as on the brick. For ticks of 20 ms or more; shorter ones would be missed."""
+    """When each tick begins (s), (rows, ticks): late as on the brick. For ticks of 20 ms or more.
+
+    Shorter ones would be missed.
+    """
     return np.arange(ticks) * tick_s + lateness_s(rng.standard_normal((rows, ticks)))
 
 
@@ -92,11 +118,14 @@ def run(
     times: Array | None = None,
     record: int = 0,
 ) -> Result:
-    """Run wheels for some ticks, each by itself; `kick` acts on all of them with its value for the left wheel.
+    """Run wheels for some ticks, each by itself.
 
-    A pulse of the shift with the value PHASE_SHIFT takes for each wheel the sign that turns it around. motors: wheel number i is
-    motors[i % len(motors)], the default motor if None; battery and latency are the first one's. start, times (1 or `wheels`,
-    ticks): random from `seed` if None. record: how many wheels to record, from the first. Raises ValueError if the arguments do
+    `kick` acts on all of them with its value for the left wheel.
+
+    A pulse of the shift with the value PHASE_SHIFT takes for each wheel the sign that turns it
+    around. motors: wheel number i is motors[i % len(motors)], the default motor if None; battery
+    and latency are the first one's. start, times (1 or `wheels`, ticks): random from `seed` if
+    None. record: how many wheels to record, from the first. Raises ValueError if the arguments do
     not fit each other.
     """
     params = params or Params()
@@ -104,15 +133,31 @@ def run(
     latency_s = motors[0].latency_s
     rng = np.random.default_rng(seed)
     start = start or random_start(wheels, rng, motors[0])
-    times = random_times(wheels, ticks, params.tick_s, rng) if times is None else np.ascontiguousarray(np.atleast_2d(times))
-    if start.states.shape != (wheels, 6) or start.potentials.shape != (wheels, 2) or times.shape not in {(1, ticks), (wheels, ticks)}:
+    times = (
+        random_times(wheels, ticks, params.tick_s, rng)
+        if times is None
+        else np.ascontiguousarray(np.atleast_2d(times))
+    )
+    if (
+        start.states.shape != (wheels, 6)
+        or start.potentials.shape != (wheels, 2)
+        or times.shape not in {(1, ticks), (wheels, ticks)}
+    ):
         raise ValueError(f"start and times do not fit {wheels} wheels and {ticks} ticks")
     if ticks <= DIRECTION_TICKS:
-        raise ValueError(f"{ticks} ticks are too few to tell a direction: run more than {DIRECTION_TICKS}")
+        raise ValueError(
+            f"{ticks} ticks are too few to tell a direction: run more than {DIRECTION_TICKS}"
+        )
     if np.diff(times).min() < latency_s + 2 * SUBSTEP_S:
-        raise ValueError(f"a duty acts {latency_s} s after it is written, which is past the next tick: use longer ticks")
+        raise ValueError(
+            f"a duty acts {latency_s} s after it is written, which is past the next tick: use"
+            " longer ticks"
+        )
     if kick is not None and not DIRECTION_TICKS < kick.begin < ticks - DIRECTION_TICKS:
-        raise ValueError(f"a kick in tick {kick.begin} of {ticks} leaves no {DIRECTION_TICKS} ticks before or after it to tell directions")
+        raise ValueError(
+            f"a kick in tick {kick.begin} of {ticks} leaves no {DIRECTION_TICKS} ticks before or"
+            " after it to tell directions"
+        )
     result = Result(
         before=np.zeros(wheels, dtype=np.int64),
         after=np.zeros(wheels, dtype=np.int64),
@@ -129,7 +174,11 @@ def run(
         _kick_numbers(kick),
         np.stack([motor.tables() for motor in motors]),
         np.stack([motor.scalars() for motor in motors]),
-        (motors[0].battery_v if battery_v is None else battery_v, latency_s, motors[0].encoder_counts),
+        (
+            motors[0].battery_v if battery_v is None else battery_v,
+            latency_s,
+            motors[0].encoder_counts,
+        ),
         result.before,
         result.after,
         result.settled_s,
@@ -146,20 +195,39 @@ def _kick_numbers(kick: Kick | None) -> KickNumbers:
     if kick.mode == MEMBRANE:
         return FROZEN_MEMBRANE, kick.begin, kick.ticks, NO_PULSE, False, 0.0
     if kick.mode == JUMP:
-        return (FROZEN_JUMP_1 if kick.variable == "x1" else FROZEN_JUMP_2), kick.begin, kick.ticks, NO_PULSE, False, kick.delta
+        return (
+            (FROZEN_JUMP_1 if kick.variable == "x1" else FROZEN_JUMP_2),
+            kick.begin,
+            kick.ticks,
+            NO_PULSE,
+            False,
+            kick.delta,
+        )
     return QUENCHED, kick.begin, kick.ticks, kick.pulse, kick.smooth, kick.values[0]
 
 
 @assembled
 def _under_kick(
-    tick: int, x1: float, x2: float, a: float, tau_s: float, k: float, kick: KickNumbers, value: float
+    tick: int,
+    x1: float,
+    x2: float,
+    a: float,
+    tau_s: float,
+    k: float,
+    kick: KickNumbers,
+    value: float,
 ) -> tuple[float, float, float, float, float, float, float]:
-    """(x1, x2, a, tau_s, k, beta, shift_rad) of a tick, as robot.wheel has them. value: the kick's value or jump for this wheel."""
+    """(x1, x2, a, tau_s, k, beta, shift_rad) of a tick, as robot.wheel has them. value.
+
+    The kick's value or jump for this wheel.
+    """
     action, begin, ticks, pulse, smooth, _ = kick
     beta, shift_rad = 0.0, 0.0
     if action != NO_KICK and begin <= tick < begin + ticks:
         if action == QUENCHED:
-            a, tau_s, k, beta, shift_rad = _pulsed(pulse, value, _pulse_weight(tick - begin, ticks, smooth), a, tau_s, k)
+            a, tau_s, k, beta, shift_rad = _pulsed(
+                pulse, value, _pulse_weight(tick - begin, ticks, smooth), a, tau_s, k
+            )
         elif action == FROZEN_MEMBRANE:
             x1, x2 = _invert_membrane(x1, x2)
         elif action == FROZEN_JUMP_1:
@@ -198,13 +266,24 @@ def _run_wheel(
         substep, duty = present, next_duty
         phi = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts) * pi / 180
         phis[tick] = phi
-        dt_s = max(SHORTEST_STEP_TICKS * tick_s, min(LONGEST_STEP_TICKS * tick_s, now - times[tick - 1])) if tick else tick_s
+        dt_s = (
+            max(
+                SHORTEST_STEP_TICKS * tick_s,
+                min(LONGEST_STEP_TICKS * tick_s, now - times[tick - 1]),
+            )
+            if tick
+            else tick_s
+        )
         if tick == kick[1] and isnan(value):
             value = _reversing_shift(_direction(_travel(phis, tick - 1)))
-        x1, x2, a, tau_s, k, beta, shift_rad = _under_kick(tick, x1, x2, a_set, tau_set, k_set, kick, value)
+        x1, x2, a, tau_s, k, beta, shift_rad = _under_kick(
+            tick, x1, x2, a_set, tau_set, k_set, kick, value
+        )
         actual_1, actual_2 = _actual_positions(phi)
         seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
-        x1, x2, force, torque = _step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods)
+        x1, x2, force, torque = _step_wheel(
+            x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods
+        )
         next_duty = _limit_duty(torque, max_duty_pct)
         turn = substep_from(now + latency_s)
         if len(record):
@@ -243,7 +322,19 @@ def _run_all(
         variant = wheel % len(tables)
         record = records[wheel] if wheel < len(records) else np.empty((0, len(CHANNELS)))
         x1, x2 = potentials[wheel, 0], potentials[wheel, 1]
-        _run_wheel(phis, states[wheel], x1, x2, when, params, kick, tables[variant], scalars[variant], hardware, record)
+        _run_wheel(
+            phis,
+            states[wheel],
+            x1,
+            x2,
+            when,
+            params,
+            kick,
+            tables[variant],
+            scalars[variant],
+            hardware,
+            record,
+        )
         after[wheel] = _direction(_travel(phis, ticks - 1))
         if begin:
             before[wheel] = _direction(_travel(phis, begin - 1))

@@ -1,7 +1,8 @@
 """A simulated brick: two motors under the robot, a battery, and a clock that is virtual or real.
 
-Physics is lazy: whoever reads or writes first brings the motor up to the clock's present on its fixed grid of substeps. What comes
-out does not depend on how often anybody looks, and runs the same in virtual and in real time.
+Physics is lazy: whoever reads or writes first brings the motor up to the clock's present on its
+fixed grid of substeps. What comes out does not depend on how often anybody looks, and runs the same
+in virtual and in real time.
 """
 
 from collections import deque
@@ -31,8 +32,9 @@ from sim_motor.motor import (
 )
 from sim_motor.world import Drive, Scene, World, alone
 
-# How late a tick begins: a record of 496 ticks of 30 ms on a brick (Python 3.5, balancing robot) lies on a shifted log-normal with
-# these three numbers: median 0.66 ms, 90 % below 2.1, 99 % below 5.7, the longest 13.6. Nothing is claimed beyond the longest.
+# How late a tick begins: a record of 496 ticks of 30 ms on a brick (Python 3.5, balancing robot)
+# lies on a shifted log-normal with these three numbers: median 0.66 ms, 90 % below 2.1, 99 % below
+# 5.7, the longest 13.6. Nothing is claimed beyond the longest.
 LATE_LEAST_S, LATE_MEDIAN_S, LATE_SPREAD, LATE_MOST_S = 0.00017, 0.00049, 1.06, 0.0136
 
 HIGHEST_BATTERY_V = 10.0  # six fresh AA cells
@@ -51,7 +53,10 @@ class Clock(Protocol):
 
 
 class VirtualClock:
-    """Time that passes only when it is waited for. Ticks begin late as on the brick, drawn from `seed`; punctually if not `jitter`."""
+    """Time that passes only when it is waited for.
+
+    Ticks begin late as on the brick, drawn from `seed`; punctually if not `jitter`.
+    """
 
     def __init__(self, seed: int, *, jitter: bool = True) -> None:
         self._now = 0.0
@@ -86,7 +91,14 @@ class SimMotor(Motor):
     """One motor with its wheel behind robot's motor seam, from rest at a motor angle with a gap to its wheel (rad)."""
 
     def __init__(
-        self, name: str, clock: Clock, constants: Constants, battery_v: float, mount: int = 1, angle: float = 0.0, gap: float = 0.0
+        self,
+        name: str,
+        clock: Clock,
+        constants: Constants,
+        battery_v: float,
+        mount: int = 1,
+        angle: float = 0.0,
+        gap: float = 0.0,
     ) -> None:
         if mount not in {1, -1}:
             raise ValueError(f"a motor's mount is 1 or -1 (mirrored), not {mount!r}")
@@ -108,19 +120,28 @@ class SimMotor(Motor):
         self._duty = 0
         self._load = 0.0
         self._pending: deque[tuple[int, int]] = deque()  # (substep from which it acts, duty)
-        # No time passes in this; but compiled code is loaded here, where nobody waits for it, and not in the first tick.
+        # No time passes in this; but compiled code is loaded here, where nobody waits for it, and
+        # not in the first tick.
         advance_in_place(self.state, 0, 0, battery_v, 0.0, self._tables, self._scalars)
         self.angle_rad()
 
     def angle_rad(self) -> float:
         self._catch_up()
-        return encoder(self._substep, self.state[ANGLE], self.state[LAST_ANGLE], self._counts) * pi / 180
+        return (
+            encoder(self._substep, self.state[ANGLE], self.state[LAST_ANGLE], self._counts)
+            * pi
+            / 180
+        )
 
     def write_duty(self, duty_pct: int) -> None:
-        if not isinstance(duty_pct, int) or isinstance(duty_pct, bool) or not -100 <= duty_pct <= 100:
+        if (
+            not isinstance(duty_pct, int)
+            or isinstance(duty_pct, bool)
+            or not -100 <= duty_pct <= 100
+        ):
             raise MotorFault(
-                f"{self._name} motor: the kernel refuses the duty cycle {duty_pct!r} (EINVAL) and keeps the one before: "
-                "write a whole number from -100 to 100"
+                f"{self._name} motor: the kernel refuses the duty cycle {duty_pct!r} (EINVAL) and"
+                " keeps the one before: write a whole number from -100 to 100"
             )
         self._command(duty_pct)
 
@@ -144,11 +165,16 @@ class SimMotor(Motor):
     def truth(self) -> Truth:
         """The wheel's state now."""
         self._catch_up()
-        angle, _, speed, current, gap, wheel_speed = (self.mount * value for value in self.state.tolist())
+        angle, _, speed, current, gap, wheel_speed = (
+            self.mount * value for value in self.state.tolist()
+        )
         return Truth(angle, speed, current, angle - gap, wheel_speed)
 
     def draw_a(self) -> float:
-        """The current (A) that the motor draws from the battery now; negative while it feeds back."""
+        """The current (A) that the motor draws from the battery now.
+
+        Negative while it feeds back.
+        """
         self._catch_up()
         return 0.0 if self._duty == COAST else float(self.state[CURRENT]) * self._duty / 100
 
@@ -184,7 +210,15 @@ class SimMotor(Motor):
 
     def _advance(self, substep: int) -> None:
         if substep > self._substep:
-            advance_in_place(self.state, substep - self._substep, self._duty, self._battery_v, self._load, self._tables, self._scalars)
+            advance_in_place(
+                self.state,
+                substep - self._substep,
+                self._duty,
+                self._battery_v,
+                self._load,
+                self._tables,
+                self._scalars,
+            )
             self._substep = substep
 
 
@@ -207,10 +241,12 @@ class SimBattery(Battery):
 class SimBrick:
     """The robot without its program: two wheels at random phases, on the floor, at rest.
 
-    seed: fixes start phases, the small differences between the motors, and the clock's jitter. clock: a VirtualClock by default,
-    robot.motors.MonotonicClock for real time. motor: which set of motors.toml. battery_v: open-circuit voltage, nominal by default.
-    mount: -1 for a motor that is mounted mirrored. jitter: whether the default clock is late as the brick is. scene: walls, one of
-    which it faces, give or take how exactly a person places it; without any it has the floor for itself, and its tyres never slip.
+    seed: fixes start phases, the small differences between the motors, and the clock's jitter.
+    clock: a VirtualClock by default, robot.motors.MonotonicClock for real time. motor: which set of
+    motors.toml. battery_v: open-circuit voltage, nominal by default. mount: -1 for a motor that is
+    mounted mirrored. jitter: whether the default clock is late as the brick is. scene: walls, one
+    of which it faces, give or take how exactly a person places it; without any it has the floor for
+    itself, and its tyres never slip.
     """
 
     def __init__(
@@ -232,7 +268,9 @@ class SimBrick:
 
         def specimen(name: str, side: int) -> SimMotor:
             spread, half = published.spread, published.backlash / 2
-            constants = published.varied(random.uniform(1 - spread, 1 + spread), random.uniform(1 - spread, 1 + spread))
+            constants = published.varied(
+                random.uniform(1 - spread, 1 + spread), random.uniform(1 - spread, 1 + spread)
+            )
             constants = constants if scene is None else alone(constants)
             angle, gap = random.uniform(0, 2 * pi), random.uniform(-half, half)
             if scene is not None:
@@ -249,7 +287,10 @@ class SimBrick:
                 wheel.world = self.world
 
     def set_battery(self, open_v: float) -> None:
-        """Another open-circuit voltage from now on. Raises ValueError for one that is no battery's."""
+        """Another open-circuit voltage from now on.
+
+        Raises ValueError for one that is no battery's.
+        """
         _checked(open_v)
         for motor in self.motors:
             motor.set_supply(open_v)
@@ -267,5 +308,8 @@ class SimBrick:
 
 def _checked(open_v: float) -> float:
     if not 0.0 < open_v <= HIGHEST_BATTERY_V:
-        raise ValueError(f"a battery of {open_v!r} V cannot drive the brick: give more than 0 and at most {HIGHEST_BATTERY_V} V")
+        raise ValueError(
+            f"a battery of {open_v!r} V cannot drive the brick: give more than 0 and at most"
+            f" {HIGHEST_BATTERY_V} V"
+        )
     return open_v

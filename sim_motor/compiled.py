@@ -1,4 +1,7 @@
-"""The one place that knows numba: typed decorators, and the robot's pure functions told anew in another mathematics, or compiled."""
+"""The one place that knows numba.
+
+Typed decorators, and the robot's pure functions told anew in another mathematics, or compiled.
+"""
 
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -12,7 +15,9 @@ prange = numba.prange
 
 
 def jit(function: F) -> F:
-    """Compile a function on its first call and keep the result on disk. It may call only functions of its own module.
+    """Compile a function on its first call and keep the result on disk.
+
+    It may call only functions of its own module.
 
     A division by zero gives infinity: checks for it would double the time of a substep.
     """
@@ -22,7 +27,8 @@ def jit(function: F) -> F:
 def assembled(function: F) -> F:
     """Compile a function that calls compiled functions of other modules.
 
-    Not kept on disk: numba would not notice that a function of another module that went into it has changed since.
+    Not kept on disk: numba would not notice that a function of another module that went into it has
+    changed since.
     """
     return cast(F, numba.njit(error_model="numpy")(function))
 
@@ -38,11 +44,16 @@ def compiled(function: F) -> F:
     return retold(function, {}, numba.njit)
 
 
-def retold(function: F, mathematics: Mapping[str, Any], finish: Callable[[Any], Any] = lambda function: function) -> F:
+def retold(
+    function: F,
+    mathematics: Mapping[str, Any],
+    finish: Callable[[Any], Any] = lambda function: function,
+) -> F:
     """A plain Python function, and the functions it calls, from the same source in another mathematics.
 
-    Its code object runs with globals in which every Python function that it names is replaced by that function retold, and what
-    `mathematics` names, as "cos", by what is given there. finish: what is done to each function, as compiling it.
+    Its code object runs with globals in which every Python function that it names is replaced by
+    that function retold, and what `mathematics` names, as "cos", by what is given there. finish:
+    what is done to each function, as compiling it.
     """
     source = cast(FunctionType, function)
     names = source.__globals__
@@ -50,4 +61,9 @@ def retold(function: F, mathematics: Mapping[str, Any], finish: Callable[[Any], 
     for name in source.__code__.co_names:
         if isinstance(names.get(name), FunctionType):
             own[name] = retold(names[name], mathematics, finish)
-    return cast(F, finish(FunctionType(source.__code__, {**names, **own}, source.__name__, source.__defaults__)))
+    return cast(
+        F,
+        finish(
+            FunctionType(source.__code__, {**names, **own}, source.__name__, source.__defaults__)
+        ),
+    )

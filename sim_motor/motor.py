@@ -1,15 +1,20 @@
 """The EV3 large motor, its gear train's play and the wheel with its share of the robot, as compiled scalar functions.
 
-Electrical: L di/dt = V - R i - Ke w. Mechanical: J dw/dt = Kt i - B w - friction - contact. Between events this is linear, so every
-substep of 1 ms applies the exact solution for constant V and torque, tabulated for each duty cycle. Events are resolved to the
-substep: a stop, a break-away, a separation or an impact of the two sides of the backlash.
+Electrical: L di/dt = V - R i - Ke w. Mechanical: J dw/dt = Kt i - B w - friction - contact. Between
+events this is linear, so every substep of 1 ms applies the exact solution for constant V and
+torque, tabulated for each duty cycle. Events are resolved to the substep: a stop, a break-away, a
+separation or an impact of the two sides of the backlash.
 
-- The battery's sag is a resistance in the motor's circuit. A motor at duty d draws d i from the battery, and the other is taken to
+- The battery's sag is a resistance in the motor's circuit. A motor at duty d draws d i from the
+  battery, and the other is taken to
   draw as much; so a wheel can be computed alone, exactly as long as both wheels work equally hard.
-- The body's mass is taken to sit over the wheels, half at each (radius of gyration = half the track): then driving and turning
+- The body's mass is taken to sit over the wheels, half at each (radius of gyration = half the
+  track): then driving and turning
   decouple, and each wheel carries wheel inertia + mass/2 radius^2 by itself.
-- The gearing sticks with a static torque above its kinetic (Coulomb) friction; the wheel's rolling friction is the same at rest.
-- Motor and wheel touch at either end of the backlash. A touching pair moves as one while the contact pushes; impacts are plastic.
+- The gearing sticks with a static torque above its kinetic (Coulomb) friction; the wheel's rolling
+  friction is the same at rest.
+- Motor and wheel touch at either end of the backlash. A touching pair moves as one while the
+  contact pushes; impacts are plastic.
 - Duty 0 shorts the motor (brake); COAST opens the circuit.
 """
 
@@ -34,8 +39,9 @@ SAMPLE_SUBSTEPS = 2  # the kernel samples the encoder at 500 Hz
 COAST = 101  # in place of a duty cycle
 GRAVITY = 9.81
 
-# A wheel's state, as the fields of an array or as the arguments and the result of `advance`: motor angle, motor angle one
-# substep before, motor speed, current, gap (motor angle - wheel angle, within half the backlash), wheel speed. rad, rad/s, A.
+# A wheel's state, as the fields of an array or as the arguments and the result of `advance`: motor
+# angle, motor angle one substep before, motor speed, current, gap (motor angle - wheel angle,
+# within half the backlash), wheel speed. rad, rad/s, A.
 ANGLE, LAST_ANGLE, SPEED, CURRENT, GAP, WHEEL_SPEED = range(6)
 # The array of constants beside it, see Constants.scalars.
 TORQUE_CONSTANT, VISCOUS, KINETIC, STATIC, ROLLING, WHEEL_INERTIA, WHEEL_SHARE, HALF_PLAY = range(8)
@@ -43,7 +49,10 @@ TORQUE_CONSTANT, VISCOUS, KINETIC, STATIC, ROLLING, WHEEL_INERTIA, WHEEL_SHARE, 
 
 @dataclass(frozen=True)
 class Constants:
-    """One motor with its wheel and its share of the robot; SI units, torques and inertias at the output shaft."""
+    """One motor with its wheel and its share of the robot.
+
+    SI units, torques and inertias at the output shaft.
+    """
 
     torque_constant: float
     emf_constant: float
@@ -72,7 +81,10 @@ class Constants:
         return replace(self, wheel_inertia=inertia)
 
     def varied(self, strength: float, friction: float) -> "Constants":
-        """Another specimen: torque and friction by these factors. What starts to move at which duty stays as it is."""
+        """Another specimen: torque and friction by these factors.
+
+        What starts to move at which duty stays as it is.
+        """
         return replace(
             self,
             torque_constant=self.torque_constant * strength,
@@ -89,19 +101,36 @@ class Constants:
         """What `advance` needs besides the tables."""
         share = self.wheel_inertia / (self.motor_inertia + self.wheel_inertia)
         half = self.backlash / 2
-        return np.array([self.torque_constant, self.viscous, self.kinetic, self.static, self.rolling, self.wheel_inertia, share, half])
+        return np.array(
+            [
+                self.torque_constant,
+                self.viscous,
+                self.kinetic,
+                self.static,
+                self.rolling,
+                self.wheel_inertia,
+                share,
+                half,
+            ]
+        )
 
     def tables(self) -> Array:
-        """Exact solutions over one substep: (motor alone or with wheel, |duty| in % or COAST, coefficient).
+        """Exact solutions over one substep.
 
-        Coefficients: new speed from speed, current, voltage, torque; new current from the same; turned angle from the same; and
-        the new current of a locked motor from current and voltage.
+        (motor alone or with wheel, |duty| in % or COAST, coefficient).
+
+        Coefficients: new speed from speed, current, voltage, torque; new current from the same;
+        turned angle from the same; and the new current of a locked motor from current and voltage.
         """
         duty = np.arange(COAST) / 100
         ohms = self.resistance + 2 * self.source_resistance * duty**2
         out = np.zeros((2, COAST + 1, 14))
-        for side, inertia in enumerate((self.motor_inertia, self.motor_inertia + self.wheel_inertia)):
-            system = np.zeros((COAST + 1, 5, 5))  # of speed, current, angle and the constant voltage and torque
+        for side, inertia in enumerate(
+            (self.motor_inertia, self.motor_inertia + self.wheel_inertia)
+        ):
+            system = np.zeros(
+                (COAST + 1, 5, 5)
+            )  # of speed, current, angle and the constant voltage and torque
             system[:, 0, 0] = -self.viscous / inertia
             system[:, 0, 4] = 1 / inertia
             system[:, 2, 0] = 1
@@ -139,9 +168,12 @@ def names() -> list[str]:
 
 
 def load(name: str = "pybricks") -> Constants:
-    """The motor `name` in the robot: a published one, or a user's own, whose values of the robot come before the published ones.
+    """The motor `name` in the robot.
 
-    Raises ValueError, in words, for a name that nobody has, and for an own one that is not as it should be.
+    A published one, or a user's own, whose values of the robot come before the published ones.
+
+    Raises ValueError, in words, for a name that nobody has, and for an own one that is not as it
+    should be.
     """
     published = data()
     entry = published[name] if name in names() else own_motor(name, published)
@@ -184,7 +216,10 @@ def substep_from(time_s: float) -> int:
 
 @jit
 def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int:
-    """The tacho position in degrees that the kernel reports: counts of the latest sample, halved with C's truncation."""
+    """The tacho position in degrees that the kernel reports.
+
+    Counts of the latest sample, halved with C's truncation.
+    """
     sampled = angle if substep % SAMPLE_SUBSTEPS == 0 else last_angle
     raw = floor(sampled * counts / (2 * pi))
     return raw // 2 if raw >= 0 else -(-raw // 2)
@@ -192,7 +227,10 @@ def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int
 
 @jit
 def _sense(speed: float, torque: float, static: float) -> float:
-    """The sign of the motion that friction opposes; 0 for what is at rest and stays so under this torque."""
+    """The sign of the motion that friction opposes.
+
+    0 for what is at rest and stays so under this torque.
+    """
     if speed != 0.0:
         return copysign(1.0, speed)
     return copysign(1.0, torque) if abs(torque) > static else 0.0
@@ -211,19 +249,31 @@ def _leaves(sense: float, speed: float, drive: float, load: float, end: float, c
 
 
 @jit
-def _turn_motor(sense: float, speed: float, current: float, volts: float, torque: float, row: Array) -> tuple[float, float, float]:
-    """(turned angle, speed, current) after a substep. Friction, part of the torque, cannot reverse it: it stops instead."""
+def _turn_motor(
+    sense: float, speed: float, current: float, volts: float, torque: float, row: Array
+) -> tuple[float, float, float]:
+    """(turned angle, speed, current) after a substep.
+
+    Friction, part of the torque, cannot reverse it: it stops instead.
+    """
     new_speed = row[0] * speed + row[1] * current + (row[2] * volts + row[3] * torque)
     if new_speed * sense > 0.0:
         turned = row[8] * speed + row[9] * current + (row[10] * volts + row[11] * torque)
-        return turned, new_speed, row[4] * speed + row[5] * current + (row[6] * volts + row[7] * torque)
+        return (
+            turned,
+            new_speed,
+            row[4] * speed + row[5] * current + (row[6] * volts + row[7] * torque),
+        )
     turned = 0.5 * SUBSTEP_S * speed * speed / (speed - new_speed) if speed != 0.0 else 0.0
     return turned, 0.0, row[12] * current + row[13] * volts
 
 
 @jit
 def _turn_wheel(sense: float, speed: float, acceleration: float) -> tuple[float, float]:
-    """(turned angle, speed) of a wheel within the play after a substep. Friction cannot reverse it either."""
+    """(turned angle, speed) of a wheel within the play after a substep.
+
+    Friction cannot reverse it either.
+    """
     new_speed = speed + SUBSTEP_S * acceleration
     if new_speed * sense > 0.0:
         return 0.5 * SUBSTEP_S * (speed + new_speed), new_speed
@@ -247,7 +297,8 @@ def advance(
 ) -> State:
     """The state of one wheel after some substeps at a constant duty (% or COAST), battery voltage and load torque (N m) on the wheel.
 
-    tables, c: of the wheel's Constants. A touching pair at rest starts at the gearing's static plus the rolling friction.
+    tables, c: of the wheel's Constants. A touching pair at rest starts at the gearing's static plus
+    the rolling friction.
     """
     volts = battery_v * duty / 100
     if duty == COAST:
@@ -256,28 +307,41 @@ def advance(
     while substeps > 0:
         drive = c[TORQUE_CONSTANT] * current
         sense = _sense(speed, drive + load, c[STATIC] + c[ROLLING])
-        if speed == wheel_speed and abs(gap) >= half and not _leaves(sense, speed, drive, load, gap, c):
+        if (
+            speed == wheel_speed
+            and abs(gap) >= half
+            and not _leaves(sense, speed, drive, load, gap, c)
+        ):
             torque = load - (c[KINETIC] + c[ROLLING]) * sense
             together = True
             while together:
                 last_angle = angle
-                turned, speed, current = _turn_motor(sense, speed, current, volts, torque, tables[1, abs(duty)])
+                turned, speed, current = _turn_motor(
+                    sense, speed, current, volts, torque, tables[1, abs(duty)]
+                )
                 angle += turned
                 substeps -= 1
                 drive = c[TORQUE_CONSTANT] * current
-                together = substeps > 0 and speed != 0.0 and not _leaves(sense, speed, drive, load, gap, c)
+                together = (
+                    substeps > 0 and speed != 0.0 and not _leaves(sense, speed, drive, load, gap, c)
+                )
             wheel_speed = speed
             continue
         last_angle = angle
         substeps -= 1
         sense = _sense(speed, drive, c[STATIC])
-        turned, speed, current = _turn_motor(sense, speed, current, volts, -c[KINETIC] * sense, tables[0, abs(duty)])
+        turned, speed, current = _turn_motor(
+            sense, speed, current, volts, -c[KINETIC] * sense, tables[0, abs(duty)]
+        )
         sense = _sense(wheel_speed, load, c[ROLLING])
-        wheel_turned, wheel_speed = _turn_wheel(sense, wheel_speed, (load - c[ROLLING] * sense) / c[WHEEL_INERTIA])
+        wheel_turned, wheel_speed = _turn_wheel(
+            sense, wheel_speed, (load - c[ROLLING] * sense) / c[WHEEL_INERTIA]
+        )
         angle += turned
         gap += turned - wheel_turned
         if abs(gap) >= half:
-            # The impact came within the substep: since then the pair's common centre of inertia has moved on, and only that.
+            # The impact came within the substep: since then the pair's common centre of inertia has
+            # moved on, and only that.
             end = copysign(half, gap)
             angle -= c[WHEEL_SHARE] * (gap - end)
             gap = end
@@ -287,8 +351,21 @@ def advance(
 
 
 @jit
-def advance_in_place(state: Array, substeps: int, duty: int, battery_v: float, load: float, tables: Array, c: Array) -> None:
+def advance_in_place(
+    state: Array, substeps: int, duty: int, battery_v: float, load: float, tables: Array, c: Array
+) -> None:
     """`advance` for a state kept in an array."""
     state[0], state[1], state[2], state[3], state[4], state[5] = advance(
-        substeps, duty, battery_v, load, state[0], state[1], state[2], state[3], state[4], state[5], tables, c
+        substeps,
+        duty,
+        battery_v,
+        load,
+        state[0],
+        state[1],
+        state[2],
+        state[3],
+        state[4],
+        state[5],
+        tables,
+        c,
     )

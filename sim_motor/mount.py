@@ -1,4 +1,6 @@
-"""The tree of sim_motor.sysfs as a file system (FUSE) in real time: `python -m sim_motor --sysfs MOUNTPOINT`.
+"""The tree of sim_motor.sysfs as a file system (FUSE) in real time.
+
+`python -m sim_motor --sysfs MOUNTPOINT`.
 
 Whoever uses the mount must be another process: one that waits for itself hangs for ever.
 """
@@ -37,7 +39,13 @@ class _Calls:
 
     def getattr(self, path: str, handle: int | None = None) -> dict[str, Any]:
         mode = self._present().mode(path)
-        return {"st_mode": mode, "st_nlink": 1, "st_size": 4096, "st_uid": os.getuid(), "st_gid": os.getgid()}
+        return {
+            "st_mode": mode,
+            "st_nlink": 1,
+            "st_size": 4096,
+            "st_uid": os.getuid(),
+            "st_gid": os.getgid(),
+        }
 
     def readdir(self, path: str, handle: int) -> list[str]:
         return [".", "..", *self._present().names(path)]
@@ -72,13 +80,20 @@ def serve(mountpoint: str, brick: SimBrick) -> int:
     try:
         import mfusepy
     except (ImportError, OSError) as error:
-        return _give_up(f"the file tree needs mfusepy and libfuse3 ({error}): run `make setup`, and apt-get install fuse3")
+        return _give_up(
+            f"the file tree needs mfusepy and libfuse3 ({error}): run `make setup`, and apt-get"
+            " install fuse3"
+        )
     folder = Path(mountpoint)
     if not folder.is_dir() or folder.is_mount() or any(folder.iterdir()):
-        return _give_up(f"{mountpoint} is no empty folder to mount on: make one, or unmount what is there: fusermount3 -u {mountpoint}")
+        return _give_up(
+            f"{mountpoint} is no empty folder to mount on: make one, or unmount what is there:"
+            f" fusermount3 -u {mountpoint}"
+        )
     tree = Tree(brick)
     tree.run_to(brick.clock.now())
-    # The kernel must ask anew each time: values, permissions and the files themselves change without its doing.
+    # The kernel must ask anew each time: values, permissions and the files themselves change
+    # without its doing.
     fresh = {"direct_io": True, "entry_timeout": 0, "attr_timeout": 0, "negative_timeout": 0}
     try:
         mfusepy.FUSE(
@@ -93,7 +108,10 @@ def serve(mountpoint: str, brick: SimBrick) -> int:
     except RuntimeError as error:
         if error.args == (ENDED_BY_SIGNAL,):
             return 0
-        return _give_up(f"cannot mount on {mountpoint} (FUSE error {error}): it needs /dev/fuse, the package fuse3 and the right to mount")
+        return _give_up(
+            f"cannot mount on {mountpoint} (FUSE error {error}): it needs /dev/fuse, the package"
+            " fuse3 and the right to mount"
+        )
     return 0
 
 

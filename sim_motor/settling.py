@@ -1,9 +1,13 @@
-"""When a wheel has settled after a kick: one rule for logs and for the compiled batch, which compiles it unchanged."""
+"""When a wheel has settled after a kick.
+
+One rule for logs and for the compiled batch, which compiles it unchanged.
+"""
 
 from collections.abc import Sequence
 from math import nan, pi
 
-# The final speed is the mean over the last WINDOW_S; a wheel has settled when its speed stays within BAND of that.
+# The final speed is the mean over the last WINDOW_S; a wheel has settled when its speed stays
+# within BAND of that.
 WINDOW_S = 0.5
 BAND = 0.1
 COUNT_RAD = pi / 180  # one step of the encoder
@@ -12,11 +16,14 @@ ROUNDING = 1e-9
 
 
 def settling_s(phi: Sequence[float], times: Sequence[float], begin_s: float) -> float:
-    """How long after begin_s, when a kick began, a wheel had settled: a time in s, NaN if it has not by the end of the data.
+    """How long after begin_s, when a kick began, a wheel had settled.
 
-    phi (rad), times (s): one value a tick, some of them from before the kick. The wheel has settled at the first tick from which on its
-    speed, measured over five ticks around each, stays within BAND of the final speed (or within what one count of the encoder makes
-    over five ticks) until the end, which must be WINDOW_S away; at once if it never left it.
+    A time in s, NaN if it has not by the end of the data.
+
+    phi (rad), times (s): one value a tick, some of them from before the kick. The wheel has settled
+    at the first tick from which on its speed, measured over five ticks around each, stays within
+    BAND of the final speed (or within what one count of the encoder makes over five ticks) until
+    the end, which must be WINDOW_S away; at once if it never left it.
     """
     last = len(times) - 1
     if last < 2 * HALF_SPAN or times[last] - begin_s < WINDOW_S:
@@ -37,4 +44,8 @@ def settling_s(phi: Sequence[float], times: Sequence[float], begin_s: float) -> 
     if row < HALF_SPAN or times[row] < begin_s:
         return 0.0
     settled = row + 1
-    return times[settled] - begin_s if settled <= last - HALF_SPAN and times[last] - times[settled] >= WINDOW_S else nan
+    return (
+        times[settled] - begin_s
+        if settled <= last - HALF_SPAN and times[last] - times[settled] >= WINDOW_S
+        else nan
+    )

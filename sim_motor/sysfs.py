@@ -1,7 +1,9 @@
-"""The files below /sys/class that a brick's kernel shows, live: two motors with their physics, the battery, the lights.
+"""The files below /sys/class that a brick's kernel shows, live.
 
-Time is handed in, so the same tree runs in virtual time and, by sim_motor.mount, in real time. Faults are injected by lines written to
-the file .faults, which lists them when it is read.
+Two motors with their physics, the battery, the lights.
+
+Time is handed in, so the same tree runs in virtual time and, by sim_motor.mount, in real time.
+Faults are injected by lines written to the file .faults, which lists them when it is read.
 """
 
 import errno
@@ -19,13 +21,16 @@ PORTS = ("outB", "outC")
 SAMPLE_S = 0.002
 # After a longer time in which nobody looked, only this much of it is sampled.
 REMEMBERED_S = 1.0
-# How long the kernel takes to notice that a motor is gone, and that one is there; then udev, until the group may write its files.
+# How long the kernel takes to notice that a motor is gone, and that one is there; then udev, until
+# the group may write its files.
 UNREGISTER_S = 0.1
 REGISTER_S = 0.39
 PERMISSIONS_S = 0.3
 
 BATTERY = "/power_supply/lego-ev3-battery"
-LIGHTS = tuple(f"/leds/led{side}:{colour}:brick-status" for side in (0, 1) for colour in ("red", "green"))
+LIGHTS = tuple(
+    f"/leds/led{side}:{colour}:brick-status" for side in (0, 1) for colour in ("red", "green")
+)
 FAULTS = """\
 unplug PORT            pull the cable out of outB or outC
 replug PORT [SECONDS]  put it back; its files become writable so long after they appear (default 0.3)
@@ -35,7 +40,10 @@ battery VOLTS          another open-circuit voltage"""
 
 @dataclass
 class Device:
-    """A folder of files. `writable`: the group may write them already; `errors`: how many more accesses fail with EIO."""
+    """A folder of files. `writable`: the group may write them already; `errors`.
+
+    How many more accesses fail with EIO.
+    """
 
     attributes: dict[str, Attribute]
     present: bool = True
@@ -77,7 +85,10 @@ class _Event:
 
 
 class Tree:
-    """All files and who has them open. The brick's clock must be virtual and without jitter: `run_to` is the only way time passes."""
+    """All files and who has them open. The brick's clock must be virtual and without jitter.
+
+    `run_to` is the only way time passes.
+    """
 
     def __init__(self, brick: SimBrick) -> None:
         self._brick = brick
@@ -87,7 +98,10 @@ class Tree:
         self._motors_seen = itertools.count()
         self._ports = {name: Port(motor) for name, motor in zip(PORTS, brick.motors, strict=True)}
         self._handles: dict[int, Handle] = {}
-        self._devices = {"": Device({".faults": Attribute(BOTH, lambda: FAULTS, self._inject)}), BATTERY: Device(self._battery())}
+        self._devices = {
+            "": Device({".faults": Attribute(BOTH, lambda: FAULTS, self._inject)}),
+            BATTERY: Device(self._battery()),
+        }
         self._devices |= {name: Device(_light()) for name in LIGHTS}
         for name in PORTS:
             self._register(name)
@@ -136,7 +150,10 @@ class Tree:
         del self._handles[handle]
 
     def read(self, handle: int, size: int, offset: int) -> bytes:
-        """A piece of the text, which is made anew whenever it is read from its beginning. Raises OSError."""
+        """A piece of the text, which is made anew whenever it is read from its beginning.
+
+        Raises OSError.
+        """
         opened = self._handles[handle]
         if offset == 0:
             opened.device.check()
@@ -171,7 +188,9 @@ class Tree:
     def _battery(self) -> dict[str, Attribute]:
         shows: dict[str, Callable[[], str]] = {
             "voltage_now": lambda: str(round(self._brick.battery.voltage_v() * 1e6)),
-            "current_now": lambda: str(round(sum(motor.draw_a() for motor in self._brick.motors) * 1e6)),
+            "current_now": lambda: str(
+                round(sum(motor.draw_a() for motor in self._brick.motors) * 1e6)
+            ),
             # Wrong by a factor of ten, as on the brick.
             "voltage_max_design": lambda: "84000000",
             "voltage_min_design": lambda: "60000000",
@@ -211,7 +230,9 @@ class Tree:
             raise failure(errno.EINVAL) from None
 
     def _later(self, seconds: float, action: Callable[[], None]) -> None:
-        heapq.heappush(self._events, _Event(self._brick.clock.now() + seconds, next(self._numbers), action))
+        heapq.heappush(
+            self._events, _Event(self._brick.clock.now() + seconds, next(self._numbers), action)
+        )
 
     def _unplug(self, name: str, _: str) -> None:
         tacho = self._ports[name].tacho

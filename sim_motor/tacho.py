@@ -1,7 +1,10 @@
-"""One motor as the kernel's tacho-motor class shows it: attributes as text, commands, and a speed and a stall flag that come late.
+"""One motor as the kernel's tacho-motor class shows it.
 
-Follows the ev3dev kernel's tacho_motor_class.c and legoev3_motor.c as of 4.14.117-ev3dev-2.3.5-ev3. Runs that the kernel regulates (all
-commands but run-direct, stop and reset) are answered with EOPNOTSUPP, and `hold` only brakes: nothing here needs them.
+Attributes as text, commands, and a speed and a stall flag that come late.
+
+Follows the ev3dev kernel's tacho_motor_class.c and legoev3_motor.c as of 4.14.117-ev3dev-2.3.5-ev3.
+Runs that the kernel regulates (all commands but run-direct, stop and reset) are answered with
+EOPNOTSUPP, and `hold` only brakes: nothing here needs them.
 """
 
 import errno
@@ -9,6 +12,7 @@ import os
 import re
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from math import floor, pi
 from typing import NamedTuple
 
@@ -18,7 +22,15 @@ from sim_motor.motor import ANGLE
 LARGE = "lego-ev3-l-motor"
 MAX_SPEED = 1050
 COUNT_PER_ROT = 360
-COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
+COMMANDS = (
+    "run-forever",
+    "run-to-abs-pos",
+    "run-to-rel-pos",
+    "run-timed",
+    "run-direct",
+    "stop",
+    "reset",
+)
 STOP_ACTIONS = ("coast", "brake", "hold")
 POLARITIES = {"normal": 1, "inversed": -1}
 # What only a regulated run would use: name -> (least, most, after a reset).
@@ -46,7 +58,10 @@ READ, WRITE, BOTH = 0o444, 0o220, 0o664
 
 
 class Attribute(NamedTuple):
-    """A file of a device: its mode bits, and what reading and writing it does. Either may raise OSError."""
+    """A file of a device: its mode bits, and what reading and writing it does.
+
+    Either may raise OSError.
+    """
 
     mode: int
     show: Callable[[], str]
@@ -69,7 +84,10 @@ def no_store(text: str) -> None:
 
 
 def whole_number(text: str, least: int, most: int) -> int:
-    """As the kernel's kstrtoint reads it, then within bounds. Raises OSError: EINVAL, or ERANGE beyond 32 bits."""
+    """As the kernel's kstrtoint reads it, then within bounds. Raises OSError.
+
+    EINVAL, or ERANGE beyond 32 bits.
+    """
     if not re.fullmatch(r"[+-]?[0-9]+\n?", text, re.ASCII):
         raise failure(errno.EINVAL)
     number = int(text)
@@ -81,7 +99,10 @@ def whole_number(text: str, least: int, most: int) -> int:
 
 
 class Tachometer:
-    """The encoder as the brick's coprocessor keeps it: a ring of counts with their times, and an entry each 50 ms without any."""
+    """The encoder as the brick's coprocessor keeps it.
+
+    A ring of counts with their times, and an entry each 50 ms without any.
+    """
 
     def __init__(self, now: float, angle: float, counts_per_turn: float) -> None:
         self._per_rad = counts_per_turn / (2 * pi)
@@ -96,7 +117,10 @@ class Tachometer:
         return int(self._ring[-1][1] / 2)
 
     def sample(self, now: float, angle: float) -> None:
-        """Take the angle (rad) at a time (s); between two samples it is taken to have turned evenly."""
+        """Take the angle (rad) at a time (s).
+
+        Between two samples it is taken to have turned evenly.
+        """
         counts = angle * self._per_rad - self._origin
         before, after = floor(self._counts), floor(counts)
         sense = 1 if after > before else -1
@@ -112,7 +136,10 @@ class Tachometer:
 
     @property
     def speed(self) -> int:
-        """deg/s over the last 20 ms or more, in steps of four entries; so it is zero no sooner than 200 ms after the last count."""
+        """deg/s over the last 20 ms or more, in steps of four entries.
+
+        So it is zero no sooner than 200 ms after the last count.
+        """
         until, count = self._ring[-1]
         since, old = self._ring[0]
         for back in range(SLOPE_STEP, len(self._ring), SLOPE_STEP):
@@ -123,14 +150,19 @@ class Tachometer:
 
 
 class TachoMotor:
-    """A large motor that was plugged into a port at the time `now` (s); the time comes from outside, by `sample`."""
+    """A large motor that was plugged into a port at the time `now` (s).
+
+    The time comes from outside, by `sample`.
+    """
 
     def __init__(self, motor: SimMotor, port: str, now: float) -> None:
         self._motor = motor
         self._connected = True
         self._now = now
         motor.angle_rad()
-        self._tachometer = Tachometer(now, float(motor.state[ANGLE]), motor.constants.encoder_counts)
+        self._tachometer = Tachometer(
+            now, float(motor.state[ANGLE]), motor.constants.encoder_counts
+        )
         self._offset = 0
         self._still_since: float | None = None
         self._running = False
@@ -167,12 +199,16 @@ class TachoMotor:
             "max_speed": str(MAX_SPEED),
             "uevent": f"LEGO_ADDRESS={address}\nLEGO_DRIVER_NAME={LARGE}",
         }
-        table = {name: Attribute(READ, lambda text=text: text, no_store) for name, text in constants.items()}  # type: ignore[misc]
+        table = {
+            name: Attribute(READ, partial(str, text), no_store) for name, text in constants.items()
+        }
         table |= {name: self._setting(name) for name in SETTINGS}
         table["command"] = Attribute(WRITE, no_show, self._command)
         table["position"] = Attribute(BOTH, lambda: str(self._position()), self._set_position)
         table["speed"] = Attribute(READ, lambda: str(self._sign * self._tachometer.speed), no_store)
-        table["duty_cycle"] = Attribute(READ, lambda: str(self._duty if self._running else 0), no_store)
+        table["duty_cycle"] = Attribute(
+            READ, lambda: str(self._duty if self._running else 0), no_store
+        )
         table["duty_cycle_sp"] = Attribute(BOTH, lambda: str(self._duty), self._set_duty)
         table["polarity"] = Attribute(BOTH, lambda: self._polarity, self._set_polarity)
         table["stop_action"] = Attribute(BOTH, lambda: self._stop_action, self._set_stop_action)
@@ -195,7 +231,9 @@ class TachoMotor:
         return self._sign * (self._tachometer.degrees + self._offset)
 
     def _set_position(self, text: str) -> None:
-        self._offset = self._sign * whole_number(text, -(2**31), 2**31 - 1) - self._tachometer.degrees
+        self._offset = (
+            self._sign * whole_number(text, -(2**31), 2**31 - 1) - self._tachometer.degrees
+        )
 
     def _set_duty(self, text: str) -> None:
         self._duty = whole_number(text, -100, 100)

@@ -1,12 +1,17 @@
-"""The robot's body on a plane between two walls: what the floor and the walls do to it, and through the floor to its wheels.
+"""The robot's body on a plane between two walls.
 
-The plane's x axis runs from wall to wall. Everything is on the motors' grid of substeps: forces from where things are, then speeds,
-then places (symplectic Euler).
+What the floor and the walls do to it, and through the floor to its wheels.
 
-- The body's moment of inertia is that of half its mass over each wheel, as in sim_motor.motor, and each wheel bears half its weight.
-- A tyre's tread is a damped spring between rim and floor, forward and sideways, and holds with no more than grip times its load
+The plane's x axis runs from wall to wall. Everything is on the motors' grid of substeps: forces
+from where things are, then speeds, then places (symplectic Euler).
+
+- The body's moment of inertia is that of half its mass over each wheel, as in sim_motor.motor, and
+  each wheel bears half its weight.
+- A tyre's tread is a damped spring between rim and floor, forward and sideways, and holds with no
+  more than grip times its load
   (Coulomb's law, regularised by the tread). Beyond that it slips.
-- A wall is a stiff, damped spring that pushes, and never pulls, at the four corners of the body: the ends of both bumpers. As it
+- A wall is a stiff, damped spring that pushes, and never pulls, at the four corners of the body:
+  the ends of both bumpers. As it
   swings faster than anything else, the body takes PARTS steps in each substep.
 """
 
@@ -32,9 +37,10 @@ PARTS = 8
 class Scene:
     """A robot between two parallel walls; what is None is as in motors.toml.
 
-    walls: the distance between them (m). grip: the tyres' friction coefficient. stiffness: of a wall at one corner of the body (N/m).
-    bumper: width (m) of the body's front and rear. apart: how far (rad) the right wheel is ahead of the left one in the beginning,
-    when the left one stands at zero; the robot's own program resets both when it starts. Raises ValueError for what cannot be.
+    walls: the distance between them (m). grip: the tyres' friction coefficient. stiffness: of a
+    wall at one corner of the body (N/m). bumper: width (m) of the body's front and rear. apart: how
+    far (rad) the right wheel is ahead of the left one in the beginning, when the left one stands at
+    zero; the robot's own program resets both when it starts. Raises ValueError for what cannot be.
     """
 
     walls: float
@@ -47,7 +53,9 @@ class Scene:
         for name, (least, most, unit) in LIMITS.items():
             value = getattr(self, name)
             if value is not None and not least <= value <= most:
-                raise ValueError(f"{name} cannot be {value!r}: give a number from {least:g} to {most:g} {unit}".rstrip())
+                raise ValueError(
+                    f"{name} cannot be {value!r}: give a number from {least:g} to {most:g} {unit}".rstrip()
+                )
 
 
 # Walls that leave room for the body, and springs that the steps can follow.
@@ -61,7 +69,10 @@ LIMITS = {
 
 
 class Place(NamedTuple):
-    """Where the body is and how it moves: m, rad, m/s and rad/s; (0, 0) is halfway between the walls, heading 0 along x."""
+    """Where the body is and how it moves: m, rad, m/s and rad/s.
+
+    (0, 0) is halfway between the walls, heading 0 along x.
+    """
 
     x: float
     y: float
@@ -84,7 +95,9 @@ class Driven(Protocol):
 
 
 class World:
-    """A body at rest halfway between the walls, on a left and a right wheel; heading (rad) 0 faces the wall at positive x.
+    """A body at rest halfway between the walls, on a left and a right wheel.
+
+    Heading (rad) 0 faces the wall at positive x.
 
     The motors' constants must be those of a wheel alone, see `alone`.
     """
@@ -130,7 +143,17 @@ class World:
     def _advance(self, substeps: int) -> None:
         left, right = self._left, self._right
         wheels = (left.state, right.state), (left.drive(), right.drive()), (left.mount, right.mount)
-        _advance(substeps, self._place, self._stretches, *wheels, self._tables, self._scalars, self._body, self._tyre, self._walls)
+        _advance(
+            substeps,
+            self._place,
+            self._stretches,
+            *wheels,
+            self._tables,
+            self._scalars,
+            self._body,
+            self._tyre,
+            self._walls,
+        )
 
 
 def alone(constants: Constants) -> Constants:
@@ -139,11 +162,13 @@ def alone(constants: Constants) -> Constants:
 
 
 @assembled
-def tyre_force(stretch: Array, slip: float, side_slip: float, most: float, tyre: TyreNumbers) -> tuple[float, float]:
+def tyre_force(
+    stretch: Array, slip: float, side_slip: float, most: float, tyre: TyreNumbers
+) -> tuple[float, float]:
     """(forward, sideways) force (N) of the floor on the body at a tyre, which holds with no more than `most`.
 
-    stretch: how far the tread is stretched forward and sideways (m), brought forward by a substep. slip, side_slip: speed (m/s) of the
-    rim over the floor, backward and to the right.
+    stretch: how far the tread is stretched forward and sideways (m), brought forward by a substep.
+    slip, side_slip: speed (m/s) of the rim over the floor, backward and to the right.
     """
     stiffness, damping = tyre
     forward = stiffness * (stretch[0] + SUBSTEP_S * slip) + damping * slip
@@ -176,9 +201,18 @@ def wall_push(place: Array, ahead: float, aside: float, walls: WallNumbers) -> t
 
 @assembled
 def move_body(
-    place: Array, forward: tuple[float, float], sideways: float, substep_s: float, parts: int, body: BodyNumbers, walls: WallNumbers
+    place: Array,
+    forward: tuple[float, float],
+    sideways: float,
+    substep_s: float,
+    parts: int,
+    body: BodyNumbers,
+    walls: WallNumbers,
 ) -> None:
-    """One substep of the body, in parts, under the floor's forces (N): forward at the left and the right wheel, and to the left."""
+    """One substep of the body, in parts, under the floor's forces (N).
+
+    Forward at the left and the right wheel, and to the left.
+    """
     mass, track, _, _, half_length, half_width = body
     step_s = substep_s / parts
     for _ in range(parts):
@@ -229,6 +263,17 @@ def _advance(
             sideways += aside
             load -= mounts[side] * radius * forward[side]
             state[:] = advance(
-                1, duty, battery_v, load, state[0], state[1], state[2], state[3], state[4], state[5], tables[side], scalars[side]
+                1,
+                duty,
+                battery_v,
+                load,
+                state[0],
+                state[1],
+                state[2],
+                state[3],
+                state[4],
+                state[5],
+                tables[side],
+                scalars[side],
             )
         move_body(place, (forward[0], forward[1]), sideways, SUBSTEP_S, PARTS, body, walls)

@@ -27,7 +27,10 @@ def main() -> None:
 
 
 def best_of(repeats, function):
-    """The shortest time (s) that `function` took; whatever else the machine did only ever adds to it."""
+    """The shortest time (s) that `function` took.
+
+    Whatever else the machine did only ever adds to it.
+    """
     times = []
     for _ in range(repeats):
         begun = time.perf_counter()
@@ -58,19 +61,30 @@ def controller_tick() -> None:
             c, s = cos(phi), sin(phi)
             l1 += dt * (c - l1) / tau
             l2 += dt * (s - l2) / tau
-            tanh(k * (2 / (1 + exp(-a * l1)) - 1 - c) * s - k * (2 / (1 + exp(-a * l2)) - 1 - s) * c)
+            tanh(
+                k * (2 / (1 + exp(-a * l1)) - 1 - c) * s - k * (2 / (1 + exp(-a * l2)) - 1 - s) * c
+            )
             phi = 0.1 * tick
             c, s = cos(phi), sin(phi)
             r1 += dt * (c - r1) / tau
             r2 += dt * (s - r2) / tau
-            tanh(k * (2 / (1 + exp(-a * r1)) - 1 - c) * s - k * (2 / (1 + exp(-a * r2)) - 1 - s) * c)
+            tanh(
+                k * (2 / (1 + exp(-a * r1)) - 1 - c) * s - k * (2 / (1 + exp(-a * r2)) - 1 - s) * c
+            )
 
     ours, bare = best_of(5, through_robot), best_of(5, inline)
-    print(f"controller tick, two wheels: {1e6 * ours / count:.2f} us, {ours / bare:.2f} times the bare arithmetic inline", flush=True)
+    print(
+        f"controller tick, two wheels: {1e6 * ours / count:.2f} us, {ours / bare:.2f} times the"
+        " bare arithmetic inline",
+        flush=True,
+    )
 
 
 def virtual_time() -> None:
-    """Robot seconds per wall second on one core: the loop alone, and with a host that takes in every record."""
+    """Robot seconds per wall second on one core.
+
+    The loop alone, and with a host that takes in every record.
+    """
     from host.client.robot import connect
     from robot.loop import Loop
     from robot.server import Server
@@ -93,7 +107,11 @@ def virtual_time() -> None:
     with connect("sim://", seed=1) as robot:
         robot.wait(5)
         watched = seconds / best_of(3, lambda: robot.wait(seconds))
-    print(f"virtual time, full loop: {rate:.0f} robot seconds a second; with a host that takes in every record: {watched:.0f}", flush=True)
+    print(
+        f"virtual time, full loop: {rate:.0f} robot seconds a second; with a host that takes in"
+        f" every record: {watched:.0f}",
+        flush=True,
+    )
 
 
 def batch() -> None:
@@ -105,10 +123,16 @@ def batch() -> None:
     wheels, ticks = 4000, 1000
     run(8, 100, seed=1)
     together = random_times(1, ticks, 0.03, np.random.default_rng(1))
-    for title, times in (("each wheel late in its own way", None), ("all wheels late together", together)):
+    for title, times in (
+        ("each wheel late in its own way", None),
+        ("all wheels late together", together),
+    ):
         elapsed = best_of(5, lambda times=times: run(wheels, ticks, seed=1, times=times))
         rate = wheels * ticks * 0.03 / elapsed
-        print(f"compiled batch, {os.cpu_count()} cores, {title}: {rate:,.0f} wheel-seconds a second", flush=True)
+        print(
+            f"compiled batch, {os.cpu_count()} cores, {title}: {rate:,.0f} wheel-seconds a second",
+            flush=True,
+        )
 
 
 def bodies() -> None:
@@ -119,7 +143,10 @@ def bodies() -> None:
 
     from host.bodies.build import Asked, body_of
 
-    full, pushed = mujoco.mjtState.mjSTATE_FULLPHYSICS, mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_XFRC_APPLIED
+    full, pushed = (
+        mujoco.mjtState.mjSTATE_FULLPHYSICS,
+        mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_XFRC_APPLIED,
+    )
     for what, cars in (("car", 1), ("train", 5)):
         for preset in ("paper", "snake2019"):
             own_s, plain_s, steps = [], [], 3000
@@ -128,8 +155,12 @@ def bodies() -> None:
             step_s = float(model.opt.timestep)
             body.run(2.0)
             for _ in range(3):
-                # The same motion three times: to hear what pushes it in each step, with its controllers, and with what was heard.
-                begun, sizes = np.empty(mujoco.mj_stateSize(model, full)), mujoco.mj_stateSize(model, pushed)
+                # The same motion three times: to hear what pushes it in each step, with its
+                # controllers, and with what was heard.
+                begun, sizes = (
+                    np.empty(mujoco.mj_stateSize(model, full)),
+                    mujoco.mj_stateSize(model, pushed),
+                )
                 mujoco.mj_getState(model, body.data, begun, full)
                 floats, step = body.neurons.floats.copy(), body.step
                 heard = np.empty((1, steps, sizes))
@@ -138,12 +169,22 @@ def bodies() -> None:
                     mujoco.mj_getState(model, body.data, heard[0, number], pushed)
                 mujoco.mj_setState(model, body.data, begun, full)
                 body.neurons.floats[:], body.step = floats, step
-                own_s.append(best_of(1, lambda body=body, seconds=steps * step_s: body.run(seconds)))
-                plain_s.append(best_of(1, lambda m=model, d=data, b=begun, h=heard: rollout(m, d, b, h, control_spec=int(pushed))))
+                own_s.append(
+                    best_of(1, lambda body=body, seconds=steps * step_s: body.run(seconds))
+                )
+                plain_s.append(
+                    best_of(
+                        1,
+                        lambda m=model, d=data, b=begun, h=heard: rollout(
+                            m, d, b, h, control_spec=int(pushed)
+                        ),
+                    )
+                )
             ours = min(own_s)
             print(
-                f"{what} ({preset}), one core: {steps / ours:,.0f} steps/s of {1000 * step_s:g} ms, {steps * step_s / ours:.0f} times real"
-                f" time; {min(plain_s) / ours:.2f} of MuJoCo's bare stepping" + (" (goals: 15, 0.5)" if cars > 1 else " (goal: 0.5)")
+                f"{what} ({preset}), one core: {steps / ours:,.0f} steps/s of {1000 * step_s:g} ms,"
+                f" {steps * step_s / ours:.0f} times real time; {min(plain_s) / ours:.2f} of"
+                " MuJoCo's bare stepping" + (" (goals: 15, 0.5)" if cars > 1 else " (goal: 0.5)")
             )
 
 
@@ -159,11 +200,19 @@ def real_time() -> None:
             for burner in burners:
                 burner.terminate()
         late.sort()
-        shown = ", ".join(f"{name} {1000 * late[min(len(late) - 1, int(part * len(late)))]:.2f}" for name, part in _PARTS)
-        print(f"real time, {title}: ticks begin late by {shown} ms ({len(late)} ticks, {periods} deadlines missed)", flush=True)
+        shown = ", ".join(
+            f"{name} {1000 * late[min(len(late) - 1, int(part * len(late)))]:.2f}"
+            for name, part in _PARTS
+        )
         print(
-            f"  kick, from command to the begin of its tick: median {1000 * statistics.median(kicks):.1f} ms, "
-            f"at most {1000 * max(kicks):.1f} ms ({len(kicks)} kicks; the tick is 30 ms)",
+            f"real time, {title}: ticks begin late by {shown} ms ({len(late)} ticks, {periods}"
+            " deadlines missed)",
+            flush=True,
+        )
+        print(
+            "  kick, from command to the begin of its tick: median"
+            f" {1000 * statistics.median(kicks):.1f} ms, at most {1000 * max(kicks):.1f} ms"
+            f" ({len(kicks)} kicks; the tick is 30 ms)",
             flush=True,
         )
 
@@ -183,7 +232,17 @@ def _desk_robot():
 
     with tempfile.TemporaryDirectory() as folder:
         token = str(Path(folder) / "token")
-        command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "1", "--token", token]
+        command = [
+            sys.executable,
+            "-m",
+            "sim_motor",
+            "--port",
+            "0",
+            "--seed",
+            "1",
+            "--token",
+            token,
+        ]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as brick:
             try:
                 uri = re.search(r"tcp://\S+", brick.stdout.readline())[0]

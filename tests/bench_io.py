@@ -1,4 +1,7 @@
-"""The tick's reads and writes: through robot.ev3, through python-ev3dev2's properties, and by bare calls, on files in memory."""
+"""The tick's reads and writes.
+
+Through robot.ev3, through python-ev3dev2's properties, and by bare calls, on files in memory.
+"""
 
 import os
 import tempfile
@@ -24,21 +27,28 @@ def reads_and_writes() -> None:
         make_tree(root)
         ours, library, bare = _fastest(_through_robot(root), _through_library(root), _bare(root))
     print(
-        f"a tick's two reads and two writes: {1e6 * ours:.2f} us; {_verdict(library / ours, LIBRARY_AT_LEAST, -1)} times faster than"
-        f" through python-ev3dev2's properties, {_verdict(ours / bare, BARE_AT_MOST, 1)} times the bare calls"
-        f" (which are {library / bare:.2f} times faster than the properties)",
+        f"a tick's two reads and two writes: {1e6 * ours:.2f} us;"
+        f" {_verdict(library / ours, LIBRARY_AT_LEAST, -1)} times faster than through"
+        f" python-ev3dev2's properties, {_verdict(ours / bare, BARE_AT_MOST, 1)} times the bare"
+        f" calls (which are {library / bare:.2f} times faster than the properties)",
         flush=True,
     )
 
 
 def _verdict(ratio, bound, sign):
-    """The ratio, and whether it is within its bound: an upper one if sign is 1, a lower one if it is -1."""
+    """The ratio, and whether it is within its bound.
+
+    An upper one if sign is 1, a lower one if it is -1.
+    """
     word = "PASS" if sign * ratio <= sign * bound else "FAIL"
     return f"{ratio:.2f} ({word}: at {'most' if sign > 0 else 'least'} {bound})"
 
 
 def _fastest(*ways):
-    """The shortest time (s) of a tick in each way; whatever else the machine did only ever adds to it."""
+    """The shortest time (s) of a tick in each way.
+
+    Whatever else the machine did only ever adds to it.
+    """
     times = [inf] * len(ways)
     for _ in range(ROUNDS):
         for index, way in enumerate(ways):
@@ -77,8 +87,13 @@ def _through_library(root):
 
 def _bare(root):
     motors = [Path(root, "tacho-motor", f"motor{number}") for number in range(len(PORTS))]
-    files = chain.from_iterable(((motor / "position", os.O_RDONLY), (motor / "duty_cycle_sp", os.O_WRONLY)) for motor in motors)
-    left_position, left_duty, right_position, right_duty = (os.open(path, mode) for path, mode in files)
+    files = chain.from_iterable(
+        ((motor / "position", os.O_RDONLY), (motor / "duty_cycle_sp", os.O_WRONLY))
+        for motor in motors
+    )
+    left_position, left_duty, right_position, right_duty = (
+        os.open(path, mode) for path, mode in files
+    )
 
     def way():
         for duty in DUTIES:

@@ -5,9 +5,15 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
-# No clock decides about a test: neither how long an example takes, nor how long it takes to make one up on a busy machine. Where
-# changes are judged, the same examples are tried each time; elsewhere new ones.
-settings.register_profile("house", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize="CI" in os.environ)
+# No clock decides about a test: neither how long an example takes, nor how long it takes to make
+# one up on a busy machine. Where changes are judged, the same examples are tried each time;
+# elsewhere new ones.
+settings.register_profile(
+    "house",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    derandomize="CI" in os.environ,
+)
 settings.load_profile("house")
 
 

@@ -1,4 +1,7 @@
-"""Stand-ins that make a real robot.loop.Loop run anywhere, the same each time: a clock, motors, and the log of what happened."""
+"""Stand-ins that make a real robot.loop.Loop run anywhere, the same each time.
+
+A clock, motors, and the log of what happened.
+"""
 
 from itertools import cycle
 from math import pi
@@ -10,8 +13,14 @@ from robot.motors import Motor, MotorFault
 from robot.record import unpack
 from robot.session import Session
 
-# How late ticks begin, over and over; one so late that a deadline passes, one that delta t is cut off.
-LATENESS_S = (0.0, 0.0004, 0.0011, 0.0, 0.0003, 0.0062, 0.0009) * 3 + (0.0412,) + (0.0002, 0.0005) * 8 + (0.11,)
+# How late ticks begin, over and over; one so late that a deadline passes, one that delta t is cut
+# off.
+LATENESS_S = (
+    (0.0, 0.0004, 0.0011, 0.0, 0.0003, 0.0062, 0.0009) * 3
+    + (0.0412,)
+    + (0.0002, 0.0005) * 8
+    + (0.11,)
+)
 
 KICKS = (
     {"mode": "membrane"},
@@ -20,8 +29,14 @@ KICKS = (
     {"mode": "phase", "ticks": 4, "shift": -0.5},
     {"mode": "jump", "variable": "x2", "delta": 0.7},
     {"mode": "jump", "variable": "x1", "delta": -2.0},
-    *({"mode": "pulse", "ticks": 6, "shape": "smooth", "param": name, "value": value} for name, value in (("a", 0.5), ("tau_s", 2.0))),
-    *({"mode": "pulse", "ticks": 5, "param": name, "value": value} for name, value in (("k", 0.0), ("beta", 0.8), ("shift_rad", 2.0))),
+    *(
+        {"mode": "pulse", "ticks": 6, "shape": "smooth", "param": name, "value": value}
+        for name, value in (("a", 0.5), ("tau_s", 2.0))
+    ),
+    *(
+        {"mode": "pulse", "ticks": 5, "param": name, "value": value}
+        for name, value in (("k", 0.0), ("beta", 0.8), ("shift_rad", 2.0))
+    ),
 )
 
 
@@ -124,7 +139,13 @@ def eventful():
         for details in KICKS:
             begin = rig.kick(wheel=wheel, **details)
             rig.run(loop.blackbox.next_tick - begin + details.get("ticks", 4) + 3)
-    for changes in ({"k": 3.3}, {"a": 5.5, "tau_s": 0.31}, {"rods": 1}, {"rods": 2, "max_duty_pct": 47.5}, {"tick_s": 0.04}):
+    for changes in (
+        {"k": 3.3},
+        {"a": 5.5, "tau_s": 0.31},
+        {"rods": 1},
+        {"rods": 2, "max_duty_pct": 47.5},
+        {"tick_s": 0.04},
+    ):
         loop.set_params(changes)
         rig.run(15)
     rig.kick("phase", ticks=20)

@@ -1,4 +1,7 @@
-"""What can go wrong with a running robot: how each fault is brought about, how long the motors may run on, what the host is told."""
+"""What can go wrong with a running robot.
+
+How each fault is brought about, how long the motors may run on, what the host is told.
+"""
 
 import os
 import shutil
@@ -34,10 +37,11 @@ LOST = "lost for 0.5 s"
 class Row(NamedTuple):
     """A fault.
 
-    attempt(live, chance) brings it about once. Returns how long the motors ran on in s, None where they are to go on, and what the host
-    was told, in which `words` must stand. program and arguments are the robot's; a `lasting` one serves all tries, else each has its
-    own; the link to a `relayed` one can be cut. lacks() is what this machine lacks for the row, in words, and environment(folder) what
-    the robot's process gets besides.
+    attempt(live, chance) brings it about once. Returns how long the motors ran on in s, None where
+    they are to go on, and what the host was told, in which `words` must stand. program and
+    arguments are the robot's; a `lasting` one serves all tries, else each has its own; the link to
+    a `relayed` one can be cut. lacks() is what this machine lacks for the row, in words, and
+    environment(folder) what the robot's process gets besides.
     """
 
     name: str
@@ -67,7 +71,10 @@ def _dies(number):
 
 
 def _silent(number, wakes):
-    """The loop is silent, and finds itself stopped when it goes on; once that is cleared, all is as before."""
+    """The loop is silent, and finds itself stopped when it goes on.
+
+    Once that is cleared, all is as before.
+    """
 
     def attempt(live, chance):
         live.run(chance)
@@ -142,7 +149,9 @@ def _loses_link(policy):
                 live.relay.silent = False
             told = live.told("link_loss", first)
             state = live.state()
-            assert state == {"stop": "stopped", "hold": "held", "continue": "running"}[policy], state
+            assert state == {"stop": "stopped", "hold": "held", "continue": "running"}[policy], (
+                state
+            )
             live.robot.lease()
             assert live.state() == {"stop": "stopped"}.get(policy, "running")
         return seconds, told
@@ -165,7 +174,12 @@ def _loses_host(live, chance):
     live.run(chance)
     live.robot.release()
     first = len(live.log.events)
-    with subprocess.Popen([sys.executable, "-c", _HOLDER, live.address], cwd=ROOT, stdout=subprocess.PIPE) as host, live.watch() as watch:
+    with (
+        subprocess.Popen(
+            [sys.executable, "-c", _HOLDER, live.address], cwd=ROOT, stdout=subprocess.PIPE
+        ) as host,
+        live.watch() as watch,
+    ):
         try:
             host.stdout.readline()
             time.sleep(chance.uniform(0.1, 0.4))
@@ -183,7 +197,10 @@ def _hears_stranger(live, chance):
     """Somebody without token or greeting sends a stop frame."""
     live.run(chance)
     first = len(live.log.events)
-    with live.watch() as watch, socket.create_connection(("127.0.0.1", int(live.address.rpartition(":")[2]))) as stranger:
+    with (
+        live.watch() as watch,
+        socket.create_connection(("127.0.0.1", int(live.address.rpartition(":")[2]))) as stranger,
+    ):
         time.sleep(chance.uniform(0.0, 2 * TICK_S))
         since = time.monotonic()
         stranger.sendall(wire.encode(wire.STOP, b""))
@@ -234,7 +251,10 @@ def _cable_back(permissions_s):
 
 
 def _eio(times):
-    """The kernel fails some accesses to one motor's files; the other one is watched, for a look would be such an access."""
+    """The kernel fails some accesses to one motor's files.
+
+    The other one is watched, for a look would be such an access.
+    """
 
     def attempt(live, chance):
         live.run(chance)
@@ -270,13 +290,17 @@ def _battery_empties(live, chance):
 def _kickctl(live, *arguments, **options):
     """A kickctl of its own on the robot; it records."""
     command = [sys.executable, "-m", "host", "--brick", live.address, *arguments]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60, **options)
+    return subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=60, **options
+    )
 
 
 @contextmanager
 def _small_disk(kilobytes):
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "none", folder], check=True)
+        subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "none", folder], check=True
+        )
         try:
             yield Path(folder)
         finally:
@@ -288,7 +312,9 @@ def _disk_full(live, chance):
     with _small_disk(24) as folder, live.watch() as watch:
         done = _kickctl(live, "record", "30", "--out", str(folder / "log.mcap"))
         assert watch.running() == len(PORTS)
-        assert "Traceback" not in done.stderr, "a traceback: " + done.stderr.strip().splitlines()[-1]
+        assert "Traceback" not in done.stderr, (
+            "a traceback: " + done.stderr.strip().splitlines()[-1]
+        )
         assert done.returncode == 1
         kept = Log.load(folder / "log.mcap")
         assert len(kept) > 1.0 / TICK_S / 2
@@ -299,7 +325,9 @@ def _disk_full(live, chance):
 def jumping_clock(folder):
     """The environment of a process whose wall clock jumps whenever the file $CLOCK_JUMP is written."""
     library, jump = folder / "clock_jump.so", folder / "jump"
-    subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, ROOT / "tests" / "clock_jump.c"], check=True)
+    subprocess.run(
+        ["gcc", "-shared", "-fPIC", "-o", library, ROOT / "tests" / "clock_jump.c"], check=True
+    )
     jump.write_text("0", encoding="ascii")
     return {"LD_PRELOAD": str(library), "CLOCK_JUMP": str(jump)}
 
@@ -312,8 +340,20 @@ def _clock_jumps(live, chance):
     path = jump.with_name("log.mcap")
     environment = os.environ | live.environment
     with live.watch() as watch:
-        command = [sys.executable, "-m", "host", "--brick", live.address, "record", "1.5", "--out", str(path)]
-        with subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as recorder:
+        command = [
+            sys.executable,
+            "-m",
+            "host",
+            "--brick",
+            live.address,
+            "record",
+            "1.5",
+            "--out",
+            str(path),
+        ]
+        with subprocess.Popen(
+            command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        ) as recorder:
             while recorder.poll() is None:
                 jump.write_text(str(chance.choice((-JUMP_S, 0, JUMP_S))), encoding="ascii")
                 time.sleep(0.05)
@@ -323,7 +363,9 @@ def _clock_jumps(live, chance):
     path.unlink()
     assert log.missing() == []
     assert {record.state for record in log.records} == {1}
-    steps = [after.t_s - before.t_s for before, after in zip(log.records, log.records[1:], strict=False)]
+    steps = [
+        after.t_s - before.t_s for before, after in zip(log.records, log.records[1:], strict=False)
+    ]
     assert 0.0 < min(steps) <= max(steps) < 10 * TICK_S
     return None, ""
 
@@ -333,28 +375,85 @@ def _no_mounts():
 
 
 def _no_compiler():
-    return "" if shutil.which("gcc") else "there is no gcc to build the clock that jumps: apt-get install gcc"
+    return (
+        ""
+        if shutil.which("gcc")
+        else "there is no gcc to build the clock that jumps: apt-get install gcc"
+    )
 
 
 ROWS = (
     Row("SIGKILL of the loop", LOOP_S, "no robot's program runs", _dies(signal.SIGKILL)),
     Row("SIGSEGV of the loop", LOOP_S, "no robot's program runs", _dies(signal.SIGSEGV)),
     Row("SIGSTOP of the loop", LOOP_S, "the loop was silent", _silent(signal.SIGSTOP, wakes=True)),
-    Row("hang in the loop", LOOP_S, "the loop was silent", _silent(signal.SIGUSR1, wakes=False), program="tests.faulty"),
+    Row(
+        "hang in the loop",
+        LOOP_S,
+        "the loop was silent",
+        _silent(signal.SIGUSR1, wakes=False),
+        program="tests.faulty",
+    ),
     Row("crash in Python", LOOP_S, "ZeroDivisionError", _crashes, program="tests.faulty"),
     Row("watchdog killed", LOOP_S, "the watchdog has ended", _loses_watchdog),
-    Row("watchdog frozen", UNANSWERED_S + LOOP_S, "the watchdog does not answer", _freezes_watchdog),
-    Row("link cut, policy stop", LINK_LOSS_S + LOOP_S, LOST, _loses_link("stop"), lasting=True, relayed=True),
-    Row("link cut, policy hold", LINK_LOSS_S + LOOP_S, LOST, _loses_link("hold"), lasting=True, relayed=True),
-    Row("link cut, policy continue", None, LOST, _loses_link("continue"), lasting=True, relayed=True),
+    Row(
+        "watchdog frozen", UNANSWERED_S + LOOP_S, "the watchdog does not answer", _freezes_watchdog
+    ),
+    Row(
+        "link cut, policy stop",
+        LINK_LOSS_S + LOOP_S,
+        LOST,
+        _loses_link("stop"),
+        lasting=True,
+        relayed=True,
+    ),
+    Row(
+        "link cut, policy hold",
+        LINK_LOSS_S + LOOP_S,
+        LOST,
+        _loses_link("hold"),
+        lasting=True,
+        relayed=True,
+    ),
+    Row(
+        "link cut, policy continue", None, LOST, _loses_link("continue"), lasting=True, relayed=True
+    ),
     Row("host killed", LINK_LOSS_S + LOOP_S, LOST, _loses_host, lasting=True),
-    Row("stop frame of a stranger", TICK_S, "stop frame from a peer", _hears_stranger, lasting=True),
+    Row(
+        "stop frame of a stranger", TICK_S, "stop frame from a peer", _hears_stranger, lasting=True
+    ),
     Row("cable out", LOOP_S, "its cable came off", _cable_out, lasting=True),
     Row("cable back, then clear", None, "", _cable_back(0.3), lasting=True),
-    Row("permission race after replug", None, "may not command it yet", _cable_back(0.6), lasting=True),
+    Row(
+        "permission race after replug",
+        None,
+        "may not command it yet",
+        _cable_back(0.6),
+        lasting=True,
+    ),
     Row("EIO once", LOOP_S, "EIO", _eio(1), lasting=True),
     Row("EIO six times", LOOP_S, "EIO", _eio(6), lasting=True),
-    Row("battery empty", BATTERY_S + LOOP_S, "the battery is empty", _battery_empties, arguments=("--tick", str(FAST_TICK_S))),
-    Row("disk of the host full", None, "log.mcap cannot be written or read: No space left", _disk_full, lasting=True, lacks=_no_mounts),
-    Row("clock jump", None, "", _clock_jumps, lasting=True, lacks=_no_compiler, environment=jumping_clock),
+    Row(
+        "battery empty",
+        BATTERY_S + LOOP_S,
+        "the battery is empty",
+        _battery_empties,
+        arguments=("--tick", str(FAST_TICK_S)),
+    ),
+    Row(
+        "disk of the host full",
+        None,
+        "log.mcap cannot be written or read: No space left",
+        _disk_full,
+        lasting=True,
+        lacks=_no_mounts,
+    ),
+    Row(
+        "clock jump",
+        None,
+        "",
+        _clock_jumps,
+        lasting=True,
+        lacks=_no_compiler,
+        environment=jumping_clock,
+    ),
 )

@@ -1,7 +1,8 @@
 """`make faults`: every fault tried many times, and a table of how long the motors ran on at worst and what the host was told.
 
-The robot's program, a host and the kernel's files (FUSE, with the motors' physics) are processes of their own. Times run from the
-fault until the files show that no motor is driven, in real time on this machine. Returns 1 if a row fails.
+The robot's program, a host and the kernel's files (FUSE, with the motors' physics) are processes of
+their own. Times run from the fault until the files show that no motor is driven, in real time on
+this machine. Returns 1 if a row fails.
 """
 
 import argparse
@@ -24,7 +25,10 @@ TRIES = 20
 
 
 class Result(NamedTuple):
-    """What came of a row: the times in s, None where there is none; the first words to the host; and what failed, in words."""
+    """What came of a row: the times in s, None where there is none; the first words to the host.
+
+    And what failed, in words.
+    """
 
     seconds: list
     told: str
@@ -38,7 +42,13 @@ def attempt(row, folder, scratch, tries, chance):
     done = 0
     while done < tries:
         # A robot on which a try has failed serves no more.
-        with Live(folder, *row.arguments, program=row.program, environment=environment, relayed=row.relayed) as live:
+        with Live(
+            folder,
+            *row.arguments,
+            program=row.program,
+            environment=environment,
+            relayed=row.relayed,
+        ) as live:
             well = True
             while done < tries and well:
                 done += 1
@@ -82,10 +92,19 @@ def main():
         print(f"make faults: {why_not()}", file=sys.stderr)
         return 2
     chance = Random(options.seed)
-    rows = [row for row in ROWS if not options.rows or any(word in row.name for word in options.rows)]
+    rows = [
+        row for row in ROWS if not options.rows or any(word in row.name for word in options.rows)
+    ]
     all_hold = True
-    print(f"Load of the machine {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors, seed {options.seed}\n")
-    print("| fault | tries | mean / ms | worst / ms | limit / ms | the host is told | |\n|---|---|---|---|---|---|---|", flush=True)
+    print(
+        f"Load of the machine {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors, seed"
+        f" {options.seed}\n"
+    )
+    print(
+        "| fault | tries | mean / ms | worst / ms | limit / ms | the host is told |"
+        " |\n|---|---|---|---|---|---|---|",
+        flush=True,
+    )
     with (
         tempfile.TemporaryDirectory() as scratch,
         impatient(),

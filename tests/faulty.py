@@ -1,4 +1,7 @@
-"""The robot's program with a fault in its next tick, after the motors have their duties: SIGUSR1 has it hang, SIGUSR2 has it crash."""
+"""The robot's program with a fault in its next tick, after the motors have their duties.
+
+SIGUSR1 has it hang, SIGUSR2 has it crash.
+"""
 
 import signal
 import sys

@@ -47,14 +47,19 @@ class Watch:
     """The motors that are at some ports now, as the kernel's files show them."""
 
     def __init__(self, folder, ports=PORTS):
-        self._states = [os.open(motor_folder(folder, port) / "state", os.O_RDONLY) for port in ports]
+        self._states = [
+            os.open(motor_folder(folder, port) / "state", os.O_RDONLY) for port in ports
+        ]
 
     def running(self):
         """How many of them the kernel drives; one that is gone it does not."""
         return sum(bool(_read(state)) for state in self._states)
 
     def stopped_after(self, since):
-        """Wait until all have stopped. Returns how long that took, in s since a moment of time.monotonic."""
+        """Wait until all have stopped.
+
+        Returns how long that took, in s since a moment of time.monotonic.
+        """
         wait_until(lambda: not self.running(), "the motors stop")
         return time.monotonic() - since
 
@@ -73,7 +78,10 @@ def _read(descriptor):
 
 
 class Relay:
-    """Carries one TCP connection after another to a robot. `silent` carries nothing, in either direction, as a cable that is out."""
+    """Carries one TCP connection after another to a robot.
+
+    `silent` carries nothing, in either direction, as a cable that is out.
+    """
 
     def __init__(self, port):
         self.silent = False
@@ -149,7 +157,8 @@ class Relay:
 class Live:
     """A robot's program, the host `robot` that is connected to it, and the `log` of what that host was sent; a context manager.
 
-    folder: the mount; program: the module; environment: what its process gets besides; relayed: whether the link can be cut.
+    folder: the mount; program: the module; environment: what its process gets besides; relayed:
+    whether the link can be cut.
     """
 
     def __init__(self, folder, *options, program="robot", environment=None, relayed=False):
@@ -182,7 +191,10 @@ class Live:
         self.end()
 
     def end(self):
-        """End the program, whatever state it is in. `said` is what it wrote to its standard error."""
+        """End the program, whatever state it is in.
+
+        `said` is what it wrote to its standard error.
+        """
         if self.relay is not None:
             self.relay.close()
         self.said = ended(self.process)[1]
@@ -216,7 +228,9 @@ class Live:
         if self.state() != "running":
             self.robot.start()
         with self.watch() as watch:
-            wait_until(lambda: watch.running() == len(PORTS) or self.state() == "fault", "the motors run")
+            wait_until(
+                lambda: watch.running() == len(PORTS) or self.state() == "fault", "the motors run"
+            )
         assert self.state() == "running", f"it does not run: {self.reason()}"
         time.sleep(chance.uniform(0.1, 0.4))
 

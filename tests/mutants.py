@@ -1,6 +1,7 @@
 """`make mutants`: whether the tests of robot/safety.py take every branch, and notice every small change (mutmut) to it.
 
-Runs in a copy, with an interpreter that has mutmut and what the tests need. Returns 1 if a branch is missed or a change survives.
+Runs in a copy, with an interpreter that has mutmut and what the tests need. Returns 1 if a branch
+is missed or a change survives.
 """
 
 import os
@@ -36,17 +37,38 @@ def copy_to(folder):
 
 
 def run(folder, *arguments):
-    """(exit status, output) of a module of this interpreter, run in the copy; the same examples are tried for every change."""
+    """(exit status, output) of a module of this interpreter, run in the copy.
+
+    The same examples are tried for every change.
+    """
     environment = os.environ | {"CI": "1"}
     command = [sys.executable, "-m", *arguments]
-    done = subprocess.run(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
     return done.returncode, done.stdout
 
 
 def covered(folder):
     """Print which branches the tests take. Returns whether they take all."""
     status, output = run(
-        folder, "coverage", "run", "--branch", f"--include={SUBJECT}", "-m", "pytest", "-q", "-p", "no:cacheprovider", TESTS
+        folder,
+        "coverage",
+        "run",
+        "--branch",
+        f"--include={SUBJECT}",
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        TESTS,
     )
     if status == 0:
         status, output = run(folder, "coverage", "report", "--show-missing", "--fail-under=100")
@@ -60,7 +82,11 @@ def killed(folder):
     if status != 0:
         print(output)
         return False
-    verdicts = [line.split(": ") for line in run(folder, "mutmut", "results", "--all", "true")[1].splitlines() if ": " in line]
+    verdicts = [
+        line.split(": ")
+        for line in run(folder, "mutmut", "results", "--all", "true")[1].splitlines()
+        if ": " in line
+    ]
     survivors = [name.strip() for name, verdict in verdicts if verdict != "killed"]
     for name in survivors:
         print(run(folder, "mutmut", "show", name)[1])

@@ -27,7 +27,10 @@ class Clock:
 
 
 class Motor(motors.Motor):
-    """Turns by `turn` rad with every reading, whatever its duty; fails at whatever `fails` names: read, write, stop."""
+    """Turns by `turn` rad with every reading, whatever its duty; fails at whatever `fails` names.
+
+    Read, write, stop.
+    """
 
     def __init__(self, angle=0.0, turn=0.0):
         self.angle = angle - turn
@@ -82,7 +85,9 @@ class Rig:
     def records(self):
         """Everything that the black box still has."""
         box = self.loop.blackbox
-        return [unpack(box.read(tick, 1))[0] for tick in range(max(0, box.oldest_tick), box.next_tick)]
+        return [
+            unpack(box.read(tick, 1))[0] for tick in range(max(0, box.oldest_tick), box.next_tick)
+        ]
 
     @property
     def last(self):
@@ -105,11 +110,19 @@ class Rig:
             "params": dict(loop.params.values()),
             "safety": (loop.safety.state, loop.safety.reason),
             "lease": (loop.lease.holder, loop.lease.name, loop.lease._heard),
-            "wheels": [(wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel, _, _ in loop._sides],
+            "wheels": [
+                (wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel, _, _ in loop._sides
+            ],
             "kick": loop._kick and loop._kick.as_dict(),
             "kicks": (dict(loop._kick_begins), list(loop._kick_ids)),
             "motors": [(motor.duty, len(motor.done)) for motor in self.motors],
-            "box": (box.next_tick, box.next_event, box.oldest_tick, len(box._journal), bytes(box._ring)),
+            "box": (
+                box.next_tick,
+                box.next_event,
+                box.oldest_tick,
+                len(box._journal),
+                bytes(box._ring),
+            ),
             "counts": (loop.missed, loop.overruns, loop.clamped, list(loop.lateness)),
             "random": loop._random.getstate(),
             "time": (loop.deadline, loop._before, loop.done),

@@ -1,7 +1,8 @@
 """`make soak`: an hour (or $SOAK_S seconds) of a robot that is kicked, cut off, stopped and broken at random, in real time.
 
-Nothing may be lost: every tick of the robot is in the host's log, which is recorded as a person would record it. Nothing may grow:
-the memory and the open files of the robot's process. Returns 1 if anything did.
+Nothing may be lost: every tick of the robot is in the host's log, which is recorded as a person
+would record it. Nothing may grow: the memory and the open files of the robot's process. Returns 1
+if anything did.
 """
 
 import os
@@ -22,9 +23,15 @@ from tests.live import PORTS, Live, open_files, wait_until
 from tests.sysfs.mount import mounted, why_not
 
 HOUR_S = 3600.0
-# What the robot remembers of its past grows until it is full: the journal, 2000 events of less than a kilobyte each.
+# What the robot remembers of its past grows until it is full: the journal, 2000 events of less than
+# a kilobyte each.
 REMEMBERED_KB = 2000
-KICKS = ({"mode": "membrane"}, {"mode": "position"}, {"mode": "phase", "ticks": 4}, {"mode": "jump", "variable": "x1", "delta": 1.0})
+KICKS = (
+    {"mode": "membrane"},
+    {"mode": "position"},
+    {"mode": "phase", "ticks": 4},
+    {"mode": "jump", "variable": "x1", "delta": 1.0},
+)
 LINK_LOSS = TABLE["link_loss"].choices
 
 
@@ -59,7 +66,9 @@ class Vitals:
 
     def look(self):
         pages = int(Path(f"/proc/{self._pid}/statm").read_text(encoding="ascii").split()[1])
-        self.samples.append((time.monotonic(), pages * os.sysconf("SC_PAGE_SIZE") // 1024, open_files(self._pid)))
+        self.samples.append(
+            (time.monotonic(), pages * os.sysconf("SC_PAGE_SIZE") // 1024, open_files(self._pid))
+        )
 
     @property
     def slope(self):
@@ -69,7 +78,12 @@ class Vitals:
         mean_s, mean_kb = sum(times) / len(times), sum(sizes) / len(sizes)
         spread = sum((time_s - mean_s) ** 2 for time_s in times)
         return (
-            HOUR_S * sum((time_s - mean_s) * (size - mean_kb) for time_s, size in zip(times, sizes, strict=True)) / spread
+            HOUR_S
+            * sum(
+                (time_s - mean_s) * (size - mean_kb)
+                for time_s, size in zip(times, sizes, strict=True)
+            )
+            / spread
             if spread
             else 0.0
         )
@@ -148,7 +162,11 @@ def soak(live, seconds, chance, path):
             vitals.look()
             left = until - time.monotonic()
             print(
-                f"\r{max(0.0, left):5.0f} s left, {tally.ticks} ticks, {sum(done.values())} actions ", end="", file=sys.stderr, flush=True
+                f"\r{max(0.0, left):5.0f} s left, {tally.ticks} ticks, {sum(done.values())}"
+                " actions ",
+                end="",
+                file=sys.stderr,
+                flush=True,
             )
         for one in (tap, tally):
             live.robot.remove_tap(one)
@@ -162,7 +180,10 @@ def verdicts(tally, vitals, log):
         yield f"ticks are missing: {tally.gaps}"
     if log.missing() or len(log) != tally.ticks:
         yield f"the recorded log has {len(log)} ticks of {tally.ticks}, and gaps {log.missing()}"
-    sizes, files = [size for _, size, _ in vitals.samples], {count for _, _, count in vitals.samples}
+    sizes, files = (
+        [size for _, size, _ in vitals.samples],
+        {count for _, _, count in vitals.samples},
+    )
     if max(sizes) > sizes[0] + REMEMBERED_KB:
         yield f"its memory grew from {sizes[0]} to {max(sizes)} kB"
     if len(files) > 1:
@@ -177,9 +198,15 @@ def main():
     seconds = float(os.environ.get("SOAK_S", HOUR_S))
     seed = int(os.environ.get("SOAK_SEED", time.time_ns() % 2**31))
     print(f"{seconds:g} s, seed {seed} (SOAK_SEED={seed} does the same again)", flush=True)
-    with tempfile.TemporaryDirectory() as scratch, mock.patch.dict(os.environ, {"KICK_TOKEN": f"{scratch}/token"}):
+    with (
+        tempfile.TemporaryDirectory() as scratch,
+        mock.patch.dict(os.environ, {"KICK_TOKEN": f"{scratch}/token"}),
+    ):
         path = Path(scratch) / "soak.mcap"
-        with mounted(Path(scratch) / "sys", "--seed", str(seed)) as folder, Live(folder, "--seed", str(seed), relayed=True) as live:
+        with (
+            mounted(Path(scratch) / "sys", "--seed", str(seed)) as folder,
+            Live(folder, "--seed", str(seed), relayed=True) as live,
+        ):
             live.robot.remove_tap(live.log)
             tally, vitals, done = soak(live, seconds, Random(seed), path)
             status = live.robot.status()
@@ -187,9 +214,18 @@ def main():
     sizes = [size for _, size, _ in vitals.samples]
     print("actions: " + ", ".join(f"{name} {count}" for name, count in done.most_common()))
     print("events: " + ", ".join(f"{name} {count}" for name, count in tally.events.most_common()))
-    print(f"ticks: {tally.ticks}, missing {sum(end - first for first, end in tally.gaps)}; deadlines missed {status['missed']}")
-    print(f"memory: {sizes[0]} kB at the start, {sizes[-1]} at the end, {max(sizes)} at most; {vitals.slope:.0f} kB/h")
-    print(f"open files: {', '.join(str(count) for count in sorted({count for _, _, count in vitals.samples}))}")
+    print(
+        f"ticks: {tally.ticks}, missing {sum(end - first for first, end in tally.gaps)}; deadlines"
+        f" missed {status['missed']}"
+    )
+    print(
+        f"memory: {sizes[0]} kB at the start, {sizes[-1]} at the end, {max(sizes)} at most;"
+        f" {vitals.slope:.0f} kB/h"
+    )
+    print(
+        "open files:"
+        f" {', '.join(str(count) for count in sorted({count for _, _, count in vitals.samples}))}"
+    )
     for sentence in wrong:
         print("wrong: " + sentence)
     return 1 if wrong else 0

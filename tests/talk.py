@@ -7,7 +7,10 @@ from tests.rig import TOKEN
 
 
 class Client:
-    """A host's conversation with one session of the robot, both without any I/O. `stream` collects what a subscription brought."""
+    """A host's conversation with one session of the robot, both without any I/O.
+
+    `stream` collects what a subscription brought.
+    """
 
     def __init__(self, loop, token=TOKEN, name="tester", client=None):
         self.session = Session(loop, TOKEN, "boot")

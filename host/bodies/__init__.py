@@ -1,1 +1,4 @@
-"""Simulated cars and trains for people: built from what was asked for, steered, written to files."""
+"""Simulated cars and trains for people.
+
+Built from what was asked for, steered, written to files.
+"""

@@ -1,4 +1,7 @@
-"""Simulated bodies for people: a car or a train from what was asked for, its kicks from words, errors in words."""
+"""Simulated bodies for people.
+
+A car or a train from what was asked for, its kicks from words, errors in words.
+"""
 
 from __future__ import annotations
 
@@ -32,10 +35,12 @@ KICK_S = 0.1
 
 
 class Asked(NamedTuple):
-    """What a body is to be, in SI units; None is the preset's own. k is in N, drag in the preset's unit, torque in N m.
+    """What a body is to be, in SI units; None is the preset's own.
 
-    start: of the wheels, PUSHED_FORWARD or RANDOM; by default a car is pushed, as one that starts at random mostly comes to rest, and a
-    train is not.
+    K is in N, drag in the preset's unit, torque in N m.
+
+    start: of the wheels, PUSHED_FORWARD or RANDOM; by default a car is pushed, as one that starts
+    at random mostly comes to rest, and a train is not.
     """
 
     cars: int = 1
@@ -64,7 +69,9 @@ def preset_of(asked: Asked) -> Preset:
         own = own.with_drag(asked.drag)
     given = {"a": asked.a, "tau": asked.tau, "k": asked.k}
     with worded():
-        return own._replace(**{name: value for name, value in given.items() if value is not None}).checked()
+        return own._replace(
+            **{name: value for name, value in given.items() if value is not None}
+        ).checked()
 
 
 def spec_of(asked: Asked) -> mujoco.MjSpec:
@@ -72,12 +79,21 @@ def spec_of(asked: Asked) -> mujoco.MjSpec:
     need("mujoco", "bodies")
     from sim_motor.bodies.model import compose
 
-    for name, value in (("angle", asked.angle), ("torque", asked.torque), ("timestep", asked.timestep)):
+    for name, value in (
+        ("angle", asked.angle),
+        ("torque", asked.torque),
+        ("timestep", asked.timestep),
+    ):
         if value is not None and not isfinite(value):
             raise WrongUse(f"{name} cannot be {value!r}", "give a finite number")
     own = preset_of(asked)
     with worded():
-        shape: Any = {"seed": asked.seed, "angle": asked.angle, "bouncy": asked.bouncy, "timestep": asked.timestep}
+        shape: Any = {
+            "seed": asked.seed,
+            "angle": asked.angle,
+            "bouncy": asked.bouncy,
+            "timestep": asked.timestep,
+        }
         return compose(own, asked.scene, asked.cars, **shape)
 
 
@@ -108,7 +124,10 @@ def worded() -> Iterator[None]:
 
 
 class Push(NamedTuple):
-    """A kick that was asked for: when (s), on which wheels, how long (s; None of a frozen kick), and what else robot/kicks.py takes."""
+    """A kick that was asked for: when (s), on which wheels, how long (s.
+
+    None of a frozen kick), and what else robot/kicks.py takes.
+    """
 
     t_s: float
     wheels: tuple[str, ...]
@@ -116,7 +135,10 @@ class Push(NamedTuple):
     request: dict[str, Any]
 
     def kicks(self, step: int, step_s: float, omega: Sequence[float]) -> list[Kick]:
-        """The kick of each of its wheels, which turn at omega (rad/s), to begin in this step. Raises WrongUse."""
+        """The kick of each of its wheels, which turn at omega (rad/s), to begin in this step.
+
+        Raises WrongUse.
+        """
         ticks = {} if self.seconds is None else {"ticks": max(1, round(self.seconds / step_s))}
         found = []
         for name, speed in zip(self.wheels, omega, strict=True):
@@ -130,20 +152,32 @@ class Push(NamedTuple):
         return found
 
 
-_NUMBERS: dict[str, Callable[[str], float]] = {"t": float, "seconds": float, "value": float, "delta": float, "shift": parse_angle}
+_NUMBERS: dict[str, Callable[[str], float]] = {
+    "t": float,
+    "seconds": float,
+    "value": float,
+    "delta": float,
+    "shift": parse_angle,
+}
 _WORDS = ("mode", "wheel", "shape", "param", "variable")
 
 
 def push_of(text: str, wheels: Sequence[str]) -> Push:
-    """A kick from "t=5,mode=membrane,wheel=all": any of t, mode, wheel, seconds, shift, shape, param, value, variable, delta.
+    """A kick from "t=5,mode=membrane,wheel=all".
 
-    wheels: the body's; a kick's wheel is one of them, all of those whose names it is a part of (car2, left), or "all". Raises WrongUse.
+    Any of t, mode, wheel, seconds, shift, shape, param, value, variable, delta.
+
+    wheels: the body's; a kick's wheel is one of them, all of those whose names it is a part of
+    (car2, left), or "all". Raises WrongUse.
     """
     fields: dict[str, Any] = {}
     for part in text.split(","):
         name, _, value = part.strip().partition("=")
         if name not in (*_NUMBERS, *_WORDS) or not value:
-            raise WrongUse(f"'{part.strip()}' is no part of a kick", f"write NAME=VALUE with {', '.join((*_NUMBERS, *_WORDS))}")
+            raise WrongUse(
+                f"'{part.strip()}' is no part of a kick",
+                f"write NAME=VALUE with {', '.join((*_NUMBERS, *_WORDS))}",
+            )
         if name in fields:
             raise WrongUse(f"a kick has one {name}, and '{text}' has more", "write it once")
         try:
@@ -157,7 +191,10 @@ def push_of(text: str, wheels: Sequence[str]) -> Push:
         raise WrongUse(f"a kick cannot last {fields['seconds']} s", "write seconds=..., above 0")
     chosen = tuple(name for name in wheels if wheel == ALL or wheel in (name, *name.split("_")))
     if not chosen:
-        raise WrongUse(f"there is no wheel '{wheel}'", f"write wheel={ALL}, left, right, car0, or one of {', '.join(wheels)}")
+        raise WrongUse(
+            f"there is no wheel '{wheel}'",
+            f"write wheel={ALL}, left, right, car0, or one of {', '.join(wheels)}",
+        )
     frozen = fields.get("mode") in FROZEN_MODES
     push = Push(time_s, chosen, fields.pop("seconds", None if frozen else KICK_S), fields)
     push.kicks(0, 0.001, [1.0] * len(chosen))  # refuses what can be refused before anything runs
@@ -165,7 +202,10 @@ def push_of(text: str, wheels: Sequence[str]) -> Push:
 
 
 def run(body: Body, seconds: float, pushes: Sequence[Push], watch: Any) -> None:
-    """Let a body run, kicked at its times; `watch` is told the time as it goes. Raises NotDone if it cannot be followed to the end."""
+    """Let a body run, kicked at its times; `watch` is told the time as it goes.
+
+    Raises NotDone if it cannot be followed to the end.
+    """
     from sim_motor.bodies.body import Unstable
 
     end = body.time_s + seconds
@@ -181,4 +221,7 @@ def run(body: Body, seconds: float, pushes: Sequence[Push], watch: Any) -> None:
             until = min([end, *(push.t_s for push in waiting[:1])])
             body.run(until - body.time_s, watch)
     except Unstable as error:
-        raise NotDone(str(error), "with a smaller k, drag or torque, or fewer cars where there are walls, it can be") from error
+        raise NotDone(
+            str(error),
+            "with a smaller k, drag or torque, or fewer cars where there are walls, it can be",
+        ) from error

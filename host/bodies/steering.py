@@ -1,7 +1,10 @@
-"""Drives a train that nobody steers to a place, by kicks alone: it learns by trying what kicks do to its course, and then plans with that.
+"""Drives a train that nobody steers to a place, by kicks alone.
 
-Two kicked wheels bend the train: the left one of its first car and the right one of its last, which the kick brakes, pull both ends of
-the train to the same side, and so it turns, whichever way it goes. How far, and how much of a kick comes only after it, is what it learns.
+It learns by trying what kicks do to its course, and then plans with that.
+
+Two kicked wheels bend the train: the left one of its first car and the right one of its last, which
+the kick brakes, pull both ends of the train to the same side, and so it turns, whichever way it
+goes. How far, and how much of a kick comes only after it, is what it learns.
 """
 
 from __future__ import annotations
@@ -22,17 +25,19 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# What can be done, once every KICK_S (s): nothing, or a phase kick of so long on the left wheel of the first car and the right one of the
-# last, or the other two.
+# What can be done, once every KICK_S (s): nothing, or a phase kick of so long on the left wheel of
+# the first car and the right one of the last, or the other two.
 CHOICES = ON, LEFT, RIGHT = range(3)
 KICK_S = 1.0
 # Every choice after every other, once; the first follows the last.
 ALL_PAIRS = (ON, LEFT, ON, RIGHT, LEFT, LEFT, RIGHT, RIGHT, ON)
-# How often (s) the train is looked at, how long (s) it runs before anything is asked of it, and how many choices are planned ahead.
+# How often (s) the train is looked at, how long (s) it runs before anything is asked of it, and how
+# many choices are planned ahead.
 LOOK_S, START_S, AHEAD = 0.1, 6.0, 10
 # What it is worth to be somewhere a second sooner (m).
 SOONER_M = 0.05
-# The wheels begin where rods push them forward, or at the mirror image, which is backward; give or take so much (rad).
+# The wheels begin where rods push them forward, or at the mirror image, which is backward; give or
+# take so much (rad).
 SPREAD_RAD = 0.3
 
 
@@ -48,8 +53,8 @@ def environment(preset: str) -> Train:
 class Drive:
     """A train on its way, started by `seed`, forward or backward by chance, and let run for START_S.
 
-    poses: (x m, y m, course rad) every LOOK_S from then on; choices: what was chosen every KICK_S. Raises NotDone if the train falls over
-    or can no longer be followed.
+    poses: (x m, y m, course rad) every LOOK_S from then on; choices: what was chosen every KICK_S.
+    Raises NotDone if the train falls over or can no longer be followed.
     """
 
     def __init__(self, train: Train, seed: int) -> None:
@@ -86,7 +91,10 @@ class Drive:
 
 
 def pose(info: Info) -> tuple[float, float, float]:
-    """Where the train's middle is (m), and its course (rad): along the line through its ends, the way that it goes."""
+    """Where the train's middle is (m), and its course (rad).
+
+    Along the line through its ends, the way that it goes.
+    """
     cars: Array = info["cars"]
     x, y = cars[:, :2].mean(axis=0)
     ahead_x, ahead_y = (cars[0] - cars[-1])[:2] * (info["direction"] or 1)
@@ -98,14 +106,21 @@ def seen_from(origin: Any, poses: Any) -> Array:
     (x, y, course), poses = origin, np.asarray(poses)
     dx, dy = poses[:, 0] - x, poses[:, 1] - y
     turned = (poses[:, 2] - course + np.pi) % (2 * np.pi) - np.pi
-    return np.stack([np.cos(course) * dx + np.sin(course) * dy, np.cos(course) * dy - np.sin(course) * dx, turned], axis=1)
+    return np.stack(
+        [
+            np.cos(course) * dx + np.sin(course) * dy,
+            np.cos(course) * dy - np.sin(course) * dx,
+            turned,
+        ],
+        axis=1,
+    )
 
 
 def learn(train: Train, seed: int, rounds: int) -> Array:
     """What choices do: the mean course, every LOOK_S of KICK_S, as seen from where the train chose; (last choice, choice, times, 3).
 
-    It tries every choice after every other, `rounds` times: a kick goes on to act when it is over, for the joints are
-    still bent. Raises NotDone.
+    It tries every choice after every other, `rounds` times: a kick goes on to act when it is over,
+    for the joints are still bent. Raises NotDone.
     """
     times = round(KICK_S / LOOK_S)
     drive = Drive(train, seed)
@@ -125,7 +140,9 @@ def plan(effects: Array, start: Any, last: int, goal: Array) -> int:
     for number in range(AHEAD):
         # Every plan so far goes on in each way.
         choice = np.tile(CHOICES, len(x))
-        x, y, course, before, cost, first = (np.repeat(values, len(CHOICES)) for values in (x, y, course, before, cost, first))
+        x, y, course, before, cost, first = (
+            np.repeat(values, len(CHOICES)) for values in (x, y, course, before, cost, first)
+        )
         first = choice if number == 0 else first
         ahead, left, turned = np.moveaxis(effects[before, choice], -1, 0)
         cos, sin = np.cos(course)[:, None], np.sin(course)[:, None]

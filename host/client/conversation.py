@@ -1,4 +1,7 @@
-"""The host's side of the protocol, without any I/O: what to send, and what the bytes that came in mean."""
+"""The host's side of the protocol, without any I/O.
+
+What to send, and what the bytes that came in mean.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,15 @@ from robot import wire
 from robot.record import Record, unpack
 
 _MAX_UNCLAIMED = 64
-_HELLO_FIELDS = {"boot": str, "software": str, "machine": str, "seed": int, "tick": int, "oldest_tick": int, "clock_s": float}
+_HELLO_FIELDS = {
+    "boot": str,
+    "software": str,
+    "machine": str,
+    "seed": int,
+    "tick": int,
+    "oldest_tick": int,
+    "clock_s": float,
+}
 
 
 class Samples(NamedTuple):
@@ -23,7 +34,10 @@ class Samples(NamedTuple):
 
 
 class Conversation:
-    """One robot's answers, in order. `session` counts how often it was begun anew; answers belong to the session they came in."""
+    """One robot's answers, in order. `session` counts how often it was begun anew.
+
+    Answers belong to the session they came in.
+    """
 
     def __init__(self, token: bytes | None, name: str, client: str) -> None:
         self.token = token
@@ -54,12 +68,19 @@ class Conversation:
     def hello_frame(self) -> bytes:
         """What the host says first."""
         self._nonce = os.urandom(wire.NONCE_BYTES)
-        message = {"protocol": wire.PROTOCOL, "name": self._name, "client": self._client, "nonce": self._nonce.hex()}
+        message = {
+            "protocol": wire.PROTOCOL,
+            "name": self._name,
+            "client": self._client,
+            "nonce": self._nonce.hex(),
+        }
         return _bytes(wire.encode_json(wire.HELLO, message))
 
     def auth_frame(self) -> bytes:
         """The proof that the host has the token."""
-        self._handshake = wire.Handshake(self.token, self._nonce, bytes.fromhex(self.hello["nonce"]))
+        self._handshake = wire.Handshake(
+            self.token, self._nonce, bytes.fromhex(self.hello["nonce"])
+        )
         return _bytes(wire.encode_json(wire.AUTH, {"proof": self._handshake.host_proof.hex()}))
 
     def stop_frame(self) -> tuple[None, bytes]:
@@ -73,14 +94,22 @@ class Conversation:
         try:
             body = wire.dump({"id": self._number, "do": command, **arguments})
         except ValueError as error:
-            raise WrongUse(f"'{command}' was given NaN or an infinity, which is no value for anything", "give finite numbers") from error
+            raise WrongUse(
+                f"'{command}' was given NaN or an infinity, which is no value for anything",
+                "give finite numbers",
+            ) from error
         if not sealed:
             return self._number, _bytes(wire.encode(wire.ASK, body))
         self._counter += 1
-        return self._number, _bytes(wire.encode(wire.COMMAND, wire.seal(self._handshake.key, self._counter, body)))
+        return self._number, _bytes(
+            wire.encode(wire.COMMAND, wire.seal(self._handshake.key, self._counter, body))
+        )
 
     def answer(self, number: int | None) -> dict[str, Any] | None:
-        """The result that answers request `number`, None if it has not come. Raises the error that came instead."""
+        """The result that answers request `number`, None if it has not come.
+
+        Raises the error that came instead.
+        """
         message = self._answers.pop(number, None)
         if message is None:
             self.raise_refusal()
@@ -97,7 +126,10 @@ class Conversation:
             raise from_robot(refusal)
 
     def feed(self, data: bytes) -> Iterator[dict[str, Any] | Samples]:
-        """Take in bytes; yields the events and the records among what they complete, in order. Raises NoLink if it is no robot."""
+        """Take in bytes; yields the events and the records among what they complete, in order.
+
+        Raises NoLink if it is no robot.
+        """
         self._decoder.feed(data)
         return iter(list(self._messages()))
 
@@ -112,18 +144,32 @@ class Conversation:
                     yield _checked_event(wire.load(payload))
                 else:
                     self._control(kind, wire.load(payload))
-            except (wire.BadMessage, ValueError, KeyError, TypeError, AttributeError, struct.error) as error:
-                raise NoLink(f"the robot sends what this release does not understand: {error}", "run the same release on both") from error
+            except (
+                wire.BadMessage,
+                ValueError,
+                KeyError,
+                TypeError,
+                AttributeError,
+                struct.error,
+            ) as error:
+                raise NoLink(
+                    f"the robot sends what this release does not understand: {error}",
+                    "run the same release on both",
+                ) from error
 
     def _control(self, kind: int, message: dict[str, Any]) -> None:
         if kind == wire.HELLO:
             if message["host_nonce"] == self._nonce.hex():
                 bytes.fromhex(message["nonce"])
-                self.hello = {**message, **{name: of_type(message[name]) for name, of_type in _HELLO_FIELDS.items()}}
+                self.hello = {
+                    **message,
+                    **{name: of_type(message[name]) for name, of_type in _HELLO_FIELDS.items()},
+                }
         elif kind == wire.AUTH and self._handshake is not None:
             if not wire.same(bytes.fromhex(str(message.get("proof"))), self._handshake.robot_proof):
                 raise RefusedByRobot(
-                    "this robot does not have the token either: it may be another one", "check its address and the token file"
+                    "this robot does not have the token either: it may be another one",
+                    "check its address and the token file",
                 )
             self.trusted = True
         elif kind == wire.REPLY:

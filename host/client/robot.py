@@ -4,7 +4,8 @@
         robot.kick("phase", ticks=4)
         log = robot.record(5)
 
-Calls block. Links to real robots are kept alive by a thread between calls; an embedded robot's time passes only within them.
+Calls block. Links to real robots are kept alive by a thread between calls; an embedded robot's time
+passes only within them.
 """
 
 from __future__ import annotations
@@ -45,19 +46,27 @@ _RECENT_RECORDS = 400
 
 
 def connect(
-    uri: str | None = None, seed: int | None = None, token: str | None = None, name: str = "kickctl", *, observe: bool = False
+    uri: str | None = None,
+    seed: int | None = None,
+    token: str | None = None,
+    name: str = "kickctl",
+    *,
+    observe: bool = False,
 ) -> Robot:
     """The robot at `uri`: by default $KICK_BRICK, or the embedded simulated robot.
 
-    seed fixes all chances of the simulated robot; token is the path of the token file. To observe, which needs no token, is to look,
-    and to stop the robot if need be. Raises KickctlError.
+    seed fixes all chances of the simulated robot; token is the path of the token file. To observe,
+    which needs no token, is to look, and to stop the robot if need be. Raises KickctlError.
     """
     link = make_link(uri or os.environ.get("KICK_BRICK") or SIM, seed)
     return Robot(link, None if observe else find_token(link, token), name)
 
 
 def find_token(link: Link, path: str | None = None) -> bytes | None:
-    """The token for a link: its own if it has one, else the file's; None if there is no default file. Raises RefusedByRobot."""
+    """The token for a link: its own if it has one, else the file's.
+
+    None if there is no default file. Raises RefusedByRobot.
+    """
     own: bytes | None = getattr(link, "token", None)
     if own is not None:
         return own
@@ -67,7 +76,9 @@ def find_token(link: Link, path: str | None = None) -> bytes | None:
     try:
         secret: bytes = load(chosen)
     except TokenError as error:
-        raise RefusedByRobot(str(error), "name another token file by --token, or leave it to the default place") from error
+        raise RefusedByRobot(
+            str(error), "name another token file by --token, or leave it to the default place"
+        ) from error
     return secret
 
 
@@ -102,7 +113,12 @@ class Robot:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self.close()
 
     def close(self) -> None:
@@ -159,7 +175,10 @@ class Robot:
         return self._control("set", set=changes)
 
     def kick(self, mode: str, **details: Any) -> int:
-        """Kick: mode and the fields of robot.kicks.parse (ticks, wheel, shift, ...). Returns the tick in which it began."""
+        """Kick: mode and the fields of robot.kicks.parse (ticks, wheel, shift, ...).
+
+        Returns the tick in which it began.
+        """
         kick = {"id": uuid.uuid4().hex, "mode": mode}
         kick.update((name, value) for name, value in details.items() if value is not None)
         return self._control("kick", kick=kick)
@@ -179,7 +198,9 @@ class Robot:
     def wait(self, seconds: float, until: Callable[[], bool] | None = None) -> bool:
         """Let `seconds` of the robot's time pass, as counted by its records, or until `until()` is true. Returns whether it was."""
         if not seconds >= 0.0:
-            raise WrongUse(f"nobody can wait for {seconds!r} s", "give a number of seconds, 0 or more")
+            raise WrongUse(
+                f"nobody can wait for {seconds!r} s", "give a number of seconds, 0 or more"
+            )
         self._subscribe()
         first = self.newest
         silent_since = self.link.now()
@@ -193,7 +214,10 @@ class Robot:
             if self.pump(HEARTBEAT_S):
                 silent_since = self.link.now()
             elif self.link.now() - silent_since > ANSWER_S + RECONNECT_S:
-                raise NoLink("the robot sends no more records", "look at its screen; `kickctl doctor` tells more")
+                raise NoLink(
+                    "the robot sends no more records",
+                    "look at its screen; `kickctl doctor` tells more",
+                )
         return True
 
     @property
@@ -222,7 +246,9 @@ class Robot:
     def pull(self, tap: Tap) -> None:
         """Feed a tap with everything that the robot's black box holds, up to now."""
         with self._lock:
-            self._request("unsubscribe")  # its answer comes behind the last record of the subscription that there was
+            self._request(
+                "unsubscribe"
+            )  # its answer comes behind the last record of the subscription that there was
             until = self._request("status")["tick"]
             self._place.begin(0)
             self._subscribe_due = 0.0
@@ -235,7 +261,10 @@ class Robot:
         return origin(self.link.uri, self.hello, self.status(), self.clock_zero_s, self.started_utc)
 
     def pump(self, timeout_s: float) -> bool:
-        """Take in what the robot has sent, waiting up to timeout_s for it. Returns whether anything came."""
+        """Take in what the robot has sent, waiting up to timeout_s for it.
+
+        Returns whether anything came.
+        """
         with self._lock:
             if self._broken is not None:
                 raise self._broken
@@ -253,9 +282,15 @@ class Robot:
         if self._leased and now >= self._heartbeat_due:
             self._heartbeat_due = now + HEARTBEAT_S
             self.link.send(self._talk.request("heartbeat", {}, sealed=True)[1])
-        if self._place.next_tick is not None and not self._place.following and now >= self._subscribe_due:
+        if (
+            self._place.next_tick is not None
+            and not self._place.following
+            and now >= self._subscribe_due
+        ):
             self._subscribe_due = now + RESUBSCRIBE_S
-            self.link.send(self._talk.request("subscribe", {"from": self._place.next_tick}, sealed=False)[1])
+            self.link.send(
+                self._talk.request("subscribe", {"from": self._place.next_tick}, sealed=False)[1]
+            )
 
     def _control(self, command: str, **arguments: Any) -> int:
         if not self._leased:
@@ -263,21 +298,30 @@ class Robot:
         try:
             return int(self._request(command, arguments, sealed=True)["tick"])
         except LeaseLost:
-            # The robot took this host for lost while the link was silent; what was refused has changed nothing.
+            # The robot took this host for lost while the link was silent; what was refused has
+            # changed nothing.
             self.lease()
             return int(self._request(command, arguments, sealed=True)["tick"])
 
-    def _request(self, command: str, arguments: dict[str, Any] | None = None, sealed: bool = False) -> dict[str, Any]:
+    def _request(
+        self, command: str, arguments: dict[str, Any] | None = None, sealed: bool = False
+    ) -> dict[str, Any]:
         """The robot's answer. A request that a broken link swallowed is sent again over the new one."""
         with self._lock:
             if sealed and not self._talk.trusted:
                 raise RefusedByRobot(
-                    "this machine does not have the robot's token, so it may only look, and stop the robot",
-                    f"`./deploy.sh` gives it to both; or copy the robot's token file to {default_path()}, mode 600",
+                    "this machine does not have the robot's token, so it may only look, and stop"
+                    " the robot",
+                    "`./deploy.sh` gives it to both; or copy the robot's token file to"
+                    f" {default_path()}, mode 600",
                 )
-            return self._exchange(lambda: self._talk.request(command, arguments or {}, sealed), command, ANSWER_S)
+            return self._exchange(
+                lambda: self._talk.request(command, arguments or {}, sealed), command, ANSWER_S
+            )
 
-    def _exchange(self, make: Callable[[], tuple[int | None, bytes]], what: str | None, patience_s: float) -> dict[str, Any]:
+    def _exchange(
+        self, make: Callable[[], tuple[int | None, bytes]], what: str | None, patience_s: float
+    ) -> dict[str, Any]:
         if self._broken is not None:
             raise self._broken
         while True:
@@ -294,7 +338,10 @@ class Robot:
                 if answer is not None:
                     return answer
                 if self.link.now() > until:
-                    raise NoLink(f"the robot does not answer to '{what or 'stop'}'", "is its program alive? look at its screen")
+                    raise NoLink(
+                        f"the robot does not answer to '{what or 'stop'}'",
+                        "is its program alive? look at its screen",
+                    )
                 self.pump(min(HEARTBEAT_S, patience_s))
 
     def _open(self) -> None:
@@ -311,7 +358,10 @@ class Robot:
                 self._retake_lease()
         except LinkLost as error:
             self._talk.raise_refusal()
-            raise NoLink(f"the robot at {self.link.uri} hung up: {error}", "is another program listening at that port?") from error
+            raise NoLink(
+                f"the robot at {self.link.uri} hung up: {error}",
+                "is another program listening at that port?",
+            ) from error
 
     def _await(self, arrived: Callable[[], bool]) -> None:
         until = self.link.now() + float(getattr(self.link, "answer_s", ANSWER_S))
@@ -319,7 +369,8 @@ class Robot:
             if self.link.now() > until:
                 raise NoLink(
                     f"nothing that speaks this protocol answers at {self.link.uri}",
-                    "is it the robot's port? If so, its program hangs, and its watchdog has stopped the motors",
+                    "is it the robot's port? If so, its program hangs, and its watchdog has stopped"
+                    " the motors",
                 )
             self._talk.feed(self.link.receive(HEARTBEAT_S))
             self._talk.raise_refusal()
@@ -328,7 +379,9 @@ class Robot:
         """Find the robot again, to go on in its record where the link broke."""
         if self._broken is not None:
             raise self._broken
-        self.on_trouble(f"the link to {self.link.uri} broke; looking for the robot for {RECONNECT_S:g} s")
+        self.on_trouble(
+            f"the link to {self.link.uri} broke; looking for the robot for {RECONNECT_S:g} s"
+        )
         until = self.link.now() + RECONNECT_S
         pause = 0.05
         while True:
@@ -336,8 +389,14 @@ class Robot:
                 self._open()
                 break
             except NoLink as error:
-                if self._closed.wait(0.0 if self.link.virtual else pause) or self.link.now() >= until:
-                    self._broken = NoLink(f"the link to {self.link.uri} broke and did not come back: {error.message}", error.hint)
+                if (
+                    self._closed.wait(0.0 if self.link.virtual else pause)
+                    or self.link.now() >= until
+                ):
+                    self._broken = NoLink(
+                        f"the link to {self.link.uri} broke and did not come back: {error.message}",
+                        error.hint,
+                    )
                     raise self._broken from error
                 pause = min(1.0, 2.0 * pause)
         self._place.interrupt()
@@ -347,7 +406,14 @@ class Robot:
             self.clock_zero_s = self._clock_zero()
             if self._place.next_tick is not None:
                 self._place.begin(self.hello["oldest_tick"])
-            self._tell({"event": "restart", "tick": 0, "boot": self.hello["boot"], "clock_zero_s": self.clock_zero_s})
+            self._tell(
+                {
+                    "event": "restart",
+                    "tick": 0,
+                    "boot": self.hello["boot"],
+                    "clock_zero_s": self.clock_zero_s,
+                }
+            )
 
     def _retake_lease(self) -> None:
         number, frame = self._talk.request("lease", {}, sealed=True)
@@ -389,7 +455,9 @@ class Robot:
         while not self._closed.wait(HEARTBEAT_S / 2):
             if self._lock.acquire(blocking=False):
                 try:
-                    if not self._closed.is_set() and (self._leased or self._place.next_tick is not None):
+                    if not self._closed.is_set() and (
+                        self._leased or self._place.next_tick is not None
+                    ):
                         while self.pump(0.0):
                             pass
                 except KickctlError:

@@ -1,4 +1,7 @@
-"""How far a client has followed a robot's stream. Every record and event passes once and in order, whatever the link repeats or loses."""
+"""How far a client has followed a robot's stream.
+
+Every record and event passes once and in order, whatever the link repeats or loses.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,12 @@ Event = dict[str, Any]
 
 
 class Subscription:
-    """The place in the stream up to which everything has been taken: `next_tick`, None before the first subscription.
+    """The place in the stream up to which everything has been taken.
 
-    `following` is whether what arrives now continues it; if it is not, only a new subscription from `next_tick` helps.
+    `next_tick`, None before the first subscription.
+
+    `following` is whether what arrives now continues it; if it is not, only a new subscription from
+    `next_tick` helps.
     """
 
     def __init__(self) -> None:
@@ -34,8 +40,15 @@ class Subscription:
         self.following = False
 
     def snapshot(self) -> Event | None:
-        """What is in force at this place, as an event of the stream; None if that is still to come."""
-        return None if self._state is None or self.next_tick is None else self._state.as_event(self.next_tick)
+        """What is in force at this place, as an event of the stream.
+
+        None if that is still to come.
+        """
+        return (
+            None
+            if self._state is None or self.next_tick is None
+            else self._state.as_event(self.next_tick)
+        )
 
     def take_event(self, event: Event) -> Event | None:
         """The event if it is the next one of the stream, else None."""
@@ -55,7 +68,12 @@ class Subscription:
     def take_samples(self, samples: Samples) -> list[Record]:
         """Those of the records that are the next ones of the stream."""
         records = samples.records
-        if not self.following or self.next_tick is None or not records or records[-1].tick < self.next_tick:
+        if (
+            not self.following
+            or self.next_tick is None
+            or not records
+            or records[-1].tick < self.next_tick
+        ):
             return []
         if records[0].tick > self.next_tick or samples.next_event != self._next_event:
             self.following = False

@@ -11,11 +11,21 @@ def _seed(text: str) -> int:
 
 def common(*, defaults: bool) -> argparse.ArgumentParser:
     """A parent parser. The options may stand before or after the verb, so only one of the places may set defaults."""
-    parser = argparse.ArgumentParser(add_help=False, argument_default=None if defaults else argparse.SUPPRESS)
+    parser = argparse.ArgumentParser(
+        add_help=False, argument_default=None if defaults else argparse.SUPPRESS
+    )
     group = parser.add_argument_group("which robot, and how to answer")
-    group.add_argument("--brick", metavar="URI", help="sim://, tcp://HOST[:PORT], ssh://USER@HOST or serial:///dev/DEVICE")
-    group.add_argument("--seed", type=_seed, metavar="N", help="fixes all chances of the simulated robot")
+    group.add_argument(
+        "--brick",
+        metavar="URI",
+        help="sim://, tcp://HOST[:PORT], ssh://USER@HOST or serial:///dev/DEVICE",
+    )
+    group.add_argument(
+        "--seed", type=_seed, metavar="N", help="fixes all chances of the simulated robot"
+    )
     group.add_argument("--token", metavar="FILE", help="the robot's token file")
     off = False if defaults else argparse.SUPPRESS
-    group.add_argument("--json", action="store_true", default=off, help="answer in JSON on standard output")
+    group.add_argument(
+        "--json", action="store_true", default=off, help="answer in JSON on standard output"
+    )
     return parser

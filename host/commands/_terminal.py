@@ -1,4 +1,7 @@
-"""How verbs reach a robot and speak to people: words on standard error, results on standard output."""
+"""How verbs reach a robot and speak to people.
+
+Words on standard error, results on standard output.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +31,13 @@ def show(result: object) -> None:
 
 
 @contextmanager
-def robot_of(options: argparse.Namespace, *, moves: bool = False, observe: bool = False) -> Iterator[Robot]:
-    """The robot that the options name; says so if it is the simulated one. If the verb `moves` it, ^C stops its motors."""
+def robot_of(
+    options: argparse.Namespace, *, moves: bool = False, observe: bool = False
+) -> Iterator[Robot]:
+    """The robot that the options name; says so if it is the simulated one.
+
+    If the verb `moves` it, ^C stops its motors.
+    """
     with connect(options.brick, options.seed, options.token, observe=observe) as robot:
         robot.on_trouble = say
         if robot.link.virtual:
@@ -61,17 +69,26 @@ def tell(summary: dict[str, Any]) -> None:
         print(name, f"{value:.10g}" if isinstance(value, float) else value)
     table = Path(summary["table"])
     told = [("table", table), ("numbers", table.with_name("summary.json"))]
-    for kind, path in (*told, *(("figure", path) for path in summary["figures"][:1]), *(("file", path) for path in summary["files"])):
+    for kind, path in (
+        *told,
+        *(("figure", path) for path in summary["figures"][:1]),
+        *(("file", path) for path in summary["files"]),
+    ):
         print(kind, path)
 
 
 def _told(numbers: Any) -> Iterator[tuple[str, Any]]:
     """The single ones of a run's numbers, and those in its "accuracy", (name, value)."""
     if isinstance(numbers, dict):
-        yield from ((name, value) for name, value in numbers.items() if isinstance(value, int | float | str))
+        yield from (
+            (name, value) for name, value in numbers.items() if isinstance(value, int | float | str)
+        )
         for name, value in numbers.get("accuracy", {}).items():
             inner = value if isinstance(value, dict) else {"": value}
-            yield from ((f"accuracy: {' '.join(filter(None, (name, key)))}", part) for key, part in inner.items())
+            yield from (
+                (f"accuracy: {' '.join(filter(None, (name, key)))}", part)
+                for key, part in inner.items()
+            )
 
 
 @contextmanager

@@ -8,16 +8,35 @@ from typing import Any
 from host.commands._terminal import say, show
 from host.errors import KickctlError
 
-HELP = "a simulated car, or a train of cars that nobody steers: one rod and one neuron for each wheel, in MuJoCo"
+HELP = (
+    "a simulated car, or a train of cars that nobody steers: one rod and one neuron for each wheel,"
+    " in MuJoCo"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The body, where it is, and what to make of it."""
     parser.add_argument("body", choices=("car", "train"), help="one car, or a train")
     parser.add_argument("--cars", type=int, metavar="N", help="how long the train is (default 5)")
-    parser.add_argument("--scene", default="flat", metavar="NAME", help="where it is, or your own NAME.xml (default %(default)s)")
-    parser.add_argument("--time", type=float, default=30.0, metavar="S", help="how long, in simulated seconds (default %(default)s)")
-    parser.add_argument("--preset", default="paper", metavar="NAME", help="paper or snake2019: sizes, masses, drag, controller")
+    parser.add_argument(
+        "--scene",
+        default="flat",
+        metavar="NAME",
+        help="where it is, or your own NAME.xml (default %(default)s)",
+    )
+    parser.add_argument(
+        "--time",
+        type=float,
+        default=30.0,
+        metavar="S",
+        help="how long, in simulated seconds (default %(default)s)",
+    )
+    parser.add_argument(
+        "--preset",
+        default="paper",
+        metavar="NAME",
+        help="paper or snake2019: sizes, masses, drag, controller",
+    )
     for name, words in (
         ("a", "gain of the neurons"),
         ("k", "spring constant of the rods, N"),
@@ -28,20 +47,40 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument("--" + name, type=float, metavar="X", help=words)
     parser.add_argument(
-        "--start", choices=("pushed", "random"), help="wheels: all pushed forward (default of a car), or at random angles (of a train)"
+        "--start",
+        choices=("pushed", "random"),
+        help="wheels: all pushed forward (default of a car), or at random angles (of a train)",
     )
-    parser.add_argument("--bouncy", action="store_true", help="walls that throw back, as the authors' did")
+    parser.add_argument(
+        "--bouncy", action="store_true", help="walls that throw back, as the authors' did"
+    )
     parser.add_argument(
         "--kick",
         action="append",
         default=[],
         metavar="WORDS",
-        help='as in "t=5,mode=membrane,wheel=all"; also seconds, shift, param, value ...; may be given more than once',
+        help=(
+            'as in "t=5,mode=membrane,wheel=all"; also seconds, shift, param, value ...; may be'
+            " given more than once"
+        ),
     )
     parser.add_argument("--film", type=Path, metavar="FILE", help="a film of it, .mp4 or .gif")
-    parser.add_argument("--live", action="store_true", help="watch it in MuJoCo's viewer, in real time")
-    parser.add_argument("--model", type=Path, metavar="FILE", help="also write the scene with the cars as MJCF, for any viewer")
-    parser.add_argument("--out", type=Path, default=Path("results"), metavar="FOLDER", help="where results go (default %(default)s)")
+    parser.add_argument(
+        "--live", action="store_true", help="watch it in MuJoCo's viewer, in real time"
+    )
+    parser.add_argument(
+        "--model",
+        type=Path,
+        metavar="FILE",
+        help="also write the scene with the cars as MJCF, for any viewer",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("results"),
+        metavar="FOLDER",
+        help="where results go (default %(default)s)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -54,7 +93,10 @@ def run(options: argparse.Namespace) -> int:
     if not 0.01 <= options.time <= 36000.0:
         raise WrongUse(f"time cannot be {options.time!r}", "give seconds, from 0.01 to 36000")
     cars = 1 if options.body == "car" else CARS_OF_A_TRAIN if options.cars is None else options.cars
-    numbers = {name: getattr(options, name) for name in ("a", "k", "tau", "drag", "angle", "torque", "bouncy", "start")}
+    numbers = {
+        name: getattr(options, name)
+        for name in ("a", "k", "tau", "drag", "angle", "torque", "bouncy", "start")
+    }
     seed = 1 if options.seed is None else options.seed
     asked = Asked(cars=cars, scene=options.scene, preset=options.preset, seed=seed, **numbers)
     spec = spec_of(asked)
@@ -63,7 +105,10 @@ def run(options: argparse.Namespace) -> int:
         options.model.write_text(spec.to_xml(), encoding="utf-8")
     pushes = [push_of(words, body.wheels) for words in options.kick]
     if any(push.t_s >= options.time for push in pushes):
-        raise WrongUse(f"a kick comes after the {options.time:g} s that are simulated", "kick earlier, or give a longer --time")
+        raise WrongUse(
+            f"a kick comes after the {options.time:g} s that are simulated",
+            "kick earlier, or give a longer --time",
+        )
     summary = _run(options, asked._asdict(), body, pushes)
     if options.json:
         show(summary)
@@ -72,7 +117,9 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _run(options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: list[Any]) -> dict[str, Any]:
+def _run(
+    options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: list[Any]
+) -> dict[str, Any]:
     """Run it, and write everything, also if it is interrupted or cannot be followed."""
     from contextlib import ExitStack
 
@@ -87,7 +134,9 @@ def _run(options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: 
         watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
         folder.mkdir(parents=True, exist_ok=True)
         try:
-            advance = stack.enter_context(progress(f"{options.body}, simulated seconds", options.time))
+            advance = stack.enter_context(
+                progress(f"{options.body}, simulated seconds", options.time)
+            )
 
             def watch(time_s: float) -> None:
                 advance(time_s)
@@ -128,16 +177,24 @@ def _write(folder: Path, info: dict[str, Any], body: Any, pushes: list[Any]) -> 
     figure = draw(body.columns, rows, summary, [push.t_s for push in pushes])
     for ending in ("png", "svg"):
         figure.savefig(folder / f"body.{ending}")
-    (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (folder / "summary.json").write_text(
+        json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8"
+    )
     return summary
 
 
 def _tell(summary: dict[str, Any]) -> None:
     times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
-    print(f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter {summary['order_parameter']:.3f}")
+    print(
+        f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter"
+        f" {summary['order_parameter']:.3f}"
+    )
     print(f"{len(summary['reversals'])} reversals" + (f", at {times} s" if times else ""))
     if summary["stuck"]:
-        print("in the end it stays where it is: it rests, turns on the spot, or is held; another --start, --seed or --kick may move it")
+        print(
+            "in the end it stays where it is: it rests, turns on the spot, or is held; another"
+            " --start, --seed or --kick may move it"
+        )
     if summary["flipped"]:
         print("a car fell over")
     for name in ("body.png", "state.csv", "state.mcap"):

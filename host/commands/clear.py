@@ -16,5 +16,9 @@ def run(options: argparse.Namespace) -> int:
     with robot_of(options) as robot:
         reason = robot.status()["reason"]
         tick = robot.clear()
-        answer(options, {"state": "stopped", "tick": tick, "was": reason}, f"fault cleared ({reason}); start the robot by `kickctl start`")
+        answer(
+            options,
+            {"state": "stopped", "tick": tick, "was": reason},
+            f"fault cleared ({reason}); start the robot by `kickctl start`",
+        )
     return 0

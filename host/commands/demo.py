@@ -4,7 +4,10 @@ import argparse
 
 from host.commands._terminal import recorded, robot_of, say, show
 
-HELP = "the main job, from a random start to a kick that reverses the robot, with the paper's claims measured on the way"
+HELP = (
+    "the main job, from a random start to a kick that reverses the robot, with the paper's claims"
+    " measured on the way"
+)
 
 STARTS = 10
 INVERSIONS = 50
@@ -15,7 +18,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run all of it into one log; 1 if the kick did not reverse the robot or a claim did not hold."""
+    """Run all of it into one log.
+
+    1 if the kick did not reverse the robot or a claim did not hold.
+    """
     from host.figures.robot.kick import KICK_WINDOW_S, draw
     from host.kicking import manoeuvres as showing
     from host.kicking.outcome import describe, kick_and_watch, title
@@ -23,14 +29,20 @@ def run(options: argparse.Namespace) -> int:
     from host.runs import claims
     from host.util.progress import progress
 
-    with robot_of(options, moves=True) as robot, recorded(robot, "demo") as (log, path), progress("demo", 4) as advance:
+    with (
+        robot_of(options, moves=True) as robot,
+        recorded(robot, "demo") as (log, path),
+        progress("demo", 4) as advance,
+    ):
         say("driving forward ...")
         if robot.status()["state"] != "running":
             robot.start()
         drive(robot, log, "forward")
         rolling = showing.steady(robot, log)
         outcome = kick_and_watch(robot, log, "phase", ticks=4)
-        figure = draw(log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick)
+        figure = draw(
+            log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick
+        )
         advance(1)
         say(f"starting {STARTS} times from random potentials ...")
         starts = showing.starts(robot, log, STARTS)

@@ -16,7 +16,13 @@ no robot has answered. What to try:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """How long to listen."""
-    parser.add_argument("--seconds", type=float, default=4.0, metavar="S", help="how long to listen (default %(default)s)")
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=4.0,
+        metavar="S",
+        help="how long to listen (default %(default)s)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

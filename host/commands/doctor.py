@@ -44,7 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Examine without moving anything; 1 if something needs mending, or the status of the error that hides the robot."""
+    """Examine without moving anything.
+
+    1 if something needs mending, or the status of the error that hides the robot.
+    """
     findings = [*_machine(), *_token(options.token)]
     status = 0
     try:
@@ -54,7 +57,12 @@ def run(options: argparse.Namespace) -> int:
         findings.append(Finding("robot", error.message, error.hint or "see above"))
         status = error.status
     if options.json:
-        show({"findings": [asdict(finding) for finding in findings], "well": not any(finding.remedy for finding in findings)})
+        show(
+            {
+                "findings": [asdict(finding) for finding in findings],
+                "well": not any(finding.remedy for finding in findings),
+            }
+        )
     else:
         for finding in findings:
             print(
@@ -65,11 +73,23 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _machine() -> Iterator[Finding]:
-    yield Finding("Python", platform.python_version(), "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer")
+    yield Finding(
+        "Python",
+        platform.python_version(),
+        "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer",
+    )
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
-    yield Finding("libraries", f"missing: {', '.join(absent)}" if absent else "all there", "run: make setup" if absent else "")
+    yield Finding(
+        "libraries",
+        f"missing: {', '.join(absent)}" if absent else "all there",
+        "run: make setup" if absent else "",
+    )
     free = shutil.disk_usage(Path.cwd()).free
-    yield Finding("disk", f"{free / 1e9:.1f} GB free here", "" if free > LEAST_DISK_BYTES else "logs need room: delete what is old")
+    yield Finding(
+        "disk",
+        f"{free / 1e9:.1f} GB free here",
+        "" if free > LEAST_DISK_BYTES else "logs need room: delete what is old",
+    )
 
 
 def _token(path: str | None) -> Iterator[Finding]:
@@ -89,7 +109,11 @@ def _robot(robot: Robot) -> Iterator[Finding]:
     hello = robot.hello
     same = hello["software"] == __version__
     yield Finding("robot", f"{robot.link.uri}, {hello['machine']}")
-    yield Finding("software", f"host {__version__}, robot {hello['software']}", "" if same else "run the same release on both")
+    yield Finding(
+        "software",
+        f"host {__version__}, robot {hello['software']}",
+        "" if same else "run the same release on both",
+    )
     yield Finding(
         "access",
         "token accepted" if robot.trusted else "no token: may look, and stop the robot",
@@ -103,11 +127,16 @@ def _robot(robot: Robot) -> Iterator[Finding]:
     slow = statistics.median(delays) > 100.0
     yield Finding(
         "link",
-        f"an answer takes {statistics.median(delays):.1f} ms (median of {PINGS}), {max(delays):.1f} ms at most",
+        f"an answer takes {statistics.median(delays):.1f} ms (median of {PINGS}), {max(delays):.1f}"
+        " ms at most",
         "use a cable, or come nearer" if slow else "",
     )
     fault = status["state"] == "fault"
-    yield Finding("state", f"{status['state']} ({status['reason']})", "mend the cause, then: kickctl clear" if fault else "")
+    yield Finding(
+        "state",
+        f"{status['state']} ({status['reason']})",
+        "mend the cause, then: kickctl clear" if fault else "",
+    )
     yield _battery(status["battery_v"])
     yield _punctuality(status)
 
@@ -127,5 +156,16 @@ def _punctuality(status: dict[str, Any]) -> Finding:
         if seen >= 0.99 * total:
             break
     missed = status["missed"] / max(1, total)
-    text = f"99 % of {total} ticks began within {1000 * bound:g} ms; {status['missed']} missed, {status['overruns']} overrun"
-    return Finding("ticks", text, "something else keeps the robot busy; or choose a longer tick_s" if missed > MANY_MISSED else "")
+    text = (
+        f"99 % of {total} ticks began within {1000 * bound:g} ms; {status['missed']} missed,"
+        f" {status['overruns']} overrun"
+    )
+    return Finding(
+        "ticks",
+        text,
+        (
+            "something else keeps the robot busy; or choose a longer tick_s"
+            if missed > MANY_MISSED
+            else ""
+        ),
+    )

@@ -9,7 +9,9 @@ HELP = "bring the robot into a motion primitive by kicks, or to rest by k"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The primitive."""
-    parser.add_argument("primitive", choices=("forward", "backward", "spin-left", "spin-right", "stopped"))
+    parser.add_argument(
+        "primitive", choices=("forward", "backward", "spin-left", "spin-right", "stopped")
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -28,9 +30,17 @@ def run(options: argparse.Namespace) -> int:
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
     if result["k"] != result["k_before"]:
         how += f", and k from {result['k_before']:g} to {result['k']:g}"
-    verdict = f"The robot reached {options.primitive}" if result["reached"] else f"The robot did NOT reach {options.primitive}"
-    sentence = f"{verdict}: left {result['after']['left']}, right {result['after']['right']}, by {how}."
-    result["figure"] = str(draw(log, path.with_suffix(".png"), f"Driven to {options.primitive}: {how}"))
+    verdict = (
+        f"The robot reached {options.primitive}"
+        if result["reached"]
+        else f"The robot did NOT reach {options.primitive}"
+    )
+    sentence = (
+        f"{verdict}: left {result['after']['left']}, right {result['after']['right']}, by {how}."
+    )
+    result["figure"] = str(
+        draw(log, path.with_suffix(".png"), f"Driven to {options.primitive}: {how}")
+    )
     if options.json:
         show(result)
     else:

@@ -7,14 +7,19 @@ from host.commands._terminal import say, show, tell
 from host.experiments.registry import TABLE
 from host.runs.registry import add_options, options_given
 
-HELP = "one of the robot's experiments: logs, table, figure, and what the paper claims beside what was measured"
+HELP = (
+    "one of the robot's experiments: logs, table, figure, and what the paper claims beside what was"
+    " measured"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """A name, and that experiment's options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="experiment")
     for name, entry in TABLE.items():
-        own = names.add_parser(name, help=entry.help, description=entry.help, parents=[common(defaults=False)])
+        own = names.add_parser(
+            name, help=entry.help, description=entry.help, parents=[common(defaults=False)]
+        )
         add_options(own, entry)
 
 
@@ -25,7 +30,14 @@ def run(options: argparse.Namespace) -> int:
     name = options.experiment
     arguments = options_given(options, TABLE[name])
     summary = perform(
-        name, options.brick, options.seed, token=options.token, out=options.out, scheduler=options.scheduler, say=say, **arguments
+        name,
+        options.brick,
+        options.seed,
+        token=options.token,
+        out=options.out,
+        scheduler=options.scheduler,
+        say=say,
+        **arguments,
     )
     if options.json:
         show(summary)

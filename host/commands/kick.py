@@ -16,35 +16,76 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The kick, and whether to wait for the right moment."""
     lengths = ", ".join(f"{mode} {ticks}" for mode, ticks in DEFAULT_TICKS.items())
     parser.add_argument("--mode", choices=MODES, required=True, help="which kick")
-    parser.add_argument("--ticks", type=int, metavar="N", help=f"how long, in control periods (default: {lengths})")
-    parser.add_argument("--wheel", choices=(*WHEELS, "both"), default="both", help="which wheel (default %(default)s)")
-    parser.add_argument("--shift", type=parse_angle, metavar="RAD", help="phase: the shift, as in -3pi/4 (default: the sign that reverses)")
-    parser.add_argument("--shape", choices=(RECTANGULAR, SMOOTH), help="course of a pulse (default rectangular)")
+    parser.add_argument(
+        "--ticks", type=int, metavar="N", help=f"how long, in control periods (default: {lengths})"
+    )
+    parser.add_argument(
+        "--wheel",
+        choices=(*WHEELS, "both"),
+        default="both",
+        help="which wheel (default %(default)s)",
+    )
+    parser.add_argument(
+        "--shift",
+        type=parse_angle,
+        metavar="RAD",
+        help="phase: the shift, as in -3pi/4 (default: the sign that reverses)",
+    )
+    parser.add_argument(
+        "--shape", choices=(RECTANGULAR, SMOOTH), help="course of a pulse (default rectangular)"
+    )
     parser.add_argument("--param", choices=sorted(PULSED), help="pulse: the parameter")
     parser.add_argument("--value", type=float, help="pulse: its value at the pulse's height")
     parser.add_argument("--variable", choices=("x1", "x2"), help="jump: the membrane potential")
     parser.add_argument("--delta", type=float, help="jump: how far it jumps")
-    parser.add_argument("--now", action="store_true", help="kick at once, without waiting until the wheels have settled")
+    parser.add_argument(
+        "--now",
+        action="store_true",
+        help="kick at once, without waiting until the wheels have settled",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Kick, write log and figure, and answer; 1 if a kicked wheel did not reverse."""
     from host.figures.robot.kick import KICK_WINDOW_S, draw
-    from host.kicking.outcome import advice, describe, kick_and_watch, require_running, title, wait_settled
+    from host.kicking.outcome import (
+        advice,
+        describe,
+        kick_and_watch,
+        require_running,
+        title,
+        wait_settled,
+    )
 
-    details = {name: getattr(options, name) for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")}
+    details = {
+        name: getattr(options, name)
+        for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")
+    }
     _check(options.mode, options.wheel, details)
     with robot_of(options, moves=True) as robot:
         require_running(robot)
         with recorded(robot, "kick") as (log, path):
             if not options.now and not wait_settled(robot):
-                raise NotDone("the wheels did not settle", "--now kicks all the same; are the parameters those of a steady motion?")
+                raise NotDone(
+                    "the wheels did not settle",
+                    "--now kicks all the same; are the parameters those of a steady motion?",
+                )
             outcome = kick_and_watch(robot, log, options.mode, wheel=options.wheel, **details)
         brick, seed = robot.link.uri, robot.hello["seed"]
     sentence = describe(outcome)
-    figure = draw(log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick)
+    figure = draw(
+        log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick
+    )
     if options.json:
-        show({**outcome.as_dict(), "brick": brick, "seed": seed, "log": str(path), "figure": str(figure)})
+        show(
+            {
+                **outcome.as_dict(),
+                "brick": brick,
+                "seed": seed,
+                "log": str(path),
+                "figure": str(figure),
+            }
+        )
     else:
         print(f"{sentence}\nlog {path}\nfigure {figure}")
     if not outcome.reversed:

@@ -22,21 +22,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     listing = actions.add_parser("list", parents=parents, help="the logs in a folder")
     listing.add_argument("folder", nargs="?", type=Path, help="default: logs/ here")
-    pull = actions.add_parser("pull", parents=parents, help="fetch the last minutes from the robot's black box")
-    pull.add_argument("--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)")
+    pull = actions.add_parser(
+        "pull", parents=parents, help="fetch the last minutes from the robot's black box"
+    )
+    pull.add_argument(
+        "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
+    )
     export = actions.add_parser("export", parents=parents, help="a log as a table")
     export.add_argument("log", type=Path)
     export.add_argument("--format", choices=("csv", "npz"), default="csv")
-    export.add_argument("--out", type=Path, metavar="FILE", help="where to (default: csv to standard output, npz beside the log)")
+    export.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="where to (default: csv to standard output, npz beside the log)",
+    )
     replay = actions.add_parser(
-        "replay", parents=parents, help="feed a log's angles and delta t to the controller again and compare every bit"
+        "replay",
+        parents=parents,
+        help="feed a log's angles and delta t to the controller again and compare every bit",
     )
     replay.add_argument("log", type=Path)
 
 
 def run(options: argparse.Namespace) -> int:
     """Run the action."""
-    return {"list": _list, "pull": _pull, "export": _export, "replay": _replay}[options.action](options)
+    return {"list": _list, "pull": _pull, "export": _export, "replay": _replay}[options.action](
+        options
+    )
 
 
 def _list(options: argparse.Namespace) -> int:
@@ -53,7 +66,10 @@ def _list(options: argparse.Namespace) -> int:
         show([{**row._asdict(), "path": str(row.path)} for row in rows])
         return 0
     for row in rows:
-        print(f"{row.path}  {row.ticks} ticks  {row.seconds:.1f} s  {row.brick}  {row.started_utc[:19]}  {row.note}".rstrip())
+        print(
+            f"{row.path}  {row.ticks} ticks  {row.seconds:.1f} s  {row.brick} "
+            f" {row.started_utc[:19]}  {row.note}".rstrip()
+        )
     if not rows:
         say(f"no logs in {folder}; `kickctl record 10` makes one")
     return 0
@@ -67,7 +83,11 @@ def _pull(options: argparse.Namespace) -> int:
         log = Log(robot.info())
         robot.pull(log)
     path = log.save(options.out or new_path("pull"))
-    answer(options, {"log": str(path), "ticks": len(log)}, f"{len(log)} ticks, {log.seconds:.1f} s, in {path}")
+    answer(
+        options,
+        {"log": str(path), "ticks": len(log)},
+        f"{len(log)} ticks, {log.seconds:.1f} s, in {path}",
+    )
     return 0
 
 
@@ -87,7 +107,9 @@ def _export(options: argparse.Namespace) -> int:
     try:
         path = log.to_csv(out) if options.format == "csv" else log.to_npz(out)
     except OSError as error:
-        raise WrongUse(f"{out} cannot be written: {error.strerror}", "choose another place with --out") from error
+        raise WrongUse(
+            f"{out} cannot be written: {error.strerror}", "choose another place with --out"
+        ) from error
     answer(options, {"table": str(path), "ticks": len(log)}, f"{len(log)} ticks in {path}")
     return 0
 
@@ -110,8 +132,15 @@ def _replay(options: argparse.Namespace) -> int:
         "worst": result.worst,
         "first_mismatch": None if result.first is None else str(result.first),
     }
-    sentence = f"{result.compared} ticks replayed: {_verdict(result)} ({result.not_comparable} not comparable, {missing} missing)"
-    answer(options, facts, sentence + ("; the file is damaged or breaks off after them" if truncated else ""))
+    sentence = (
+        f"{result.compared} ticks replayed: {_verdict(result)} ({result.not_comparable} not"
+        f" comparable, {missing} missing)"
+    )
+    answer(
+        options,
+        facts,
+        sentence + ("; the file is damaged or breaks off after them" if truncated else ""),
+    )
     return 0 if result.reproduced and not truncated else 1
 
 

@@ -17,7 +17,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """List, get or set; a set is checked by the robot and done wholly or not at all."""
     if (options.action == "list") == bool(options.names):
-        raise WrongUse(f"params {options.action} takes {'no names' if options.names else 'at least one name'}", "see kickctl params --help")
+        raise WrongUse(
+            f"params {options.action} takes {'no names' if options.names else 'at least one name'}",
+            "see kickctl params --help",
+        )
     changes = dict(_parse(text) for text in options.names) if options.action == "set" else {}
     with robot_of(options) as robot:
         rows = {row["name"]: row for row in robot.describe("params")}
@@ -29,7 +32,10 @@ def run(options: argparse.Namespace) -> int:
             robot.set(**changes)
         values = robot.status()["params"]
     if options.action == "list":
-        table = [{"name": name, "value": values[name], **{key: row[key] for key in row if key != "name"}} for name, row in rows.items()]
+        table = [
+            {"name": name, "value": values[name], **{key: row[key] for key in row if key != "name"}}
+            for name, row in rows.items()
+        ]
         if options.json:
             show(table)
         else:
@@ -63,6 +69,12 @@ def _print_table(rows: list[dict[str, object]]) -> None:
         table.add_column(heading)
     for row in rows:
         choices = row["choices"]
-        span = ", ".join(map(str, choices)) if isinstance(choices, list) else f"{row['minimum']} to {row['maximum']}"
-        table.add_row(*map(str, (row["name"], row["value"], row["unit"], span, row["default"], row["doc"])))
+        span = (
+            ", ".join(map(str, choices))
+            if isinstance(choices, list)
+            else f"{row['minimum']} to {row['maximum']}"
+        )
+        table.add_row(
+            *map(str, (row["name"], row["value"], row["unit"], span, row["default"], row["doc"]))
+        )
     Console().print(table)

@@ -15,7 +15,9 @@ HELP = "say which kick, and when, would bring each wheel to a direction; nothing
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The direction."""
-    parser.add_argument("--to", choices=("forward", "backward"), required=True, help="where the robot should go")
+    parser.add_argument(
+        "--to", choices=("forward", "backward"), required=True, help="where the robot should go"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -27,9 +29,16 @@ def run(options: argparse.Namespace) -> int:
     with robot_of(options, observe=True) as robot:
         require_running(robot)
         if not wait_settled(robot):
-            raise NotDone("the wheels did not settle, so there is no cycle to kick them out of", "look at k and tau_s: kickctl params list")
+            raise NotDone(
+                "the wheels did not settle, so there is no cycle to kick them out of",
+                "look at k and tau_s: kickctl params list",
+            )
         wheels = {side: _plan(robot, side, options.to) for side in WHEELS}
-        origin = {"params": robot.status()["params"], "brick": robot.link.uri, "seed": robot.hello["seed"]}
+        origin = {
+            "params": robot.status()["params"],
+            "brick": robot.link.uri,
+            "seed": robot.hello["seed"],
+        }
     if options.json:
         show({"to": options.to, "wheels": wheels, **origin})
     else:
@@ -39,7 +48,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
-    """A wheel's heading, phase and speed, and the kick for it: None if it goes as wanted already."""
+    """A wheel's heading, phase and speed, and the kick for it.
+
+    None if it goes as wanted already.
+    """
     from math import pi
 
     from host.kicking.primitives import course, plan
@@ -50,7 +62,11 @@ def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
     params = robot.status()["params"]
     chosen = None if present == wanted else plan(robot, present, wanted, params)
     phi, step = course(robot, side)
-    state = {"heading": present, "phase_rad": phi % (2 * pi), "turns_per_s": step / params["tick_s"] / (2 * pi)}
+    state = {
+        "heading": present,
+        "phase_rad": phi % (2 * pi),
+        "turns_per_s": step / params["tick_s"] / (2 * pi),
+    }
     if chosen is None:
         return {**state, "kick": None}
     return {
@@ -67,7 +83,10 @@ def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
 def _sentence(side: str, wanted: str, found: dict[str, Any]) -> str:
     from math import degrees
 
-    state = f"The {side} wheel is {found['heading']} ({found['turns_per_s']:+.2f} turns/s, phase {degrees(found['phase_rad']):.0f}°)"
+    state = (
+        f"The {side} wheel is {found['heading']} ({found['turns_per_s']:+.2f} turns/s, phase"
+        f" {degrees(found['phase_rad']):.0f}°)"
+    )
     kick = found["kick"]
     if kick is None:
         return f"{state}, as wanted: no kick."
@@ -76,12 +95,19 @@ def _sentence(side: str, wanted: str, found: dict[str, Any]) -> str:
     if found["window_rad"] is not None:
         first, last = (degrees(edge) for edge in found["window_rad"])
         moment = f"at a phase from {first:.0f}° to {last:.0f}°"
-        moment += " (which it does not meet)" if found["wait_ticks"] is None else f", {found['wait_ticks']} ticks from now"
+        moment += (
+            " (which it does not meet)"
+            if found["wait_ticks"] is None
+            else f", {found['wait_ticks']} ticks from now"
+        )
     reason = "no quenched kick is sure at these parameters"
     if found["heading"] == "stopped":
         reason = f"sets a resting wheel going {wanted}"
     elif found["rate"] is not None:
         low, high = found["interval"]
-        reason = f"reversed {found['rate']:.1%} of {found['simulated']} simulated wheels (95 %: {low:.1%} to {high:.1%})"
+        reason = (
+            f"reversed {found['rate']:.1%} of {found['simulated']} simulated wheels (95 %:"
+            f" {low:.1%} to {high:.1%})"
+        )
     ticks = f"{kick['ticks']} tick{'s' if kick['ticks'] > 1 else ''}"
     return f"{state}: {kick['mode']} kick{shift} of {ticks}, {moment}; {reason}."

@@ -14,7 +14,9 @@ HELP = "record every tick of the robot into a log"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """How long, and where to."""
     parser.add_argument("seconds", type=float, help="how long, in the robot's time")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
+    )
 
 
 class Tally:
@@ -41,7 +43,10 @@ class Tally:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record; ^C ends it early, and what was recorded is kept. 5 if the robot fell into a fault meanwhile."""
+    """Record; ^C ends it early, and what was recorded is kept.
+
+    5 if the robot fell into a fault meanwhile.
+    """
     from host.logs.mcap_files import McapTap, new_path
     from host.util.progress import progress
 
@@ -68,8 +73,18 @@ def run(options: argparse.Namespace) -> int:
         if tally.ticks:
             say(f"what was recorded until then, {tally.ticks} ticks, is in {path}")
         raise
-    facts = {"log": str(path), "ticks": tally.ticks, "missing": tally.missing, "restarts": tally.restarts}
-    anew = f"; the robot's program began anew {tally.restarts} times, and what it had not sent by then is lost" if tally.restarts else ""
+    facts = {
+        "log": str(path),
+        "ticks": tally.ticks,
+        "missing": tally.missing,
+        "restarts": tally.restarts,
+    }
+    anew = (
+        f"; the robot's program began anew {tally.restarts} times, and what it had not sent by then"
+        " is lost"
+        if tally.restarts
+        else ""
+    )
     if tally.fault:
         facts["fault"] = tally.fault
         anew += f"\nfault on the robot meanwhile: {printable(tally.fault)}"

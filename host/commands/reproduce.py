@@ -8,13 +8,18 @@ from host.commands._terminal import say, show
 if TYPE_CHECKING:
     from host.runs.claims import Claim
 
-HELP = "all of the paper's claims about the robot and its model, measured: a table and a report with figures"
+HELP = (
+    "all of the paper's claims about the robot and its model, measured: a table and a report with"
+    " figures"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Which claims, and where to."""
     parser.add_argument("--only", metavar="IDS", help="only these claims, as R5,M7")
-    parser.add_argument("--out", default="results", metavar="FOLDER", help="where results go (default %(default)s)")
+    parser.add_argument(
+        "--out", default="results", metavar="FOLDER", help="where results go (default %(default)s)"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -22,7 +27,9 @@ def run(options: argparse.Namespace) -> int:
     from host.perform.reproduce import reproduce
 
     only = [number.strip().upper() for number in options.only.split(",")] if options.only else []
-    done = reproduce(options.brick, options.seed, only, token=options.token, out=options.out, say=say)
+    done = reproduce(
+        options.brick, options.seed, only, token=options.token, out=options.out, say=say
+    )
     if options.json:
         show([claim.as_dict() for claim in done.claims])
     else:
@@ -37,7 +44,13 @@ def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
 
     table = Table("", "claim", "paper", "measured", "", show_lines=True)
     for claim in claims:
-        table.add_row(claim.id, claim.claim, claim.paper, claim.number(), "holds" if claim.holds else "DOES NOT HOLD")
+        table.add_row(
+            claim.id,
+            claim.claim,
+            claim.paper,
+            claim.number(),
+            "holds" if claim.holds else "DOES NOT HOLD",
+        )
     for number in skipped:
         table.add_row(number, "", "", "", "not tried")
     console = Console()

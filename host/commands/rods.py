@@ -10,11 +10,20 @@ HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Where to."""
-    parser.add_argument("--out", type=Path, default=Path("rods.mp4"), metavar="FILE", help="the film, .mp4 or .gif (default %(default)s)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("rods.mp4"),
+        metavar="FILE",
+        help="the film, .mp4 or .gif (default %(default)s)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Kick the robot, keep the log, and draw the left wheel around the kick; 1 if it did not reverse."""
+    """Kick the robot, keep the log, and draw the left wheel around the kick.
+
+    1 if it did not reverse.
+    """
     from host.errors import NotDone
     from host.figures.robot.rods import SIZE, pictures
     from host.films.movie import FPS, Movie
@@ -28,9 +37,18 @@ def run(options: argparse.Namespace) -> int:
             require_running(robot)
             with recorded(robot, "rods") as (log, path):
                 if not wait_settled(robot):
-                    raise NotDone("the wheels did not settle", "are the parameters those of a steady motion?")
+                    raise NotDone(
+                        "the wheels did not settle", "are the parameters those of a steady motion?"
+                    )
                 outcome = kick_and_watch(robot, log, PHASE)
-                robot.wait(max(0.0, WINDOW_S[1] - (log.records[-1].t_s - log.records[log.kicks()[0][0]].t_s) + 0.1))
+                robot.wait(
+                    max(
+                        0.0,
+                        WINDOW_S[1]
+                        - (log.records[-1].t_s - log.records[log.kicks()[0][0]].t_s)
+                        + 0.1,
+                    )
+                )
         shown = course(log, "left", WINDOW_S, 1 / (FPS * SLOWER))
         with progress("drawing", len(shown.t_s)) as advance:
             for picture in pictures(shown, SLOWER):

@@ -14,14 +14,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the status; 5 if the robot is in fault."""
     with robot_of(options) as robot:
-        status = dict(robot.status(), brick=robot.link.uri, seed=robot.hello["seed"], software=robot.hello["software"])
+        status = dict(
+            robot.status(),
+            brick=robot.link.uri,
+            seed=robot.hello["seed"],
+            software=robot.hello["software"],
+        )
     if options.json:
         show(status)
     else:
         battery = "unknown" if status["battery_v"] is None else f"{status['battery_v']:.2f} V"
         print(f"{status['brick']}: {status['state']} ({status['reason']}), tick {status['tick']}")
         print(f"battery {battery}; controlled by {status['controller'] or 'nobody'}")
-        print(f"ticks: {status['missed']} missed, {status['overruns']} overrun, {status['clamped']} delta t clamped; how late they began:")
+        print(
+            f"ticks: {status['missed']} missed, {status['overruns']} overrun, {status['clamped']}"
+            " delta t clamped; how late they began:"
+        )
         edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
         for edge, count in zip([*edges, None], counts, strict=True):
             if count:

@@ -19,6 +19,7 @@ def run(options: argparse.Namespace) -> int:
         answer(
             options,
             {"state": state, "tick": tick},
-            f"motors stopped before tick {tick}; the robot is {'in fault' if state == 'fault' else state}",
+            f"motors stopped before tick {tick}; the robot is"
+            f" {'in fault' if state == 'fault' else state}",
         )
     return 0

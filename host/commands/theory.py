@@ -7,23 +7,40 @@ from host.commands._terminal import say, show, tell
 from host.runs.registry import add_options, options_given
 from host.theory.studies.registry import TABLE
 
-HELP = "the paper's analytic model of a wheel: fixpoints, bifurcations, portraits, phase diagram, chaos, basins"
+HELP = (
+    "the paper's analytic model of a wheel: fixpoints, bifurcations, portraits, phase diagram,"
+    " chaos, basins"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """A name, and that study's options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="study")
     for name, entry in TABLE.items():
-        add_options(names.add_parser(name, help=entry.help, description=entry.help, parents=[common(defaults=False)]), entry)
+        add_options(
+            names.add_parser(
+                name, help=entry.help, description=entry.help, parents=[common(defaults=False)]
+            ),
+            entry,
+        )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it; 1 if a claim does not hold. With --json the numbers stand at the top, unless they are a list, which is all then."""
+    """Run it; 1 if a claim does not hold.
+
+    With --json the numbers stand at the top, unless they are a list, which is all then.
+    """
     from host.perform.run import perform
 
     name = options.study
     summary = perform(
-        name, None, options.seed, out=options.out, scheduler=options.scheduler, say=say, **options_given(options, TABLE[name])
+        name,
+        None,
+        options.seed,
+        out=options.out,
+        scheduler=options.scheduler,
+        say=say,
+        **options_given(options, TABLE[name]),
     )
     if options.json:
         numbers = summary.pop("numbers")

@@ -24,7 +24,12 @@ _SPEED_TICKS = 10
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """How long to watch."""
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="how long, in the robot's time (default: until ^C)")
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=float("inf"),
+        help="how long, in the robot's time (default: until ^C)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -34,7 +39,9 @@ def run(options: argparse.Namespace) -> int:
     from host.commands._terminal import show
 
     if not options.seconds > 0.0:
-        raise WrongUse(f"cannot watch for {options.seconds:g} s", "give a number of seconds above 0")
+        raise WrongUse(
+            f"cannot watch for {options.seconds:g} s", "give a number of seconds above 0"
+        )
     with robot_of(options) as robot:
         robot.wait(REFRESH_S)
         began = robot.recent()[0].t_s
@@ -43,7 +50,9 @@ def run(options: argparse.Namespace) -> int:
                 while robot.recent()[-1].t_s - began < options.seconds:
                     robot.wait(REFRESH_S)
                     if robot.link.virtual:
-                        time.sleep(REFRESH_S)  # virtual time would be over before anyone has seen it
+                        time.sleep(
+                            REFRESH_S
+                        )  # virtual time would be over before anyone has seen it
                     if options.json:
                         show(_summary(robot.recent()))
                     else:
@@ -55,11 +64,22 @@ def run(options: argparse.Namespace) -> int:
 
 def _summary(records: list[Record]) -> dict[str, Any]:
     now, before = records[-1], records[max(-len(records), -1 - _SPEED_TICKS)]
-    summary: dict[str, Any] = {"tick": now.tick, "t_s": now.t_s, "state": STATES[now.state], "kick": KICK_NAMES[now.kick]}
+    summary: dict[str, Any] = {
+        "tick": now.tick,
+        "t_s": now.t_s,
+        "state": STATES[now.state],
+        "kick": KICK_NAMES[now.kick],
+    }
     for side in WHEELS:
-        values = {name: getattr(now, f"{side}_{name}") for name in ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")}
+        values = {
+            name: getattr(now, f"{side}_{name}")
+            for name in ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
+        }
         turned = values["phi_rad"] - getattr(before, side + "_phi_rad")
-        summary[side] = {**values, "turns_per_s": turned / (2 * pi) / (now.t_s - before.t_s) if now is not before else 0.0}
+        summary[side] = {
+            **values,
+            "turns_per_s": turned / (2 * pi) / (now.t_s - before.t_s) if now is not before else 0.0,
+        }
     return summary
 
 
@@ -67,11 +87,21 @@ def _table(robot: Robot) -> Table:
     from rich.table import Table
 
     summary = _summary(robot.recent())
-    table = Table(title=f"{robot.link.uri}  tick {summary['tick']}  {summary['state']}  {summary['kick']}", title_justify="left")
+    table = Table(
+        title=f"{robot.link.uri}  tick {summary['tick']}  {summary['state']}  {summary['kick']}",
+        title_justify="left",
+    )
     table.add_column("")
     for side in WHEELS:
         table.add_column(side, justify="right", min_width=9)
-    rows = {"turns_per_s": "speed (turns/s)", "torque": "torque M", "duty_pct": "duty (%)", "x1": "x1", "x2": "x2", "phi_rad": "phi (rad)"}
+    rows = {
+        "turns_per_s": "speed (turns/s)",
+        "torque": "torque M",
+        "duty_pct": "duty (%)",
+        "x1": "x1",
+        "x2": "x2",
+        "phi_rad": "phi (rad)",
+    }
     for name, title in rows.items():
         table.add_row(title, *(f"{summary[side][name]:.2f}" for side in WHEELS))
     return table

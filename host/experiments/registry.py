@@ -1,4 +1,7 @@
-"""Which experiments there are, and what each can be asked for. Light enough for `kickctl --help`."""
+"""Which experiments there are, and what each can be asked for.
+
+Light enough for `kickctl --help`.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,8 @@ from host.runs.registry import Entry, Option
 # On simulated cars, which need no robot: `kickctl[bodies]`.
 BODIES = {
     "train-start": Entry(
-        "trains of five cars from random wheel phases: order parameter against time, and which way each goes",
+        "trains of five cars from random wheel phases: order parameter against time, and which way"
+        " each goes",
         (
             Option("seeds", 20, 1, 10000, "trains of each preset"),
             Option("seconds", 15.0, 2.0, 600.0, "how long each runs"),
@@ -15,7 +19,8 @@ BODIES = {
         ("B2",),
     ),
     "train-wall": Entry(
-        "a train between two walls, dead and bouncy: reversals and leg times, beside a train with constant torque",
+        "a train between two walls, dead and bouncy: reversals and leg times, beside a train with"
+        " constant torque",
         (
             Option("seeds", 3, 1, 1000, "trains of each kind"),
             Option("seconds", 60.0, 10.0, 3600.0, "how long each runs"),
@@ -23,14 +28,16 @@ BODIES = {
         ("B3",),
     ),
     "train-slope": Entry(
-        "a train between four slopes, over their angle and k: reversals, coherence, whether it stays inside",
+        "a train between four slopes, over their angle and k: reversals, coherence, whether it"
+        " stays inside",
         (
             Option("seeds", 2, 1, 1000, "trains of each kind"),
             Option("seconds", 30.0, 10.0, 3600.0, "how long each runs"),
         ),
     ),
     "train-wiggle": Entry(
-        "the travelling wave along a fast train's joints: amplitude, frequency, lag, beside the authors' program",
+        "the travelling wave along a fast train's joints: amplitude, frequency, lag, beside the"
+        " authors' program",
         (Option("seconds", 60.0, 10.0, 3600.0, "how long each train runs"),),
     ),
     "train-kick": Entry(
@@ -45,7 +52,8 @@ BODIES = {
         (Option("goals", 10, 1, 1000, "goals, each from a start of its own"),),
     ),
     "train-fault": Entry(
-        "a train with one wheel weaker or dead, or with wheels of different size: order, speed, turning",
+        "a train with one wheel weaker or dead, or with wheels of different size: order, speed,"
+        " turning",
         (
             Option("seeds", 2, 1, 1000, "trains of each kind"),
             Option("seconds", 30.0, 5.0, 3600.0, "how long each runs"),
@@ -53,7 +61,8 @@ BODIES = {
         ),
     ),
     "car-slope": Entry(
-        "the car between four slopes for ten minutes: its way, and whether it stays inside and on its wheels",
+        "the car between four slopes for ten minutes: its way, and whether it stays inside and on"
+        " its wheels",
         (
             Option("seeds", 3, 1, 1000, "cars on slopes of each angle"),
             Option("seconds", 600.0, 10.0, 36000.0, "how long each drives"),
@@ -71,36 +80,43 @@ BODIES = {
 
 ROBOT = {
     "primitives": Entry(
-        "all motion primitives from each other by kicks, stopped and back: success rates and times, speed, duty, torque",
+        "all motion primitives from each other by kicks, stopped and back: success rates and times,"
+        " speed, duty, torque",
         (Option("trials", 10, 1, 1000, "tries of each transition"),),
         ("R1", "R2", "R3", "R4", "R7"),
     ),
     "timeline": Entry(
-        "the three kicks one after the other: potentials, torque, settling, and the phase slip between the wheels",
+        "the three kicks one after the other: potentials, torque, settling, and the phase slip"
+        " between the wheels",
         (Option("trials", 25, 1, 10000, "rounds of the three kicks, there and back"),),
         ("R11", "R12"),
     ),
     "reliability": Entry(
-        "how surely kicks of 1 to 10 ticks reverse a wheel: position and phase, both signs, and membrane",
+        "how surely kicks of 1 to 10 ticks reverse a wheel: position and phase, both signs, and"
+        " membrane",
         (Option("trials", 50, 1, 100000, "kicks at each point"),),
         ("R8", "R9", "R10"),
     ),
     "kick-map": Entry(
-        "success against the kick's length and the wheel's phase when it comes: where the basin lies",
+        "success against the kick's length and the wheel's phase when it comes: where the basin"
+        " lies",
         (Option("kicks", 200000, 36, 100000000, "kicks in all; on a robot a few hundred"),),
     ),
     "bifurcation": Entry(
-        "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable branch between",
+        "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable"
+        " branch between",
         (Option("points", 33, 5, 1000, "values of k in each sweep"),),
         ("R5", "R6"),
     ),
     "wall": Entry(
-        "a robot between two walls at k = 2, which reverses by itself; grip, wall stiffness and k varied",
+        "a robot between two walls at k = 2, which reverses by itself; grip, wall stiffness and k"
+        " varied",
         (Option("bounces", 50, 1, 10000, "bounces to count"),),
         ("R13",),
     ),
     "chaos": Entry(
-        "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and where motor latency and inertia make it chaotic",
+        "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and where motor"
+        " latency and inertia make it chaotic",
         (Option("minutes", 10.0, 1.0, 600.0, "length of the series"),),
         ("R14",),
     ),

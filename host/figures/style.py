@@ -1,4 +1,8 @@
-"""What all figures look like: legible on a projector, colours that people who do not see all of them can tell apart (Okabe and Ito)."""
+"""What all figures look like.
+
+Legible on a projector, colours that people who do not see all of them can tell apart (Okabe and
+Ito).
+"""
 
 from __future__ import annotations
 

@@ -25,21 +25,28 @@ _COLOURS, _SAMPLES = 64, 12
 class Movie:
     """A film of so many pictures a second, of (width, height) in pixels, both even, within the `with` block.
 
-    However the block is left, the pictures that were added until then make a film that plays. Raises WrongUse if the file's name ends on
-    nothing that can be written or no such file can be made, and NotDone if it cannot be finished.
+    However the block is left, the pictures that were added until then make a film that plays.
+    Raises WrongUse if the file's name ends on nothing that can be written or no such file can be
+    made, and NotDone if it cannot be finished.
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float = FPS) -> None:
         ways: dict[str, type[_Mp4 | _Gif]] = {".mp4": _Mp4, ".gif": _Gif}
         if path.suffix.lower() not in ways:
-            raise WrongUse(f"there is no way to write a film into '{path.name}'", f"its name should end with {' or '.join(ways)}")
+            raise WrongUse(
+                f"there is no way to write a film into '{path.name}'",
+                f"its name should end with {' or '.join(ways)}",
+            )
         if path.suffix.lower() == ".mp4":
             need("imageio_ffmpeg", "bodies")
         try:
             with path.open("ab"):
                 pass
         except OSError as error:
-            raise WrongUse(f"the film {path} cannot be written: {error.strerror}", "name a file in a folder that there is") from error
+            raise WrongUse(
+                f"the film {path} cannot be written: {error.strerror}",
+                "name a file in a folder that there is",
+            ) from error
         self.path, self.pictures = path, 0
         self._way, self._size, self._fps = ways[path.suffix.lower()], size, fps
         self._writer: _Mp4 | _Gif | None = None
@@ -54,7 +61,12 @@ class Movie:
         self._writer.add(np.ascontiguousarray(picture))
         self.pictures += 1
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         if self._writer is not None:
             self._writer.finish()
         elif self.path.stat().st_size == 0:
@@ -62,14 +74,41 @@ class Movie:
 
 
 class _Mp4:
-    """H.264, as every player and browser shows it. A signal from the keyboard is for this program, not for ffmpeg."""
+    """H.264, as every player and browser shows it.
+
+    A signal from the keyboard is for this program, not for ffmpeg.
+    """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
         from imageio_ffmpeg import get_ffmpeg_exe
 
         self._path = path
-        source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", "{}x{}".format(*size), "-r", f"{fps:g}", "-i", "pipe:"]
-        film = ["-c:v", "libx264", "-crf", "22", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", "-y", str(path.resolve())]
+        source = [
+            "-f",
+            "rawvideo",
+            "-pix_fmt",
+            "rgb24",
+            "-s",
+            "{}x{}".format(*size),
+            "-r",
+            f"{fps:g}",
+            "-i",
+            "pipe:",
+        ]
+        film = [
+            "-c:v",
+            "libx264",
+            "-crf",
+            "22",
+            "-pix_fmt",
+            "yuv420p",
+            "-movflags",
+            "+faststart",
+            "-f",
+            "mp4",
+            "-y",
+            str(path.resolve()),
+        ]
         self._process = subprocess.Popen(
             [get_ffmpeg_exe(), "-loglevel", "error", *source, *film],
             stdin=subprocess.PIPE,
@@ -93,7 +132,11 @@ class _Mp4:
 
     def _failure(self, said: bytes) -> NotDone:
         words = said.decode(errors="replace").strip().splitlines()
-        return NotDone(f"the film {self._path} could not be written: {words[-1] if words else 'ffmpeg ended early'}", "is the disk full?")
+        return NotDone(
+            f"the film {self._path} could not be written:"
+            f" {words[-1] if words else 'ffmpeg ended early'}",
+            "is the disk full?",
+        )
 
 
 class _Gif:
@@ -114,11 +157,23 @@ class _Gif:
 
         chosen = np.unique(np.linspace(0, len(self._packed) - 1, _SAMPLES).round().astype(int))
         sample = Image.fromarray(np.concatenate([self._picture(number) for number in chosen]))
-        palette = sample.quantize(_COLOURS, method=Image.Quantize.MAXCOVERAGE, kmeans=2, dither=Image.Dither.NONE)
+        palette = sample.quantize(
+            _COLOURS, method=Image.Quantize.MAXCOVERAGE, kmeans=2, dither=Image.Dither.NONE
+        )
 
         def quantized() -> Iterator[Any]:
             for number in range(len(self._packed)):
-                yield Image.fromarray(self._picture(number)).quantize(palette=palette, dither=Image.Dither.NONE)
+                yield Image.fromarray(self._picture(number)).quantize(
+                    palette=palette, dither=Image.Dither.NONE
+                )
 
         pictures = quantized()
-        next(pictures).save(self._path, "GIF", save_all=True, append_images=pictures, duration=self._ms, loop=0, optimize=False)
+        next(pictures).save(
+            self._path,
+            "GIF",
+            save_all=True,
+            append_images=pictures,
+            duration=self._ms,
+            loop=0,
+            optimize=False,
+        )

@@ -1,4 +1,7 @@
-"""The transmission rods of a wheel over time, as a robot's log has them: angle, target and actual positions, potentials and torque."""
+"""The transmission rods of a wheel over time, as a robot's log has them.
+
+Angle, target and actual positions, potentials and torque.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,8 @@ from sim_motor.compiled import retold
 
 Array = NDArray[np.float64]
 
-# What a film shows around a kick (s of the robot's time), and how many times slower: a wheel turns twice a second.
+# What a film shows around a kick (s of the robot's time), and how many times slower: a wheel turns
+# twice a second.
 WINDOW_S, SLOWER = (-0.4, 1.0), 4.0
 # Far less than any tick, far more than what rounding does to a time.
 ROUNDING_S = 1e-9
@@ -26,10 +30,13 @@ _target: Any = retold(target_position, _NUMPY)
 
 
 class Course(NamedTuple):
-    """A wheel over time, (times,), or (2, times) with a row for each rod; t_s is 0 where the kick begins, and kick_s long it acts.
+    """A wheel over time, (times,), or (2, times) with a row for each rod.
 
-    The angle is the log's, joined by straight lines from tick to tick. Neurons step once a tick, and between ticks potentials, targets and
-    torque hold. seen: the positions that the neurons are shown by the kick; NaN where they see the actual ones.
+    t_s is 0 where the kick begins, and kick_s long it acts.
+
+    The angle is the log's, joined by straight lines from tick to tick. Neurons step once a tick,
+    and between ticks potentials, targets and torque hold. seen: the positions that the neurons are
+    shown by the kick; NaN where they see the actual ones.
     """
 
     t_s: Array
@@ -44,15 +51,29 @@ class Course(NamedTuple):
 
 
 def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) -> Course:
-    """The 'left' or 'right' wheel around the log's first kick, every step_s. Raises NotDone if the log does not hold that."""
+    """The 'left' or 'right' wheel around the log's first kick, every step_s.
+
+    Raises NotDone if the log does not hold that.
+    """
     kicks = log.kicks()
     if not kicks:
-        raise NotDone("there is no kick in the log to show the rods around", "kick the robot while it is recorded")
+        raise NotDone(
+            "there is no kick in the log to show the rods around",
+            "kick the robot while it is recorded",
+        )
     row, kick = kicks[0]
     zero_s = log.records[row].t_s
     t_log = log.column("t_s") - zero_s
-    if t_log[0] > window_s[0] or t_log[-1] < window_s[1] or log.records[-1].tick < kick["begin"] + kick["ticks"]:
-        raise NotDone(f"the log holds {t_log[0]:.2f} to {t_log[-1]:.2f} s around the kick, too little to show", "record for longer")
+    if (
+        t_log[0] > window_s[0]
+        or t_log[-1] < window_s[1]
+        or log.records[-1].tick < kick["begin"] + kick["ticks"]
+    ):
+        raise NotDone(
+            f"the log holds {t_log[0]:.2f} to {t_log[-1]:.2f} s around the kick, too little to"
+            " show",
+            "record for longer",
+        )
     t_s = np.arange(window_s[0], window_s[1] - step_s / 2, step_s)
     phi = np.interp(t_s, t_log, log.column(side + "_phi_rad"))
     held = np.searchsorted(t_log, t_s + ROUNDING_S, side="right") - 1
@@ -62,7 +83,9 @@ def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) ->
     seen = np.full((2, len(t_s)), nan)
     for place, age in acting:
         weight = pulse_weight(age, kick["ticks"], kick["smooth"])
-        _, _, _, beta, shift_rad = pulsed(kick["pulse"], kick["values"][WHEELS.index(side)], weight, 0.0, 0.0, 0.0)
+        _, _, _, beta, shift_rad = pulsed(
+            kick["pulse"], kick["values"][WHEELS.index(side)], weight, 0.0, 0.0, 0.0
+        )
         if beta or shift_rad:
             for number in np.flatnonzero(held == place):
                 seen[:, number] = seen_positions(float(phi[number]), beta, shift_rad)

@@ -1,1 +1,4 @@
-"""Kicks and what comes of them: the outcome, plans from the kick map, motion primitives, manoeuvres."""
+"""Kicks and what comes of them.
+
+The outcome, plans from the kick map, motion primitives, manoeuvres.
+"""

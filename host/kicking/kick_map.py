@@ -1,6 +1,7 @@
 """The kick map: how many simulated wheels a kick reverses, by its kind, its length, and the wheel's direction and phase when it comes.
 
-Its rows are plain data: mode, sign, ticks, before (direction, 1 or -1), phase (number of a bin), tried, reversed.
+Its rows are plain data: mode, sign, ticks, before (direction, 1 or -1), phase (number of a bin),
+tried, reversed.
 """
 
 from __future__ import annotations
@@ -18,19 +19,24 @@ from sim_motor.batch import run
 from sim_motor.motor import load
 
 Row = dict[str, Any]
-# Mode, and sign of the shift; a phase kick of the sign of the wheel's direction is the one that the paper names.
+# Mode, and sign of the shift; a phase kick of the sign of the wheel's direction is the one that the
+# paper names.
 KINDS = ((POSITION, 0), (PHASE, 1), (PHASE, -1))
-# Ten counts of the encoder each: half of what a wheel at 2 Hz turns in a tick, and a kick can be timed no better than to a tick.
+# Ten counts of the encoder each: half of what a wheel at 2 Hz turns in a tick, and a kick can be
+# timed no better than to a tick.
 PHASE_BINS = 36
 _BIN_DEG = 360 / PHASE_BINS
-# Lengths worth trying. The longest lasts three quarters of a turn at 2 Hz: inverted positions and shifts of 3/4 pi act against the
-# motion for about half a turn, and what lasts longer meets a wheel that has turned around already.
+# Lengths worth trying. The longest lasts three quarters of a turn at 2 Hz: inverted positions and
+# shifts of 3/4 pi act against the motion for about half a turn, and what lasts longer meets a wheel
+# that has turned around already.
 LENGTHS = tuple(range(1, 13))
 _LENGTH_STEP_S = 0.03
-# How long a wheel takes from rest into its cycle, and back there after a kick: for friction and inertia, and for the potentials' memory.
+# How long a wheel takes from rest into its cycle, and back there after a kick: for friction and
+# inertia, and for the potentials' memory.
 _SETTLE_S, _WATCH_S, _MEMORY_TAU = 3.0, 2.0, 8.0
 _PATIENCE_S = 15.0
-# A shorter tick would be missed if it came as late as on the brick; wheels are then computed with punctual ones.
+# A shorter tick would be missed if it came as late as on the brick; wheels are then computed with
+# punctual ones.
 _LEAST_LATE_TICK_S = 0.02
 # A specimen's tables take as long to compute as some twenty kicks.
 _SPECIMENS, _WHEELS_OF_A_SPECIMEN = 64, 20
@@ -62,23 +68,51 @@ def lengths(tick_s: float) -> list[int]:
 
 
 def tally(
-    mode: str, sign: int, ticks: int, wheels: int, seed: int, *, params: Params, motor: str = "pybricks", battery_v: float | None = None
+    mode: str,
+    sign: int,
+    ticks: int,
+    wheels: int,
+    seed: int,
+    *,
+    params: Params,
+    motor: str = "pybricks",
+    battery_v: float | None = None,
 ) -> list[Row]:
-    """Kick simulated wheels that have settled, each at whatever phase it has, and count: rows of before, phase, tried, reversed.
+    """Kick simulated wheels that have settled, each at whatever phase it has, and count.
 
-    Wheels that rested before the kick are left out. Motors are specimens of `motor` within its published spread.
+    Rows of before, phase, tried, reversed.
+
+    Wheels that rested before the kick are left out. Motors are specimens of `motor` within its
+    published spread.
     """
     rng = np.random.default_rng(seed)
     motors = load(motor).specimens(min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN), rng)
-    settle, watch = (round(min(_PATIENCE_S, time_s + _MEMORY_TAU * params.tau_s) / params.tick_s) for time_s in (_SETTLE_S, _WATCH_S))
+    settle, watch = (
+        round(min(_PATIENCE_S, time_s + _MEMORY_TAU * params.tau_s) / params.tick_s)
+        for time_s in (_SETTLE_S, _WATCH_S)
+    )
     kick = parse({"id": "map", **request(mode, ticks, shift_of(sign))}, (0, 0), params, settle)
     whole = settle + ticks + watch
     times = None if params.tick_s >= _LEAST_LATE_TICK_S else np.arange(whole) * params.tick_s
     chance = int(rng.integers(2**32))
-    result = run(wheels, whole, chance, params=params, kick=kick, motors=motors, battery_v=battery_v, times=times)
-    met = [(before, phase_bin(phi)) for before, phi in zip(result.before.tolist(), result.kick_phi_rad.tolist(), strict=True)]
+    result = run(
+        wheels,
+        whole,
+        chance,
+        params=params,
+        kick=kick,
+        motors=motors,
+        battery_v=battery_v,
+        times=times,
+    )
+    met = [
+        (before, phase_bin(phi))
+        for before, phi in zip(result.before.tolist(), result.kick_phi_rad.tolist(), strict=True)
+    ]
     tried = Counter(met)
-    reverses = Counter(place for place, reverse in zip(met, result.reversed.tolist(), strict=True) if reverse)
+    reverses = Counter(
+        place for place, reverse in zip(met, result.reversed.tolist(), strict=True) if reverse
+    )
     return [
         {"before": before, "phase": phase, "tried": number, "reversed": reverses[before, phase]}
         for (before, phase), number in sorted(tried.items())

@@ -11,7 +11,8 @@ from robot.kicks import DEFAULT_SHIFT_RAD, WHEELS
 STEADY_S = 2.0
 REST_S = 3.0
 RAMP_SHIFT_TICKS = 5000
-# The torque is about k while the rods are held off centre; this step of k raises M by less than what is asked about, 0.1.
+# The torque is about k while the rods are held off centre; this step of k raises M by less than
+# what is asked about, 0.1.
 RAMP_STEP_K = 0.004
 RAMP_TOP_K = 1.0
 RAMP_STEP_S = 0.3
@@ -26,7 +27,10 @@ def steady(robot: Robot, log: Log) -> Span:
 
 
 def starts(robot: Robot, log: Log, count: int) -> list[Span]:
-    """Stop and start from random potentials, again and again; the settled motion after each start."""
+    """Stop and start from random potentials, again and again.
+
+    The settled motion after each start.
+    """
     spans = []
     for _ in range(count):
         robot.stop()
@@ -38,9 +42,12 @@ def starts(robot: Robot, log: Log, count: int) -> list[Span]:
 
 
 def ramp(robot: Robot, log: Log) -> Span:
-    """On a robot at rest, raise the torque in small steps until both wheels have moved; k is put back afterwards.
+    """On a robot at rest, raise the torque in small steps until both wheels have moved.
 
-    A long pulse of the phase shift holds the rods off centre, so that the torque of a resting wheel stays and grows with k alone.
+    K is put back afterwards.
+
+    A long pulse of the phase shift holds the rods off centre, so that the torque of a resting wheel
+    stays and grows with k alone.
     """
     k_before = robot.status()["params"]["k"]
     robot.set(k=0.0)
@@ -50,7 +57,9 @@ def ramp(robot: Robot, log: Log) -> Span:
     first = len(log)
     at_rest = log.records[-1]
     k = 0.0
-    while k < RAMP_TOP_K and any(_angle(log.records[-1], side) == _angle(at_rest, side) for side in WHEELS):
+    while k < RAMP_TOP_K and any(
+        _angle(log.records[-1], side) == _angle(at_rest, side) for side in WHEELS
+    ):
         k += RAMP_STEP_K
         robot.set(k=k)
         robot.wait(RAMP_STEP_S)

@@ -1,4 +1,7 @@
-"""Kick a robot and watch what comes of it: wait until the wheels have settled, kick, wait until they have settled again."""
+"""Kick a robot and watch what comes of it.
+
+Wait until the wheels have settled, kick, wait until they have settled again.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,8 @@ from sim_motor.settling import WINDOW_S
 
 SETTLE_PATIENCE_S = 15.0
 WATCH_S = 6.0
-# What `motion.settled` looks back on, and a tick or two; after a kick all of it must lie behind the kick.
+# What `motion.settled` looks back on, and a tick or two; after a kick all of it must lie behind the
+# kick.
 JUDGED_S = 2 * WINDOW_S + 0.1
 
 FORWARD, BACKWARD, STOPPED = (HEADINGS[way] for way in (1, -1, 0))
@@ -25,9 +29,12 @@ DIRECTIONS = {word: way for way, word in HEADINGS.items() if way}
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a kick did. `before` and `after` give each wheel's heading; settling_s is None if a kicked wheel never settled.
+    """What a kick did. `before` and `after` give each wheel's heading.
 
-    shift_rad is the phase shift of a phase kick: a number, or one for each wheel if their signs differ; None for other modes.
+    settling_s is None if a kicked wheel never settled.
+
+    shift_rad is the phase shift of a phase kick: a number, or one for each wheel if their signs
+    differ; None for other modes.
     """
 
     mode: str
@@ -47,7 +54,10 @@ class Outcome:
 
 def is_settled(records: list[Record], side: str) -> bool:
     """Whether a wheel turns evenly, or rests, at the end of these records."""
-    return settled([getattr(record, side + "_phi_rad") for record in records], [record.t_s for record in records])
+    return settled(
+        [getattr(record, side + "_phi_rad") for record in records],
+        [record.t_s for record in records],
+    )
 
 
 def all_settled(robot: Robot) -> bool:
@@ -59,21 +69,37 @@ def all_settled(robot: Robot) -> bool:
 
 
 def wait_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> bool:
-    """Wait until both wheels have settled, up to patience_s of the robot's time. Returns whether they have."""
+    """Wait until both wheels have settled, up to patience_s of the robot's time.
+
+    Returns whether they have.
+    """
     return robot.wait(patience_s, until=lambda: all_settled(robot))
 
 
 def require_running(robot: Robot) -> None:
-    """Raises NotDone if the robot does not run, with how to start it; RobotFault if it is in fault."""
+    """Raises NotDone if the robot does not run, with how to start it.
+
+    RobotFault if it is in fault.
+    """
     status = robot.status()
     if status["state"] == "fault":
-        raise RobotFault(f"the robot is in fault: {status['reason']}", "mend the cause, then: kickctl clear, kickctl start")
+        raise RobotFault(
+            f"the robot is in fault: {status['reason']}",
+            "mend the cause, then: kickctl clear, kickctl start",
+        )
     if status["state"] != "running":
-        raise NotDone(f"the robot does not run: it is {status['state']} ({status['reason']})", "start it first: kickctl start")
+        raise NotDone(
+            f"the robot does not run: it is {status['state']} ({status['reason']})",
+            "start it first: kickctl start",
+        )
 
 
-def kick_and_watch(robot: Robot, log: Log, mode: str, *, wheel: str = "both", **details: Any) -> Outcome:
-    """Kick now and watch the wheels until they have settled. `log` must be tapping the robot since before; it then holds it all.
+def kick_and_watch(
+    robot: Robot, log: Log, mode: str, *, wheel: str = "both", **details: Any
+) -> Outcome:
+    """Kick now and watch the wheels until they have settled.
+
+    `log` must be tapping the robot since before; it then holds it all.
 
     details: as robot.kicks.parse takes them. Raises KickctlError.
     """
@@ -114,8 +140,15 @@ def _shift(kick: dict[str, Any]) -> float | dict[str, float] | None:
 def title(outcome: Outcome) -> str:
     """The outcome as a figure's title."""
     length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
-    settling = "" if outcome.settling_s is None or not outcome.reversed else f", settled after {outcome.settling_s:.2f} s"
-    return f"{outcome.mode.capitalize()} kick of {length}: {'reversed' if outcome.reversed else 'not reversed'}{settling}"
+    settling = (
+        ""
+        if outcome.settling_s is None or not outcome.reversed
+        else f", settled after {outcome.settling_s:.2f} s"
+    )
+    return (
+        f"{outcome.mode.capitalize()} kick of {length}:"
+        f" {'reversed' if outcome.reversed else 'not reversed'}{settling}"
+    )
 
 
 def advice(outcome: Outcome) -> str:
@@ -124,7 +157,8 @@ def advice(outcome: Outcome) -> str:
     resting = [side for side in kicked if outcome.before[side] == STOPPED]
     if resting:
         return (
-            f": the {' and '.join(resting)} wheel rested before the kick, and there was nothing to reverse; `kickctl drive` sets it going"
+            f": the {' and '.join(resting)} wheel rested before the kick, and there was nothing to"
+            " reverse; `kickctl drive` sets it going"
         )
     if outcome.mode in (PHASE, POSITION) and not 3 <= outcome.ticks <= 5:
         return f": {outcome.mode} kicks work best at 3 to 5 ticks"
@@ -143,7 +177,12 @@ def describe(outcome: Outcome) -> str:
         motion = f"both wheels {turns[kicked[0]]}"
     else:
         motion = " and ".join(f"the {side} wheel {turn}" for side, turn in turns.items())
-    verdict = "The kick reversed the robot" if outcome.reversed else "The kick did NOT reverse the robot"
+    verdict = (
+        "The kick reversed the robot" if outcome.reversed else "The kick did NOT reverse the robot"
+    )
     length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
     settling = "" if outcome.settling_s is None else f", settled after {outcome.settling_s:.2f} s"
-    return f"{verdict}: a {outcome.mode} kick of {length} at tick {outcome.applied_tick}; {motion}{settling}."
+    return (
+        f"{verdict}: a {outcome.mode} kick of {length} at tick {outcome.applied_tick};"
+        f" {motion}{settling}."
+    )

@@ -1,4 +1,7 @@
-"""Which quenched kick reverses a wheel, and at which moment: the choice from the kick map of its parameters."""
+"""Which quenched kick reverses a wheel, and at which moment.
+
+The choice from the kick map of its parameters.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,23 @@ from math import degrees, tau
 from pathlib import Path
 from typing import Any
 
-from host.kicking.kick_map import KINDS, PHASE_BINS, Row, bin_edges_rad, count, lengths, request, shift_of, tally
+from host.kicking.kick_map import (
+    KINDS,
+    PHASE_BINS,
+    Row,
+    bin_edges_rad,
+    count,
+    lengths,
+    request,
+    shift_of,
+    tally,
+)
 from robot import __version__
 from robot.params import Params
 
 SURE = 0.99
-# Of a plan's own map: enough to tell 99 % from 97 % in one direction. Small pieces, between which a link is kept alive.
+# Of a plan's own map: enough to tell 99 % from 97 % in one direction. Small pieces, between which a
+# link is kept alive.
 _WHEELS, _WINDOW_WHEELS, _PIECE = 300, 4800, 300
 _WINDOW_CANDIDATES = 3
 _MAP_SEED = 1
@@ -30,9 +44,12 @@ KickName = tuple[str, int, int]
 
 @dataclass(frozen=True)
 class Plan:
-    """A kick for one wheel. shift_rad: of a phase kick; window_rad: at phases (mod 2 pi) from, and up to; None for any.
+    """A kick for one wheel. shift_rad: of a phase kick; window_rad.
 
-    tried, reversed: simulated kicks of this kind, in that window, and how many of them reversed; 0 if it comes from no map.
+    At phases (mod 2 pi) from, and up to; None for any.
+
+    tried, reversed: simulated kicks of this kind, in that window, and how many of them reversed; 0
+    if it comes from no map.
     """
 
     mode: str
@@ -58,9 +75,14 @@ class Plan:
         return (phi_rad - first) % tau <= (last - first) % tau
 
     def wait_ticks(self, phi_rad: float, step_rad: float) -> int | None:
-        """How many ticks from now a wheel at phi that turns by a step each tick meets the window; None if not within some turns."""
+        """How many ticks from now a wheel at phi that turns by a step each tick meets the window.
+
+        None if not within some turns.
+        """
         most = 1 + int(_TURNS * tau / max(abs(step_rad), _LEAST_STEP_RAD))
-        return next((ticks for ticks in range(1, most + 1) if self.meets(phi_rad + ticks * step_rad)), None)
+        return next(
+            (ticks for ticks in range(1, most + 1) if self.meets(phi_rad + ticks * step_rad)), None
+        )
 
 
 def _is_sure(rows: Iterable[Row]) -> bool:
@@ -69,10 +91,13 @@ def _is_sure(rows: Iterable[Row]) -> bool:
 
 
 def choose(rows: list[Row], before: int) -> Plan | None:
-    """The kick that reverses a wheel of this direction most safely: at any phase if there is one, else at the right moment.
+    """The kick that reverses a wheel of this direction most safely.
 
-    Of the lengths that are sure at any phase, the one farthest from those that are not, as no robot is quite its model; of several the
-    shortest. Else the kick with the widest window of sure phases. None if there is neither.
+    At any phase if there is one, else at the right moment.
+
+    Of the lengths that are sure at any phase, the one farthest from those that are not, as no robot
+    is quite its model; of several the shortest. Else the kick with the widest window of sure
+    phases. None if there is neither.
     """
     kicks = _by_kick(rows, before)
     margins = _margins(kicks)
@@ -80,7 +105,11 @@ def choose(rows: list[Row], before: int) -> Plan | None:
         mode, sign, ticks = max(margins, key=lambda kick: (margins[kick], -kick[2]))
         done, tried = count(kicks[mode, sign, ticks])
         return Plan(mode, ticks, shift_of(sign), None, tried, done)
-    windows = [plan for (mode, sign, ticks), own in kicks.items() if (plan := _window(mode, sign, ticks, own))]
+    windows = [
+        plan
+        for (mode, sign, ticks), own in kicks.items()
+        if (plan := _window(mode, sign, ticks, own))
+    ]
     return max(windows, key=_width, default=None)
 
 
@@ -93,11 +122,18 @@ def _by_kick(rows: list[Row], before: int) -> dict[KickName, list[Row]]:
 
 
 def _margins(kicks: dict[KickName, list[Row]]) -> dict[KickName, int]:
-    """How many steps of length each sure kick is away from the next that is not; what was not tried is not sure."""
+    """How many steps of length each sure kick is away from the next that is not.
+
+    What was not tried is not sure.
+    """
     margins: dict[KickName, int] = {}
     for mode, sign in KINDS:
         tried = sorted(ticks for kind, own, ticks in kicks if (kind, own) == (mode, sign))
-        unsure = [-1, *(i for i, ticks in enumerate(tried) if not _is_sure(kicks[mode, sign, ticks])), len(tried)]
+        unsure = [
+            -1,
+            *(i for i, ticks in enumerate(tried) if not _is_sure(kicks[mode, sign, ticks])),
+            len(tried),
+        ]
         for place, ticks in enumerate(tried):
             margin = min(abs(place - other) for other in unsure)
             if margin:
@@ -106,14 +142,20 @@ def _margins(kicks: dict[KickName, list[Row]]) -> dict[KickName, int]:
 
 
 def _window(mode: str, sign: int, ticks: int, rows: list[Row]) -> Plan | None:
-    """The kick in the longest run of sure bins, around the circle; None if there is none of three bins or more."""
+    """The kick in the longest run of sure bins, around the circle.
+
+    None if there is none of three bins or more.
+    """
     bins: dict[int, list[Row]] = {}
     for row in rows:
         bins.setdefault(row["phase"], []).append(row)
     sure = [_is_sure(bins.get(number, [])) for number in range(PHASE_BINS)]
     first, length = 0, 0
     for begin in range(PHASE_BINS):
-        run_length = next((size for size in range(PHASE_BINS) if not sure[(begin + size) % PHASE_BINS]), PHASE_BINS)
+        run_length = next(
+            (size for size in range(PHASE_BINS) if not sure[(begin + size) % PHASE_BINS]),
+            PHASE_BINS,
+        )
         if run_length > length:
             first, length = begin, run_length
     # The outermost bins border on failure.
@@ -130,11 +172,15 @@ def _width(plan: Plan) -> float:
     return (last - first) % tau
 
 
-def reversal(before: int, values: dict[str, Any], say: Callable[[str], None] = lambda words: None) -> Plan | None:
-    """The plan for a wheel that runs in this direction, at a robot's parameters by name; None if no quenched kick is sure.
+def reversal(
+    before: int, values: dict[str, Any], say: Callable[[str], None] = lambda words: None
+) -> Plan | None:
+    """The plan for a wheel that runs in this direction, at a robot's parameters by name.
 
-    The map takes some seconds, once for these parameters, of which `say` is told: its plan is kept in
-    ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json.
+    None if no quenched kick is sure.
+
+    The map takes some seconds, once for these parameters, of which `say` is told: its plan is kept
+    in ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json.
     """
     chosen = tuple(values[name] for name in _MAPPED)
     key = json.dumps([__version__, before, *chosen])
@@ -144,7 +190,9 @@ def reversal(before: int, values: dict[str, Any], say: Callable[[str], None] = l
         plan = _planned(before, *chosen)
         _keep({**_kept(), key: plan and asdict(plan)})
         return plan
-    return kept[key] and Plan(**{**kept[key], "window_rad": kept[key]["window_rad"] and tuple(kept[key]["window_rad"])})
+    return kept[key] and Plan(
+        **{**kept[key], "window_rad": kept[key]["window_rad"] and tuple(kept[key]["window_rad"])}
+    )
 
 
 def _file() -> Path:
@@ -152,7 +200,10 @@ def _file() -> Path:
 
 
 def _kept() -> dict[str, Any]:
-    """The plans that were kept, by what they are for; none if there are none, or none that can be read."""
+    """The plans that were kept, by what they are for.
+
+    None if there are none, or none that can be read.
+    """
     try:
         kept = json.loads(_file().read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -177,13 +228,20 @@ def _planned(before: int, *values: float) -> Plan | None:
         return plan
     kicks = _by_kick(rows, before)
     best = sorted(kicks, key=lambda kick: -count(kicks[kick])[0])[:_WINDOW_CANDIDATES]
-    return choose([row for kick in best for row in _mapped(*kick, _params(values), _WINDOW_WHEELS)], before)
+    return choose(
+        [row for kick in best for row in _mapped(*kick, _params(values), _WINDOW_WHEELS)], before
+    )
 
 
 @cache
 def _chart(*values: float) -> list[Row]:
     params = _params(values)
-    return [row for mode, sign in KINDS for ticks in lengths(params.tick_s) for row in _mapped(mode, sign, ticks, params, _WHEELS)]
+    return [
+        row
+        for mode, sign in KINDS
+        for ticks in lengths(params.tick_s)
+        for row in _mapped(mode, sign, ticks, params, _WHEELS)
+    ]
 
 
 def _params(values: tuple[float, ...]) -> Params:
@@ -195,4 +253,8 @@ def _params(values: tuple[float, ...]) -> Params:
 def _mapped(mode: str, sign: int, ticks: int, params: Params, wheels: int) -> list[Row]:
     kick = {"mode": mode, "sign": sign, "ticks": ticks}
     pieces = range(wheels // _PIECE)
-    return [{**kick, **row} for piece in pieces for row in tally(mode, sign, ticks, _PIECE, _MAP_SEED + piece, params=params)]
+    return [
+        {**kick, **row}
+        for piece in pieces
+        for row in tally(mode, sign, ticks, _PIECE, _MAP_SEED + piece, params=params)
+    ]

@@ -1,9 +1,12 @@
-"""Motion primitives and how to reach them from each other: by kicks alone, and standing still by the spring constant k.
+"""Motion primitives and how to reach them from each other.
 
-A wheel that turns the wrong way gets the quenched kick that is planned for the robot's parameters; if there is none, or it fails
-again and again, a membrane inversion, which always reverses it. One that rests gets a phase kick of the sign that sets it going the
-right way. A pulse of k to zero lets the robot come to rest, and it stays there where rest coexists with locomotion; where it does
-not, k is halved and the pulse repeated until it stays, and k stays lowered.
+By kicks alone, and standing still by the spring constant k.
+
+A wheel that turns the wrong way gets the quenched kick that is planned for the robot's parameters;
+if there is none, or it fails again and again, a membrane inversion, which always reverses it. One
+that rests gets a phase kick of the sign that sets it going the right way. A pulse of k to zero lets
+the robot come to rest, and it stays there where rest coexists with locomotion; where it does not, k
+is halved and the pulse repeated until it stays, and k stays lowered.
 """
 
 from __future__ import annotations
@@ -12,11 +15,28 @@ from typing import Any
 
 from host.client.robot import Robot
 from host.errors import NotDone
-from host.kicking.outcome import BACKWARD, DIRECTIONS, FORWARD, STOPPED, WATCH_S, Outcome, kick_and_watch, wait_settled
+from host.kicking.outcome import (
+    BACKWARD,
+    DIRECTIONS,
+    FORWARD,
+    STOPPED,
+    WATCH_S,
+    Outcome,
+    kick_and_watch,
+    wait_settled,
+)
 from host.kicking.planning import Plan, reversal
 from host.logs.log import Log
 from host.logs.motion import heading
-from robot.kicks import DEFAULT_SHIFT_RAD, DEFAULT_TICKS, DIRECTION_TICKS, MEMBRANE, PHASE, PULSE, WHEELS
+from robot.kicks import (
+    DEFAULT_SHIFT_RAD,
+    DEFAULT_TICKS,
+    DIRECTION_TICKS,
+    MEMBRANE,
+    PHASE,
+    PULSE,
+    WHEELS,
+)
 
 PRIMITIVES = {
     "forward": (FORWARD, FORWARD),
@@ -30,14 +50,18 @@ MAX_KICKS = 6
 PLANNED_KICKS = 3
 # For the moment of a planned kick: some turns of a slow wheel.
 MOMENT_PATIENCE_S = 3.0
-# Long enough for the wheels to brake (0.3 s) and for the membrane potentials to forget the motion (four tau).
+# Long enough for the wheels to brake (0.3 s) and for the membrane potentials to forget the motion
+# (four tau).
 STOP_PULSE_S = 1.5
 LEAST_K = 0.01
 SHIFT_TOWARD = {FORWARD: -DEFAULT_SHIFT_RAD, BACKWARD: DEFAULT_SHIFT_RAD}
 
 
 def headings(robot: Robot, log: Log) -> dict[str, str]:
-    """Each wheel's heading once both have settled; UNSETTLED for both if they do not, as when they roll forth and back."""
+    """Each wheel's heading once both have settled.
+
+    UNSETTLED for both if they do not, as when they roll forth and back.
+    """
     if not wait_settled(robot):
         return dict.fromkeys(WHEELS, UNSETTLED)
     robot.wait(WATCH_S, until=lambda: len(log) > DIRECTION_TICKS)
@@ -47,7 +71,8 @@ def headings(robot: Robot, log: Log) -> dict[str, str]:
 def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
     """Bring a running robot into a primitive. `log` must be tapping it.
 
-    Returns {primitive, reached, before, after, kicks: [Outcome as plain data], k, k_before}. Raises KickctlError.
+    Returns {primitive, reached, before, after, kicks: [Outcome as plain data], k, k_before}. Raises
+    KickctlError.
     """
     wanted = dict(zip(WHEELS, PRIMITIVES[primitive], strict=True))
     before = headings(robot, log)
@@ -75,42 +100,69 @@ def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
         if not wrong:
             break
         params = robot.status()["params"] if len(kicks) < PLANNED_KICKS else None
-        kicks.append(_kick(robot, log, {side: plan(robot, present[side], wanted[side], params) for side in wrong}))
+        kicks.append(
+            _kick(
+                robot,
+                log,
+                {side: plan(robot, present[side], wanted[side], params) for side in wrong},
+            )
+        )
     return kicks
 
 
 def plan(robot: Robot, present: str, wanted: str, params: dict[str, Any] | None) -> Plan:
-    """The kick for a wheel of this heading that should have another, at a robot's parameters; without them, the one that needs no map."""
+    """The kick for a wheel of this heading that should have another, at a robot's parameters.
+
+    Without them, the one that needs no map.
+    """
     if present == STOPPED:
         return Plan(PHASE, DEFAULT_TICKS[PHASE], SHIFT_TOWARD[wanted])
-    planned = reversal(DIRECTIONS[present], params, robot.on_trouble) if params and present in DIRECTIONS else None
+    planned = (
+        reversal(DIRECTIONS[present], params, robot.on_trouble)
+        if params and present in DIRECTIONS
+        else None
+    )
     return planned or Plan(MEMBRANE, DEFAULT_TICKS[MEMBRANE])
 
 
 def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
-    """Kick these wheels, each by its plan: both at once if that is the same, at any phase; else the first."""
+    """Kick these wheels, each by its plan: both at once if that is the same, at any phase.
+
+    Else the first.
+    """
     side, chosen = next(iter(plans.items()))
     if chosen.window_rad is not None:
         _await_moment(robot, side, chosen)
-    elif len(plans) == 2 and all(own.window_rad is None and own.request() == chosen.request() for own in plans.values()):
+    elif len(plans) == 2 and all(
+        own.window_rad is None and own.request() == chosen.request() for own in plans.values()
+    ):
         side = "both"
     return kick_and_watch(robot, log, wheel=side, **chosen.request())
 
 
 def _await_moment(robot: Robot, side: str, chosen: Plan) -> None:
-    """Wait until the wheel will be in the plan's window in the next tick; a kick at any moment is better than none, if that never comes."""
+    """Wait until the wheel will be in the plan's window in the next tick.
+
+    A kick at any moment is better than none, if that never comes.
+    """
     robot.lease()  # asked for only with the kick, it would cost a tick
     robot.wait(MOMENT_PATIENCE_S, until=lambda: chosen.meets(sum(course(robot, side))))
 
 
 def course(robot: Robot, side: str) -> tuple[float, float]:
     """A wheel's latest angle (rad), and its turn in a tick (rad) over the last DIRECTION_TICKS ticks."""
-    angles = [float(getattr(record, side + "_phi_rad")) for record in robot.recent()[-1 - DIRECTION_TICKS :]]
+    angles = [
+        float(getattr(record, side + "_phi_rad"))
+        for record in robot.recent()[-1 - DIRECTION_TICKS :]
+    ]
     return angles[-1], (angles[-1] - angles[0]) / max(1, len(angles) - 1)
 
 
 def _restore_k(robot: Robot, log: Log) -> None:
-    """Near k_c and below it nothing rolls for long, whatever the kick: undo what an earlier stop has lowered."""
+    """Near k_c and below it nothing rolls for long, whatever the kick.
+
+    Undo what an earlier stop has lowered.
+    """
     k = robot.status()["params"]["k"]
     default = {row["name"]: row["default"] for row in robot.describe("params")}["k"]
     if k < default and not set(headings(robot, log).values()) <= {FORWARD, BACKWARD}:
@@ -118,13 +170,18 @@ def _restore_k(robot: Robot, log: Log) -> None:
 
 
 def _stop(robot: Robot, log: Log) -> list[Outcome]:
-    """A quenched pulse of k brings the robot to rest; while it starts again by itself, halve k and repeat the pulse."""
+    """A quenched pulse of k brings the robot to rest.
+
+    While it starts again by itself, halve k and repeat the pulse.
+    """
     status = robot.status()["params"]
     k, ticks = float(status["k"]), max(1, round(STOP_PULSE_S / status["tick_s"]))
     kicks: list[Outcome] = []
     while set(headings(robot, log).values()) != {STOPPED}:
         if k < LEAST_K:
-            raise NotDone("the wheels turn without any drive", "is something else moving the robot?")
+            raise NotDone(
+                "the wheels turn without any drive", "is something else moving the robot?"
+            )
         if kicks:
             k /= 2.0
             robot.set(k=k)

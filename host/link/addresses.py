@@ -28,26 +28,43 @@ def _split(uri: str) -> _Parts:
         port = parts.port
     except ValueError as error:
         raise WrongUse(f"'{uri}' is no address of a robot: {error}", _FORMS) from error
-    return _Parts(parts.scheme, parts.hostname or "", port, parts.path, dict(parse_qsl(parts.query, keep_blank_values=True)))
+    return _Parts(
+        parts.scheme,
+        parts.hostname or "",
+        port,
+        parts.path,
+        dict(parse_qsl(parts.query, keep_blank_values=True)),
+    )
 
 
 _FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
 
 
 def sim_options(uri: str) -> dict[str, str] | None:
-    """The options of a simulated robot's URI, None for a real one's. Raises WrongUse if it is no URI."""
+    """The options of a simulated robot's URI, None for a real one's.
+
+    Raises WrongUse if it is no URI.
+    """
     parts = _split(uri)
     return parts.options if parts.scheme == "sim" else None
 
 
 def make_link(uri: str, seed: int | None = None) -> Link:
-    """The Link for a URI, not opened yet. `seed` is for sim:// and overrides the URI's. Raises WrongUse."""
+    """The Link for a URI, not opened yet. `seed` is for sim:// and overrides the URI's.
+
+    Raises WrongUse.
+    """
     parts = _split(uri)
     if parts.scheme != "sim" and seed is not None:
-        raise WrongUse(f"--seed fixes the chances of {SIM} only", "a robot elsewhere has the seed that it was started with")
+        raise WrongUse(
+            f"--seed fixes the chances of {SIM} only",
+            "a robot elsewhere has the seed that it was started with",
+        )
     if parts.scheme == "sim":
         if parts.host or parts.path:
-            raise WrongUse(f"'{uri}' is no address of a robot: the simulated one has no name", _FORMS)
+            raise WrongUse(
+                f"'{uri}' is no address of a robot: the simulated one has no name", _FORMS
+            )
         with uninterrupted():
             from host.link.sim import SimLink
 

@@ -7,12 +7,20 @@ import threading
 import time
 from dataclasses import asdict, dataclass
 
-from zeroconf import InterfaceChoice, IPVersion, ServiceBrowser, ServiceInfo, ServiceListener, Zeroconf
+from zeroconf import (
+    InterfaceChoice,
+    IPVersion,
+    ServiceBrowser,
+    ServiceInfo,
+    ServiceListener,
+    Zeroconf,
+)
 
 from host.errors import NoLink, WrongUse, printable
 from robot.program import PORT
 
-# What a brick with the robot's program as a service announces, and what every ev3dev brick does (with the user's name in its record).
+# What a brick with the robot's program as a service announces, and what every ev3dev brick does
+# (with the user's name in its record).
 ROBOT = "_kickctl._tcp.local."
 BRICK = "_sftp-ssh._tcp.local."
 USER = "ev3dev.robot.user"
@@ -34,8 +42,13 @@ class Found:
         return asdict(self)
 
 
-def look_around(seconds: float, interfaces: InterfaceChoice | list[str] = InterfaceChoice.All) -> list[Found]:
-    """What announces itself within so many seconds, robots first; a robot is not told a second time as a brick. Raises KickctlError."""
+def look_around(
+    seconds: float, interfaces: InterfaceChoice | list[str] = InterfaceChoice.All
+) -> list[Found]:
+    """What announces itself within so many seconds, robots first.
+
+    A robot is not told a second time as a brick. Raises KickctlError.
+    """
     if not 0 < seconds < math.inf:
         raise WrongUse(f"{seconds} is no time to listen", "give some seconds, such as 4")
     listener = _Listener()
@@ -46,11 +59,22 @@ def look_around(seconds: float, interfaces: InterfaceChoice | list[str] = Interf
             names = listener.names()
             answers = [network.get_service_info(kind, name, _ASK_MS) for kind, name in names]
     except OSError as error:
-        raise NoLink(f"the network cannot be asked: {error}", "is there a network, and may this user send multicasts?") from error
-    found = [_found(info) for info in answers if info is not None and info.parsed_addresses(IPVersion.V4Only)]
+        raise NoLink(
+            f"the network cannot be asked: {error}",
+            "is there a network, and may this user send multicasts?",
+        ) from error
+    found = [
+        _found(info)
+        for info in answers
+        if info is not None and info.parsed_addresses(IPVersion.V4Only)
+    ]
     robots = [one for one in found if one is not None and one.kind == "robot"]
     seen = {address for one in robots for address in one.addresses}
-    return robots + [one for one in found if one is not None and one.kind != "robot" and not seen & set(one.addresses)]
+    return robots + [
+        one
+        for one in found
+        if one is not None and one.kind != "robot" and not seen & set(one.addresses)
+    ]
 
 
 class _Listener(ServiceListener):
@@ -88,5 +112,15 @@ def _found(info: ServiceInfo) -> Found | None:
     user = info.properties.get(USER.encode())
     if not user:
         return None
-    login = "".join(letter for letter in user.decode("ascii", "replace")[:32] if letter.isalnum() or letter in "-_").lstrip("-")
-    return Found(name, "EV3 brick; ./deploy.sh brings the robot's program to it", f"ssh://{login}@{addresses[0]}", host, addresses)
+    login = "".join(
+        letter
+        for letter in user.decode("ascii", "replace")[:32]
+        if letter.isalnum() or letter in "-_"
+    ).lstrip("-")
+    return Found(
+        name,
+        "EV3 brick; ./deploy.sh brings the robot's program to it",
+        f"ssh://{login}@{addresses[0]}",
+        host,
+        addresses,
+    )

@@ -1,4 +1,7 @@
-"""sim://: a robot embedded in this process. Its loop and its server are the real ones; time passes only while somebody waits."""
+"""sim://: a robot embedded in this process. Its loop and its server are the real ones.
+
+Time passes only while somebody waits.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,10 @@ _OPTIONS = ("seed", "idle", "motor", "battery", *_SCENE)
 
 
 class SimLink:
-    """A simulated brick in virtual time behind a pair of connected sockets. It makes its own token."""
+    """A simulated brick in virtual time behind a pair of connected sockets.
+
+    It makes its own token.
+    """
 
     virtual = True
 
@@ -36,24 +42,43 @@ class SimLink:
 
     @classmethod
     def from_options(cls, uri: str, options: dict[str, str], seed: int | None) -> SimLink:
-        """The link for the options of a sim:// URI: seed, idle=1, motor=NAME, battery=V, and those of sim_motor.world.Scene.
+        """The link for the options of a sim:// URI.
+
+        Seed, idle=1, motor=NAME, battery=V, and those of sim_motor.world.Scene.
 
         Raises WrongUse.
         """
         for name in options:
             if name not in _OPTIONS:
-                raise WrongUse(f"sim:// has no option '{name}'", "its options are " + ", ".join(_OPTIONS))
+                raise WrongUse(
+                    f"sim:// has no option '{name}'", "its options are " + ", ".join(_OPTIONS)
+                )
         for name in _SCENE:
             if name in options and "walls" not in options:
-                raise WrongUse(f"'{name}' belongs to a robot between walls, and '{uri}' has none", "add walls=2.0, their distance in m")
+                raise WrongUse(
+                    f"'{name}' belongs to a robot between walls, and '{uri}' has none",
+                    "add walls=2.0, their distance in m",
+                )
         try:
             if seed is None:
-                seed = int(options["seed"]) if "seed" in options else int.from_bytes(os.urandom(4), "big")
-            scene = Scene(**{name: float(options[name]) for name in _SCENE if name in options}) if "walls" in options else None
+                seed = (
+                    int(options["seed"])
+                    if "seed" in options
+                    else int.from_bytes(os.urandom(4), "big")
+                )
+            scene = (
+                Scene(**{name: float(options[name]) for name in _SCENE if name in options})
+                if "walls" in options
+                else None
+            )
             battery_v = float(options["battery"]) if "battery" in options else None
-            brick = SimBrick(seed, motor=options.get("motor", "pybricks"), battery_v=battery_v, scene=scene)
+            brick = SimBrick(
+                seed, motor=options.get("motor", "pybricks"), battery_v=battery_v, scene=scene
+            )
         except (ValueError, KeyError) as error:
-            raise WrongUse(f"'{uri}' cannot be simulated: {error}", "its options are " + ", ".join(_OPTIONS)) from error
+            raise WrongUse(
+                f"'{uri}' cannot be simulated: {error}", "its options are " + ", ".join(_OPTIONS)
+            ) from error
         return cls(uri, brick, idle=options.get("idle", "0") not in ("", "0"))
 
     def open(self) -> None:
@@ -77,7 +102,10 @@ class SimLink:
                 raise LinkLost(str(error)) from error
 
     def receive(self, timeout_s: float) -> bytes:
-        """What the robot has sent, letting its time pass tick by tick, up to timeout_s of it. Raises LinkLost."""
+        """What the robot has sent, letting its time pass tick by tick, up to timeout_s of it.
+
+        Raises LinkLost.
+        """
         until = self.now() + timeout_s
         while self._socket is not None:
             try:

@@ -1,4 +1,7 @@
-"""ssh://[user@]host[:ssh port][?port=]: a robot through the system's ssh, which knows the user's keys, settings and known hosts."""
+"""ssh://[user@]host[:ssh port][?port=].
+
+A robot through the system's ssh, which knows the user's keys, settings and known hosts.
+"""
 
 from __future__ import annotations
 
@@ -16,33 +19,56 @@ from host.errors import NoLink, WrongUse, printable
 from host.link.transport import LinkLost, TcpLink
 from robot.program import PORT
 
-_FORM = "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens elsewhere than at its usual port"
+_FORM = (
+    "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens elsewhere than"
+    " at its usual port"
+)
 _END_S = 2.0
 # ssh may say much; what it gives up for comes last.
 _LAST_WORDS = 280
-# ^C reaches ssh too, but is kickctl's to answer: it still has the motors to stop, over this very link.
+# ^C reaches ssh too, but is kickctl's to answer: it still has the motors to stop, over this very
+# link.
 _RUN = ("sh", "-c", 'trap "" INT; exec ssh "$@"', "sh")
 # What ssh says, and what to do about it; the first that fits.
 _REMEDIES = {
-    "IDENTIFICATION HAS CHANGED": "a brick with a newly written card has a new key, and this machine remembers the old one: "
-    "`ssh-keygen -R {host}`, then try again",
-    "Host key verification failed": "make its acquaintance: `ssh robot@{host}` once, and say yes to its key",
-    "Permission denied": "an ev3dev brick's user is robot, with the password maker unless it was changed: ssh://robot@{host}; "
-    "`ssh-copy-id robot@{host}` once spares typing it",
-    "Could not resolve hostname": "the network knows no {host}: `kickctl discover` looks around, or take the address on the brick's screen",
+    "IDENTIFICATION HAS CHANGED": (
+        "a brick with a newly written card has a new key, and this machine remembers the old one: "
+        "`ssh-keygen -R {host}`, then try again"
+    ),
+    "Host key verification failed": (
+        "make its acquaintance: `ssh robot@{host}` once, and say yes to its key"
+    ),
+    "Permission denied": (
+        "an ev3dev brick's user is robot, with the password maker unless it was changed:"
+        " ssh://robot@{host}; `ssh-copy-id robot@{host}` once spares typing it"
+    ),
+    "Could not resolve hostname": (
+        "the network knows no {host}: `kickctl discover` looks around, or take the address on the"
+        " brick's screen"
+    ),
     "ssh: not found": "install ssh (Debian, Ubuntu: apt-get install openssh-client)",
-    "open failed": "ssh works, but the robot's program does not listen there: `./deploy.sh --status` looks, `./deploy.sh` starts it",
+    "open failed": (
+        "ssh works, but the robot's program does not listen there: `./deploy.sh --status` looks,"
+        " `./deploy.sh` starts it"
+    ),
 }
-_REMEDY = "is it switched on, and this its name? Try the address on its screen; `kickctl discover` looks around"
+_REMEDY = (
+    "is it switched on, and this its name? Try the address on its screen; `kickctl discover` looks"
+    " around"
+)
 
 
 class SshLink(TcpLink):
-    """A connection from the robot's machine to its own port, carried by an ssh process. Raises WrongUse.
+    """A connection from the robot's machine to its own port, carried by an ssh process.
 
-    $KICK_SSH_OPTIONS holds further options for ssh. Passwords are ssh's business: it asks for them at the terminal.
+    Raises WrongUse.
+
+    $KICK_SSH_OPTIONS holds further options for ssh. Passwords are ssh's business: it asks for them
+    at the terminal.
     """
 
-    # ssh may have to wait for a person who types a password; if it gives up instead, its end is noticed at once.
+    # ssh may have to wait for a person who types a password; if it gives up instead, its end is
+    # noticed at once.
     answer_s = 60.0
 
     def __init__(self, uri: str) -> None:
@@ -53,10 +79,25 @@ class SshLink(TcpLink):
         if not port.isdigit() or options or parts.path.strip("/"):
             raise WrongUse(f"'{uri}' is no address of a robot", _FORM)
         if parts.password is not None:
-            raise WrongUse("passwords do not belong into addresses, where others see them", "leave it out: ssh asks for it")
-        self._options = ["-T", "-W", f"127.0.0.1:{port}", "-o", "ConnectTimeout=20", "-o", "ServerAliveInterval=5"]
-        self._options += ["-p", str(parts.port)] * (parts.port is not None) + shlex.split(os.environ.get("KICK_SSH_OPTIONS", ""))
-        self._login = f"{parts.username}@{parts.hostname}" if parts.username else str(parts.hostname)
+            raise WrongUse(
+                "passwords do not belong into addresses, where others see them",
+                "leave it out: ssh asks for it",
+            )
+        self._options = [
+            "-T",
+            "-W",
+            f"127.0.0.1:{port}",
+            "-o",
+            "ConnectTimeout=20",
+            "-o",
+            "ServerAliveInterval=5",
+        ]
+        self._options += ["-p", str(parts.port)] * (parts.port is not None) + shlex.split(
+            os.environ.get("KICK_SSH_OPTIONS", "")
+        )
+        self._login = (
+            f"{parts.username}@{parts.hostname}" if parts.username else str(parts.hostname)
+        )
         self._ssh: subprocess.Popen[bytes] | None = None
         self._words: IO[bytes] | None = None
         self._heard = False
@@ -65,13 +106,18 @@ class SshLink(TcpLink):
         """Start ssh. Whether it gets through shows when the robot is heard, or not."""
         self.close()
         if self._heard and "BatchMode=yes" not in self._options:
-            self._options += ["-o", "BatchMode=yes"]  # nobody waits at the terminal to type a password a second time
+            self._options += [
+                "-o",
+                "BatchMode=yes",
+            ]  # nobody waits at the terminal to type a password a second time
         self._heard = False
         self._words = tempfile.TemporaryFile()  # noqa: SIM115
         self._socket, theirs = socket.socketpair()
         with theirs:
             command = [*_RUN, *self._options, "--", self._login]
-            self._ssh = subprocess.Popen(command, stdin=theirs.fileno(), stdout=theirs.fileno(), stderr=self._words)
+            self._ssh = subprocess.Popen(
+                command, stdin=theirs.fileno(), stdout=theirs.fileno(), stderr=self._words
+            )
 
     def send(self, data: bytes) -> None:
         """Send all of it. Raises LinkLost, or NoLink if ssh never got through."""
@@ -79,7 +125,10 @@ class SshLink(TcpLink):
             super().send(data)
 
     def receive(self, timeout_s: float) -> bytes:
-        """What has arrived within timeout_s. Raises LinkLost, or NoLink if ssh never got through."""
+        """What has arrived within timeout_s.
+
+        Raises LinkLost, or NoLink if ssh never got through.
+        """
         with self._explained():
             data = super().receive(timeout_s)
         self._heard = self._heard or bool(data)
@@ -111,5 +160,12 @@ class SshLink(TcpLink):
             self._words.seek(0)
             words = " ".join(self._words.read().decode(errors="replace").split())
             remedy = next((remedy for sign, remedy in _REMEDIES.items() if sign in words), _REMEDY)
-            shown = printable(words if len(words) <= _LAST_WORDS else "... " + words[-_LAST_WORDS:].partition(" ")[2])
-            raise NoLink(f"no robot answers at {self.uri}: {shown or error}", remedy.format(host=self._address[0])) from error
+            shown = printable(
+                words
+                if len(words) <= _LAST_WORDS
+                else "... " + words[-_LAST_WORDS:].partition(" ")[2]
+            )
+            raise NoLink(
+                f"no robot answers at {self.uri}: {shown or error}",
+                remedy.format(host=self._address[0]),
+            ) from error

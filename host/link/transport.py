@@ -1,4 +1,7 @@
-"""What a way to a robot is, bytes out and bytes in, and the two plain ones: a TCP connection and a serial line."""
+"""What a way to a robot is, bytes out and bytes in, and the two plain ones.
+
+A TCP connection and a serial line.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,10 @@ class Link(Protocol):
         """Send all of it. Raises LinkLost."""
 
     def receive(self, timeout_s: float) -> bytes:
-        """What has arrived, waiting up to timeout_s for the first byte; empty if nothing came. Raises LinkLost."""
+        """What has arrived, waiting up to timeout_s for the first byte; empty if nothing came.
+
+        Raises LinkLost.
+        """
 
     def now(self) -> float:
         """Seconds on the clock in which timeouts are counted."""
@@ -56,8 +62,10 @@ class TcpLink:
             self._socket = socket.create_connection(self._address, timeout=CONNECT_TIMEOUT_S)
         except ConnectionRefusedError as error:
             raise NoLink(
-                f"no robot's program runs at {self.uri}: the machine is there and refuses the connection",
-                "start the program; if it died, its watchdog has stopped the motors, and its log says why (of a brick: ./deploy.sh --logs)",
+                f"no robot's program runs at {self.uri}: the machine is there and refuses the"
+                " connection",
+                "start the program; if it died, its watchdog has stopped the motors, and its log"
+                " says why (of a brick: ./deploy.sh --logs)",
             ) from error
         except OSError as error:
             raise NoLink(
@@ -119,7 +127,8 @@ class SerialLink:
             self._serial.open()
         except (OSError, ValueError) as error:
             raise NoLink(
-                f"the serial line {self.uri} cannot be opened: {error}", "is the cable in, and are you in group dialout?"
+                f"the serial line {self.uri} cannot be opened: {error}",
+                "is the cable in, and are you in group dialout?",
             ) from error
 
     def send(self, data: bytes) -> None:

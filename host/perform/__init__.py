@@ -1,1 +1,4 @@
-"""Runs experiments and studies by name: finds them with their figures, does their work, reproduces the paper's claims."""
+"""Runs experiments and studies by name.
+
+Finds them with their figures, does their work, reproduces the paper's claims.
+"""

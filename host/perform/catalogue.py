@@ -11,7 +11,8 @@ from host.runs.registry import Entry, entry_of
 from host.runs.runner import Draw
 from host.theory.studies.registry import TABLE as STUDIES
 
-# The kinds: what people call them, their entries, and the packages of their modules and of their figures.
+# The kinds: what people call them, their entries, and the packages of their modules and of their
+# figures.
 EXPERIMENT, BODY, STUDY = "experiment", "experiment on bodies", "study"
 KINDS = {
     EXPERIMENT: (ROBOT, "host.experiments.robot", "host.figures.robot"),
@@ -21,7 +22,10 @@ KINDS = {
 
 
 class Found(NamedTuple):
-    """Something that can be run: its kind, a key of KINDS; its entry; its module; and what draws its figure."""
+    """Something that can be run: its kind, a key of KINDS; its entry; its module.
+
+    And what draws its figure.
+    """
 
     kind: str
     entry: Entry

@@ -1,4 +1,7 @@
-"""All of the paper's claims in one go, about the robot and about the model: what settles them, and a report."""
+"""All of the paper's claims in one go, about the robot and about the model.
+
+What settles them, and a report.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,12 @@ from host.runs.registry import Entry
 from host.theory.studies.registry import TABLE as STUDIES
 
 # What a robot on a table does not have around it; asked for by name, it is taken to be there.
-NEEDS = {"R13": "needs two walls, a robot's length and more apart: build them, and ask for it by name (--only R13)"}
+NEEDS = {
+    "R13": (
+        "needs two walls, a robot's length and more apart: build them, and ask for it by name"
+        " (--only R13)"
+    )
+}
 
 OF_MODEL = "is about the paper's model and needs no robot: ask for it by name, or without --brick"
 OF_BODIES = "is about simulated cars and needs no robot: ask for it by name, without --brick"
@@ -26,7 +34,10 @@ _ELSEWHERE = {"M": OF_MODEL, "B": OF_BODIES}
 
 
 class Reproduction(NamedTuple):
-    """claims: in the order of their numbers; skipped: why a claim was not tried; page: the report."""
+    """claims: in the order of their numbers; skipped: why a claim was not tried; page.
+
+    The report.
+    """
 
     claims: list[Claim]
     skipped: dict[str, str]
@@ -34,8 +45,14 @@ class Reproduction(NamedTuple):
 
 
 def known() -> list[str]:
-    """The ids of all claims that are settled here: R of the robot, M of the model, B of simulated bodies."""
-    return sorted((number for entry in (*TABLE.values(), *STUDIES.values()) for number in entry.claims), key=_place)
+    """The ids of all claims that are settled here.
+
+    R of the robot, M of the model, B of simulated bodies.
+    """
+    return sorted(
+        (number for entry in (*TABLE.values(), *STUDIES.values()) for number in entry.claims),
+        key=_place,
+    )
 
 
 def _place(number: str) -> tuple[int, int]:
@@ -53,18 +70,25 @@ def reproduce(
 ) -> Reproduction:
     """Run what settles the claims `only`, by default all that the robot can do, and write OUT/report.html.
 
-    The report of some claims has their names in its own, as report-R5-R6.html. Each piece of work goes on where it was cut short. Raises
-    KickctlError.
+    The report of some claims has their names in its own, as report-R5-R6.html. Each piece of work
+    goes on where it was cut short. Raises KickctlError.
     """
     unknown = [number for number in only if number not in known()]
     if unknown:
         raise WrongUse(f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(known()))
     uri = address(uri)
     simulated = sim_options(uri) is not None
-    skipped = {} if simulated or only else NEEDS | {number: _ELSEWHERE[number[0]] for number in known() if number[0] in _ELSEWHERE}
+    skipped = (
+        {}
+        if simulated or only
+        else NEEDS
+        | {number: _ELSEWHERE[number[0]] for number in known() if number[0] in _ELSEWHERE}
+    )
     if not only and find_spec("mujoco") is None:
         skipped |= {number: NO_BODIES for entry in BODIES.values() for number in entry.claims}
-    wanted = [number for number in known() if number not in skipped and (not only or number in only)]
+    wanted = [
+        number for number in known() if number not in skipped and (not only or number in only)
+    ]
     summaries: list[dict[str, Any]] = []
     claims: dict[str, Claim] = {}
 
@@ -73,10 +97,16 @@ def reproduce(
             if any(number in wanted for number in entry.claims):
                 summaries.append(summary := perform(name, uri, seed, token=token, out=out, say=say))
                 found = [Claim.from_dict(claim) for claim in summary["claims"]]
-                claims.update((claim.id, claim) for claim in found if claim.id in entry.claims and claim.id in wanted)
+                claims.update(
+                    (claim.id, claim)
+                    for claim in found
+                    if claim.id in entry.claims and claim.id in wanted
+                )
 
     run(TABLE, uri)
     run(STUDIES, None)
     name = "-".join(["report", *(wanted if only else [])])
-    page = report.write(Path(out) / f"{name}.html", [claims[number] for number in wanted], summaries, skipped)
+    page = report.write(
+        Path(out) / f"{name}.html", [claims[number] for number in wanted], summaries, skipped
+    )
     return Reproduction([claims[number] for number in wanted], skipped, page)

@@ -1,4 +1,7 @@
-"""Does the cells of an experiment on robots: a simulated one for each cell, or the one that there is, tried again when it is disturbed."""
+"""Does the cells of an experiment on robots.
+
+A simulated one for each cell, or the one that there is, tried again when it is disturbed.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +24,26 @@ from robot.params import TABLE
 # A robot's cell is tried again when something else came between, a fault or a link that broke.
 TRIES = 3
 PAUSE_S = 1.0
-# The paper's parameters, with which every trial begins, whatever a robot was set to; it gets its own back in the end.
-PAPER = {name: TABLE[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")}
+# The paper's parameters, with which every trial begins, whatever a robot was set to; it gets its
+# own back in the end.
+PAPER = {
+    name: TABLE[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")
+}
 
 
 @contextmanager
-def robots(experiment: Experiment, uri: str, setting: Setting, token: str | None, logs: Path, say: Callable[[str], None]) -> Iterator[Work]:
-    """Yields what does a cell on a robot: a simulated one of its own for each, or the one that there is, which is stopped in the end."""
+def robots(
+    experiment: Experiment,
+    uri: str,
+    setting: Setting,
+    token: str | None,
+    logs: Path,
+    say: Callable[[str], None],
+) -> Iterator[Work]:
+    """Yields what does a cell on a robot.
+
+    A simulated one of its own for each, or the one that there is, which is stopped in the end.
+    """
     logs.mkdir(exist_ok=True)
     if sim_options(uri) is None:
         with connect(uri, token=token) as robot:
@@ -52,7 +68,9 @@ def _in_world(uri: str, world: dict[str, str]) -> str:
     return SIM + ("?" + urlencode(options) if options else "")
 
 
-def _trial(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path) -> list[Row]:
+def _trial(
+    experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path
+) -> list[Row]:
     """One try of a cell, with its raw log, which a cell's next try replaces."""
     path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
@@ -70,7 +88,10 @@ def _trial(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, l
             robot.remove_tap(log)
             robot.remove_tap(file)
     if log.restarts() or log.missing():
-        raise NotDone("the robot's program began anew meanwhile, or records were lost", "look at its log: ./deploy.sh --logs")
+        raise NotDone(
+            "the robot's program began anew meanwhile, or records were lost",
+            "look at its log: ./deploy.sh --logs",
+        )
     return rows
 
 
@@ -82,7 +103,14 @@ def _set(robot: Robot, wanted: dict[str, Any]) -> None:
         robot.set(**changes)
 
 
-def _patient(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path, say: Callable[[str], None]) -> Outcome:
+def _patient(
+    experiment: Experiment,
+    cell: Cell,
+    robot: Robot,
+    setting: Setting,
+    logs: Path,
+    say: Callable[[str], None],
+) -> Outcome:
     """A cell on a real robot. A try into which a fault, a stop or a broken link came does not count; its reason is kept."""
     spoiled: list[str] = []
     while True:
@@ -97,4 +125,6 @@ def _patient(experiment: Experiment, cell: Cell, robot: Robot, setting: Setting,
             if robot.status()["state"] == "fault":
                 robot.clear()
         except NoLink as error:
-            raise NoLink(error.message, error.hint or "mend the link, and run the same command again") from error
+            raise NoLink(
+                error.message, error.hint or "mend the link, and run the same command again"
+            ) from error

@@ -1,4 +1,7 @@
-"""Runs an experiment or a study of the model, or the rest of one that was cut short; then its table, its figure and its claims."""
+"""Runs an experiment or a study of the model, or the rest of one that was cut short.
+
+Then its table, its figure and its claims.
+"""
 
 from __future__ import annotations
 
@@ -39,13 +42,19 @@ def perform(
 ) -> dict[str, Any]:
     """Run an experiment or a study, or the rest of one that was cut short, and return its summary, which also stands in its folder.
 
-    uri, token: of the robot, as `connect` takes them; a study has none. seed: of all chances, also those of a simulated robot. out: below
-    which folder; what belongs to exactly these arguments has one of its own there. scheduler: address of a Dask scheduler for what is
-    computed. arguments: the run's own options. Raises KickctlError; what was measured until then is kept.
+    uri, token: of the robot, as `connect` takes them; a study has none. seed: of all chances, also
+    those of a simulated robot. out: below which folder; what belongs to exactly these arguments has
+    one of its own there. scheduler: address of a Dask scheduler for what is computed. arguments:
+    the run's own options. Raises KickctlError; what was measured until then is kept.
     """
     found = find(name)
     options = checked(name, found.entry, arguments)
-    settings: dict[str, Any] = {"experiment": name, "options": options, "version": __version__, "commit": commit()}
+    settings: dict[str, Any] = {
+        "experiment": name,
+        "options": options,
+        "version": __version__,
+        "commit": commit(),
+    }
     simulated: dict[str, str] | None = {}
     out = Path(out)
     if found.kind == STUDY:
@@ -57,15 +66,28 @@ def perform(
         setting = _setting(options, simulated, seed)
         settings["brick"] = uri
         if simulated is not None:
-            settings["motor"] = asdict(constants(setting.motor))  # an own motor of the same name may be another one tomorrow
+            settings["motor"] = asdict(
+                constants(setting.motor)
+            )  # an own motor of the same name may be another one tomorrow
     settings["seed"] = setting.seed
     batch = simulated is not None and found.work.simulate is not None
     if scheduler and not batch:
-        raise WrongUse("--scheduler spreads simulations, and this experiment runs on a robot's loop", "leave it out")
+        raise WrongUse(
+            "--scheduler spreads simulations, and this experiment runs on a robot's loop",
+            "leave it out",
+        )
     cells = found.work.cells(options, batch=batch)
     with begun(out, settings, cells, say) as study:
         if batch and found.work.simulate is not None:
-            simulate(name, found.work.simulate, cells, setting, study, scheduler, processes=found.kind == BODY)
+            simulate(
+                name,
+                found.work.simulate,
+                cells,
+                setting,
+                study,
+                scheduler,
+                processes=found.kind == BODY,
+            )
         elif uri is not None and any(cell not in study for cell in cells):
             with robots(found.work, uri, setting, token, study.folder / "logs", say) as work:
                 do(name, cells, study, work)
@@ -79,20 +101,31 @@ def address(uri: str | None) -> str:
 
 
 def _simulated(name: str, kind: str, uri: str) -> dict[str, str] | None:
-    """The options of a simulated robot's address, None for a real one's. Raises WrongUse if the experiment cannot use it."""
+    """The options of a simulated robot's address, None for a real one's.
+
+    Raises WrongUse if the experiment cannot use it.
+    """
     make_link(uri)  # raises, in words, if that is no robot's address
     simulated = sim_options(uri)
     if kind == BODY:
         need("mujoco", "bodies")
         if simulated is None:
-            raise WrongUse(f"{name} is about simulated cars, and '{uri}' is a robot's address", f"leave it out, or say {SIM}")
+            raise WrongUse(
+                f"{name} is about simulated cars, and '{uri}' is a robot's address",
+                f"leave it out, or say {SIM}",
+            )
     for option in simulated or ():
         if option not in OWN_OPTIONS:
-            raise WrongUse(f"an experiment places its robots itself, and '{uri}' says {option}", "leave that out")
+            raise WrongUse(
+                f"an experiment places its robots itself, and '{uri}' says {option}",
+                "leave that out",
+            )
     return simulated
 
 
-def _setting(options: dict[str, Any], simulated: dict[str, str] | None, seed: int | None) -> Setting:
+def _setting(
+    options: dict[str, Any], simulated: dict[str, str] | None, seed: int | None
+) -> Setting:
     if seed is None:
         seed = int((simulated or {}).get("seed", DEFAULT_SEED))
     if simulated is None:

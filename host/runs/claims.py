@@ -1,4 +1,7 @@
-"""Claims of the paper about the robot, measured in a log: what was claimed, what was found, and whether it holds."""
+"""Claims of the paper about the robot, measured in a log.
+
+What was claimed, what was found, and whether it holds.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,8 @@ WHEEL_RADIUS_M = 0.028
 MOVING_HZ = 0.1
 # What the paper's 'always' was tried.
 ALWAYS = 50
-# What 'reliable' and 'fails' are of a quenched kick, for which lengths (ticks) it is to be reliable, and the trials that it takes to tell.
+# What 'reliable' and 'fails' are of a quenched kick, for which lengths (ticks) it is to be
+# reliable, and the trials that it takes to tell.
 RELIABLE, FAILS = 0.95, 0.1
 SURE_LENGTHS = (3, 4, 5)
 LEAST_TRIALS = 20
@@ -29,8 +33,8 @@ LEAST_TRIALS = 20
 class Claim:
     """One row of a report: what the paper says (a range is the target), and the number that was measured, with its unit.
 
-    interval: where the number lies with a confidence of 95 %, None where there is no chance in it. note: what the number leaves out;
-    why, if the claim does not hold.
+    interval: where the number lies with a confidence of 95 %, None where there is no chance in it.
+    note: what the number leaves out; why, if the claim does not hold.
     """
 
     id: str
@@ -66,7 +70,10 @@ class Claim:
 
 @dataclass(frozen=True)
 class Span:
-    """The rows of a log from `first` to before `end`: a stretch of steady motion, or one attempt at something."""
+    """The rows of a log from `first` to before `end`.
+
+    A stretch of steady motion, or one attempt at something.
+    """
 
     first: int
     end: int
@@ -93,7 +100,10 @@ def steady(log: Log, span: Span) -> list[Steady]:
 
 
 def coexistence(wheels: Sequence[Steady]) -> Claim:
-    """R1: from random starts both directions are reached, equally fast. Each wheel comes from a start of its own."""
+    """R1: from random starts both directions are reached, equally fast.
+
+    Each wheel comes from a start of its own.
+    """
     speeds = np.array([wheel.hz for wheel in wheels])
     forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
     both = len(forward) > 0 and len(backward) > 0
@@ -106,7 +116,8 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
         "1",
         None,
         both and asymmetry <= 0.03,
-        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward, {len(backward)} backward",
+        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward,"
+        f" {len(backward)} backward",
     )
 
 
@@ -114,10 +125,21 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
     """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque."""
     hertz = [abs(wheel.hz) for wheel in wheels]
     mean, interval = float(np.mean(hertz)), spread(hertz)
-    duty, ripple = float(np.mean([wheel.duty_pct for wheel in wheels])), max(wheel.ripple for wheel in wheels)
+    duty, ripple = (
+        float(np.mean([wheel.duty_pct for wheel in wheels])),
+        max(wheel.ripple for wheel in wheels),
+    )
     to_m_s = 2 * pi * WHEEL_RADIUS_M
     return [
-        Claim("R2", "turns per second at k = 8", "1.8 to 2.3 Hz", mean, "Hz", interval, 1.8 <= mean <= 2.3),
+        Claim(
+            "R2",
+            "turns per second at k = 8",
+            "1.8 to 2.3 Hz",
+            mean,
+            "Hz",
+            interval,
+            1.8 <= mean <= 2.3,
+        ),
         Claim(
             "R3",
             "speed, and share of the motor's power, at k = 8",
@@ -136,17 +158,24 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
             "1",
             None,
             ripple < 0.1 and min(hertz) > MOVING_HZ,
-            f"the greatest of {len(wheels)} wheels, the slowest of which makes {min(hertz):.2f} turns a second",
+            f"the greatest of {len(wheels)} wheels, the slowest of which makes {min(hertz):.2f}"
+            " turns a second",
         ),
     ]
 
 
 def break_away(log: Log, span: Span) -> Claim:
-    """R5: at rest, the torque is raised slowly until each wheel moves. The span begins at rest and holds the whole ramp."""
+    """R5: at rest, the torque is raised slowly until each wheel moves.
+
+    The span begins at rest and holds the whole ramp.
+    """
     rows = slice(span.first, span.end)
     stalls, moves = [], []
     for side in WHEELS:
-        phi, torque = log.column(side + "_phi_rad")[rows], np.abs(log.column(side + "_torque")[rows])
+        phi, torque = (
+            log.column(side + "_phi_rad")[rows],
+            np.abs(log.column(side + "_torque")[rows]),
+        )
         moved = np.flatnonzero(phi != phi[0])
         first = int(moved[0]) if len(moved) else len(phi)
         steps = np.flatnonzero(np.diff(torque[:first]) > _LEAST_STEP) + 1
@@ -160,8 +189,14 @@ def break_away(log: Log, span: Span) -> Claim:
         float(np.mean(moves)),
         "1",
         None,
-        all(0.09 <= low <= 0.102 and 0.1 <= high <= 0.11 for low, high in zip(stalls, moves, strict=True)),
-        "; ".join(f"{side}: rests at M = {low:.3f}, moves at {high:.3f}" for side, low, high in zip(WHEELS, stalls, moves, strict=True)),
+        all(
+            0.09 <= low <= 0.102 and 0.1 <= high <= 0.11
+            for low, high in zip(stalls, moves, strict=True)
+        ),
+        "; ".join(
+            f"{side}: rests at M = {low:.3f}, moves at {high:.3f}"
+            for side, low, high in zip(WHEELS, stalls, moves, strict=True)
+        ),
     )
 
 
@@ -186,7 +221,10 @@ def inversions(reversals: Sequence[bool]) -> Claim:
 
 
 def surest(found: Mapping[int, tuple[int, int]]) -> int:
-    """The one of SURE_LENGTHS with the highest rate, of (reversed, tried) by length; the shortest of equals."""
+    """The one of SURE_LENGTHS with the highest rate, of (reversed, tried) by length.
+
+    The shortest of equals.
+    """
     return max(SURE_LENGTHS, key=lambda ticks: fraction(*found[ticks]))
 
 
@@ -199,10 +237,13 @@ def quenched(
     fewest: int,
     too_few: str,
 ) -> Claim:
-    """R9 and R10: a kick is reliable for one of SURE_LENGTHS even `where` it is least sure; it fails for 1 tick, and when long.
+    """R9 and R10: a kick is reliable for one of SURE_LENGTHS even `where` it is least sure.
 
-    least_sure: (reversed, tried) there, by length. rates: what part reverses, by length, from which it is told where the kick fails.
-    fewest: how many trials this rests on where there are fewest; too_few: what to say after that number if it decides nothing.
+    It fails for 1 tick, and when long.
+
+    least_sure: (reversed, tried) there, by length. rates: what part reverses, by length, from which
+    it is told where the kick fails. fewest: how many trials this rests on where there are fewest;
+    too_few: what to say after that number if it decides nothing.
     """
     best = surest(least_sure)
     rate = fraction(*least_sure[best])
@@ -216,6 +257,7 @@ def quenched(
         "1",
         wilson(*least_sure[best]),
         decides and rate >= RELIABLE and rates[1] <= FAILS and long <= FAILS,
-        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; of {SURE_LENGTHS[-1] + 1} to {max(rates)} ticks the least sure reverses"
-        f" {long:.0%}" + ("" if decides else f"; {fewest} {too_few}"),
+        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; of {SURE_LENGTHS[-1] + 1} to"
+        f" {max(rates)} ticks the least sure reverses {long:.0%}"
+        + ("" if decides else f"; {fewest} {too_few}"),
     )

@@ -1,4 +1,7 @@
-"""Spreads an experiment's simulations over a Dask cluster. A cell's result does not depend on where it is done, or how often."""
+"""Spreads an experiment's simulations over a Dask cluster.
+
+A cell's result does not depend on where it is done, or how often.
+"""
 
 from __future__ import annotations
 
@@ -13,25 +16,42 @@ CONNECT_S = 10.0
 
 
 def spread(
-    address: str, simulate: Callable[[Cell, Setting], list[Row]], cells: list[Cell], setting: Setting
+    address: str,
+    simulate: Callable[[Cell, Setting], list[Row]],
+    cells: list[Cell],
+    setting: Setting,
 ) -> Generator[tuple[Cell, list[Row]]]:
-    """(cell, rows) as they are done, on the workers of the Dask scheduler at `address`. Raises WrongUse and NoLink."""
+    """(cell, rows) as they are done, on the workers of the Dask scheduler at `address`.
+
+    Raises WrongUse and NoLink.
+    """
     try:
         from distributed import Client, as_completed
         from distributed.scheduler import KilledWorker
     except ImportError as error:
-        raise WrongUse("--scheduler needs the package distributed", "install it: pip install 'kickctl[cluster]'") from error
+        raise WrongUse(
+            "--scheduler needs the package distributed",
+            "install it: pip install 'kickctl[cluster]'",
+        ) from error
     if not re.fullmatch(r"\w+://.+:\d+", address):
-        raise WrongUse(f"'{address}' is no address of a Dask scheduler", "it is like tcp://HOST:8786")
+        raise WrongUse(
+            f"'{address}' is no address of a Dask scheduler", "it is like tcp://HOST:8786"
+        )
     try:
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
-        raise NoLink(f"no Dask scheduler answers at {address}: {error}", "start one: dask scheduler, and dask worker ADDRESS") from error
+        raise NoLink(
+            f"no Dask scheduler answers at {address}: {error}",
+            "start one: dask scheduler, and dask worker ADDRESS",
+        ) from error
     with client:
         futures = {client.submit(simulate, cell, setting, pure=False): cell for cell in cells}
         for future in as_completed(futures, loop=client.loop):
             try:
                 rows = future.result()
             except (CancelledError, KilledWorker) as error:
-                raise NoLink(f"the Dask cluster at {address} was lost: {error}", "mend it, and run the same command again") from error
+                raise NoLink(
+                    f"the Dask cluster at {address} was lost: {error}",
+                    "mend it, and run the same command again",
+                ) from error
             yield futures[future], rows

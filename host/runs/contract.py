@@ -2,7 +2,8 @@
 
 Its work is a list of cells, each of which can be done by itself.
 
-A cell is plain data that says what to do, a row plain data that came of it; both survive JSON unchanged, and what is unknown is None.
+A cell is plain data that says what to do, a row plain data that came of it; both survive JSON
+unchanged, and what is unknown is None.
 """
 
 from __future__ import annotations
@@ -55,17 +56,24 @@ class Findings:
 class Experiment(Protocol):
     """The module of an experiment.
 
-    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too. An experiment on simulated bodies,
-    and a study of the analytic model, is for no robot and has neither world nor trial.
+    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too.
+    An experiment on simulated bodies, and a study of the analytic model, is for no robot and has
+    neither world nor trial.
     """
 
     simulate: Callable[[Cell, Setting], list[Row]] | None
 
     def cells(self, options: Options, *, batch: bool) -> list[Cell]:
-        """The work in pieces, in the order of the table. batch: for `simulate`, whose pieces may be larger than a robot's."""
+        """The work in pieces, in the order of the table. batch.
+
+        For `simulate`, whose pieces may be larger than a robot's.
+        """
 
     def world(self, cell: Cell) -> dict[str, str]:
-        """What a simulated brick needs for this cell: options of sim://. What a person has to see to on a real one."""
+        """What a simulated brick needs for this cell: options of sim://.
+
+        What a person has to see to on a real one.
+        """
 
     def trial(self, cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
         """Do one cell on a robot that runs; `log` taps it meanwhile. Raises KickctlError."""

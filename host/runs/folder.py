@@ -27,7 +27,9 @@ class Done(NamedTuple):
 
 
 class Study:
-    """A run's folder below `results`, made if it is not there. Its name has a digest of all settings, which are plain data.
+    """A run's folder below `results`, made if it is not there.
+
+    Its name has a digest of all settings, which are plain data.
 
     Raises WrongUse if the folder cannot be used.
     """
@@ -39,14 +41,20 @@ class Study:
             folder.mkdir(parents=True, exist_ok=True)
             self._journal = (folder / _CELLS).open("a+b")
         except OSError as error:
-            raise WrongUse(f"{folder} cannot hold results: {error.strerror}", "name a folder with --out that you may write to") from error
+            raise WrongUse(
+                f"{folder} cannot hold results: {error.strerror}",
+                "name a folder with --out that you may write to",
+            ) from error
         try:
             fcntl.flock(self._journal, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self.write("settings.json", json.dumps(settings, indent=1) + "\n")
             self._read()
         except BlockingIOError:
             self.close()
-            raise WrongUse(f"another run works in {folder} at this moment", "wait for it, or name another folder with --out") from None
+            raise WrongUse(
+                f"another run works in {folder} at this moment",
+                "wait for it, or name another folder with --out",
+            ) from None
         except WrongUse:
             self.close()
             raise
@@ -62,7 +70,10 @@ class Study:
                 entry = json.loads(line)
                 self._done[_key(entry["cell"])] = Done(entry["rows"], entry["spoiled"])
             except (ValueError, KeyError, TypeError) as error:
-                raise WrongUse(f"{self.folder / _CELLS} is damaged", "name another folder with --out, or delete this one") from error
+                raise WrongUse(
+                    f"{self.folder / _CELLS} is damaged",
+                    "name another folder with --out, or delete this one",
+                ) from error
             whole += len(line)
         self._journal.truncate(whole)
 

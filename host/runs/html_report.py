@@ -1,4 +1,7 @@
-"""The report of a reproduction: one HTML file with the table of claims and, inside it, every experiment's figure."""
+"""The report of a reproduction.
+
+One HTML file with the table of claims and, inside it, every experiment's figure.
+"""
 
 from __future__ import annotations
 
@@ -21,16 +24,39 @@ dt { font-weight: bold; }
 """
 
 
-def write(path: Path, claims: Sequence[Claim], summaries: Sequence[dict[str, Any]], skipped: dict[str, str]) -> Path:
-    """Write the file. summaries: of the experiments, as host.perform.run returns them; skipped: why a claim was not tried."""
+def write(
+    path: Path,
+    claims: Sequence[Claim],
+    summaries: Sequence[dict[str, Any]],
+    skipped: dict[str, str],
+) -> Path:
+    """Write the file. summaries: of the experiments, as host.perform.run returns them; skipped.
+
+    Why a claim was not tried.
+    """
     first = summaries[0] if summaries else {"seed": "none", "version": ""}
     robots = sorted({summary["brick"] for summary in summaries if "brick" in summary})
-    facts = {"robot": ", ".join(robots) or "none", "seed": first["seed"], "kickctl": first["version"]}
-    body = "".join(f"<dt>{escape(name)}</dt><dd>{escape(str(value))}</dd>" for name, value in facts.items())
+    facts = {
+        "robot": ", ".join(robots) or "none",
+        "seed": first["seed"],
+        "kickctl": first["version"],
+    }
+    body = "".join(
+        f"<dt>{escape(name)}</dt><dd>{escape(str(value))}</dd>" for name, value in facts.items()
+    )
     parts = [
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Kick control: the paper\'s claims, measured</title>\n',
-        f"<style>{_STYLE}</style>\n</head>\n<body>\n<h1>Kick control: the paper's claims, measured</h1>\n",
-        "<p>Claims of S&aacute;ndor et al., <i>Kick control: using the attracting states arising within the sensorimotor loop of",
+        (
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Kick'
+            " control: the paper's claims, measured</title>\n"
+        ),
+        (
+            f"<style>{_STYLE}</style>\n</head>\n<body>\n<h1>Kick control: the paper's claims,"
+            " measured</h1>\n"
+        ),
+        (
+            "<p>Claims of S&aacute;ndor et al., <i>Kick control: using the attracting states"
+            " arising within the sensorimotor loop of"
+        ),
         " self-organized robots as motor primitives</i>, Front. Neurorobot. 12:40 (2018).",
         " Intervals hold with a confidence of 95&nbsp;%.</p>\n",
         f"<dl>{body}</dl>\n{_table(claims, skipped)}",
@@ -48,7 +74,11 @@ def _table(claims: Sequence[Claim], skipped: dict[str, str]) -> str:
             claim.claim,
             claim.paper,
             claim.number(),
-            '<span class="holds">holds</span>' if claim.holds else '<span class="fails">does not hold</span>',
+            (
+                '<span class="holds">holds</span>'
+                if claim.holds
+                else '<span class="fails">does not hold</span>'
+            ),
             claim.note,
         )
         for claim in claims
@@ -70,7 +100,8 @@ def _experiment(summary: dict[str, Any]) -> str:
     options = ", ".join(f"{key} {value}" for key, value in summary["options"].items())
     spoiled = f"; {len(summary['spoiled'])} tries did not count" if summary["spoiled"] else ""
     return (
-        f"<h2>{name}</h2>\n<p>{summary['trials']} rows ({escape(options)}){spoiled}; table, logs and summary in"
+        f"<h2>{name}</h2>\n<p>{summary['trials']} rows ({escape(options)}){spoiled}; table, logs"
+        " and summary in"
         f" <code>{escape(summary['folder'])}</code></p>\n"
         f'<img alt="figure of {name}" src="data:image/png;base64,{figure}">\n'
     )

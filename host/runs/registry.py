@@ -24,7 +24,10 @@ class Option(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """What can be run, for people. claims: ids of the paper's claims that are settled here (others may be touched)."""
+    """What can be run, for people. claims.
+
+    Ids of the paper's claims that are settled here (others may be touched).
+    """
 
     help: str
     options: tuple[Option, ...]
@@ -43,8 +46,13 @@ def checked(name: str, entry: Entry, arguments: Mapping[str, Any]) -> dict[str, 
     options = {option.name: option for option in entry.options}
     for given in arguments:
         if given not in options:
-            raise WrongUse(f"'{name}' has no option '{given}'", "it has " + (", ".join(options) or "none"))
-    return {name: _value(option, arguments.get(name, option.default)) for name, option in options.items()}
+            raise WrongUse(
+                f"'{name}' has no option '{given}'", "it has " + (", ".join(options) or "none")
+            )
+    return {
+        name: _value(option, arguments.get(name, option.default))
+        for name, option in options.items()
+    }
 
 
 def _type(option: Option) -> type:
@@ -56,10 +64,20 @@ def _value(option: Option, value: Any) -> Any:
         return None
     if option.choices:
         if value not in option.choices:
-            raise WrongUse(f"{option.name} cannot be {value!r}", f"give one of {', '.join(option.choices)}: {option.doc}")
+            raise WrongUse(
+                f"{option.name} cannot be {value!r}",
+                f"give one of {', '.join(option.choices)}: {option.doc}",
+            )
         return value
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not option.least <= value <= option.most:
-        raise WrongUse(f"{option.name} cannot be {value!r}", f"give a number from {option.least:g} to {option.most:g}: {option.doc}")
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float))
+        or not option.least <= value <= option.most
+    ):
+        raise WrongUse(
+            f"{option.name} cannot be {value!r}",
+            f"give a number from {option.least:g} to {option.most:g}: {option.doc}",
+        )
     if isinstance(option.default, int) and value != int(value):
         raise WrongUse(f"{option.name} cannot be {value!r}", f"give a whole number: {option.doc}")
     return _type(option)(value)
@@ -68,16 +86,33 @@ def _value(option: Option, value: Any) -> Any:
 def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
     """A flag for each option, and those that all runs have."""
     for option in entry.options:
-        own: dict[str, Any] = {"choices": option.choices} if option.choices else {"type": _type(option), "metavar": "N"}
+        own: dict[str, Any] = (
+            {"choices": option.choices}
+            if option.choices
+            else {"type": _type(option), "metavar": "N"}
+        )
         words = option.doc if option.default is None else f"{option.doc} (default %(default)s)"
-        parser.add_argument("--" + option.name.replace("_", "-"), dest=option.name, default=option.default, help=words, **own)
+        parser.add_argument(
+            "--" + option.name.replace("_", "-"),
+            dest=option.name,
+            default=option.default,
+            help=words,
+            **own,
+        )
     parser.add_argument(
         "--out",
         default="results",
         metavar="FOLDER",
-        help="where results go; the same command goes on where it was cut short (default %(default)s)",
+        help=(
+            "where results go; the same command goes on where it was cut short (default"
+            " %(default)s)"
+        ),
     )
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="spread the computing over this Dask cluster, as tcp://host:8786")
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="spread the computing over this Dask cluster, as tcp://host:8786",
+    )
 
 
 def options_given(options: argparse.Namespace, entry: Entry) -> dict[str, Any]:

@@ -23,15 +23,23 @@ Draw = Callable[[list[Row], Findings], "Figure"]
 
 
 @contextmanager
-def begun(results: Path, settings: dict[str, Any], cells: list[Cell], say: Callable[[str], None]) -> Iterator[Study]:
+def begun(
+    results: Path, settings: dict[str, Any], cells: list[Cell], say: Callable[[str], None]
+) -> Iterator[Study]:
     """Yields the study of a run, begun or gone on with, and says what is kept of it if it ends early."""
     study = Study(results, settings)
     name = settings["experiment"]
-    say(f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in {study.folder}")
+    say(
+        f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in"
+        f" {study.folder}"
+    )
     try:
         yield study
     except (KickctlError, KeyboardInterrupt, OSError):
-        say(f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes on from there")
+        say(
+            f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes"
+            " on from there"
+        )
         raise
     finally:
         study.close()
@@ -40,7 +48,13 @@ def begun(results: Path, settings: dict[str, Any], cells: list[Cell], say: Calla
 def do(name: str, cells: list[Cell], study: Study, work: Work) -> None:
     """Do those cells that the study does not have yet."""
     missing = [cell for cell in cells if cell not in study]
-    _keep(((cell, *work(cell)) for cell in missing), len(cells) - len(missing), len(cells), study, name)
+    _keep(
+        ((cell, *work(cell)) for cell in missing),
+        len(cells) - len(missing),
+        len(cells),
+        study,
+        name,
+    )
 
 
 def simulate(
@@ -53,7 +67,10 @@ def simulate(
     *,
     processes: bool = False,
 ) -> None:
-    """Do them by computing, here or on the Dask cluster of the scheduler at this address. processes: one for each core, if here."""
+    """Do them by computing, here or on the Dask cluster of the scheduler at this address.
+
+    Processes: one for each core, if here.
+    """
     missing = [cell for cell in cells if cell not in study]
     if scheduler is not None:
         from host.runs.cluster import spread
@@ -66,7 +83,13 @@ def simulate(
     else:
         done = ((cell, function(cell, setting)) for cell in missing)
     with closing(done):
-        _keep(((cell, rows, []) for cell, rows in done), len(cells) - len(missing), len(cells), study, name)
+        _keep(
+            ((cell, rows, []) for cell, rows in done),
+            len(cells) - len(missing),
+            len(cells),
+            study,
+            name,
+        )
 
 
 def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:
@@ -78,7 +101,14 @@ def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: 
             advance(done)
 
 
-def finish(name: str, rows: list[Row], findings: Findings, draw: Draw, study: Study, settings: dict[str, Any]) -> dict[str, Any]:
+def finish(
+    name: str,
+    rows: list[Row],
+    findings: Findings,
+    draw: Draw,
+    study: Study,
+    settings: dict[str, Any],
+) -> dict[str, Any]:
     """Write the table, the figure that `draw` makes, and the summary, which is returned."""
     figures = study.write_figure(name, draw(rows, findings))
     logs = study.folder / "logs"

@@ -1,1 +1,4 @@
-"""The paper's analytic model of one wheel (eq. dot_x_phi): what mathematics and numbers say about it."""
+"""The paper's analytic model of one wheel (eq. dot_x_phi).
+
+What mathematics and numbers say about it.
+"""

@@ -13,9 +13,16 @@ def need(module: str, extra: str) -> None:
         importlib.import_module(module)
     except ModuleNotFoundError as error:
         raise WrongUse(
-            f"this needs {module}, which is not installed", f"install it with the extra: pip install 'kickctl[{extra}]'"
+            f"this needs {module}, which is not installed",
+            f"install it with the extra: pip install 'kickctl[{extra}]'",
         ) from error
-    except (RuntimeError, AttributeError, ImportError, OSError) as error:  # as mujoco does with a MUJOCO_GL that it cannot use
+    except (
+        RuntimeError,
+        AttributeError,
+        ImportError,
+        OSError,
+    ) as error:  # as mujoco does with a MUJOCO_GL that it cannot use
         raise NotDone(
-            f"{module} cannot be loaded: {error}", "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa"
+            f"{module} cannot be loaded: {error}",
+            "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa",
         ) from error

@@ -10,7 +10,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Keep ^C until the end of the block: compiled code that is being loaded would take the interpreter down with it."""
+    """Keep ^C until the end of the block.
+
+    Compiled code that is being loaded would take the interpreter down with it.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return

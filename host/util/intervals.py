@@ -25,12 +25,24 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
     return float(interval.low), float(interval.high)
 
 
-def spread(values: Sequence[float], of: Callable[..., NDArray[np.float64]] = np.mean) -> tuple[float, float] | None:
-    """A bootstrap interval (95 %, percentiles, fixed chance) of a statistic of values; None of fewer than two."""
+def spread(
+    values: Sequence[float], of: Callable[..., NDArray[np.float64]] = np.mean
+) -> tuple[float, float] | None:
+    """A bootstrap interval (95 %, percentiles, fixed chance) of a statistic of values.
+
+    None of fewer than two.
+    """
     if len(values) < 2:
         return None
     if len(set(values)) == 1:
         return values[0], values[0]
     rng = np.random.default_rng(0)
-    found = bootstrap((np.asarray(values),), of, confidence_level=CONFIDENCE, method="percentile", n_resamples=RESAMPLES, rng=rng)
+    found = bootstrap(
+        (np.asarray(values),),
+        of,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        n_resamples=RESAMPLES,
+        rng=rng,
+    )
     return float(found.confidence_interval.low), float(found.confidence_interval.high)

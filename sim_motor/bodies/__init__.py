@@ -1,1 +1,4 @@
-"""The paper's simulated bodies: two-wheeled cars with one rod per wheel, and trains of them, in MuJoCo."""
+"""The paper's simulated bodies.
+
+Two-wheeled cars with one rod per wheel, and trains of them, in MuJoCo.
+"""

@@ -1,4 +1,8 @@
-"""A car or a train that runs: MuJoCo steps the bodies, and between two steps the controllers of all wheels step and set their motors."""
+"""A car or a train that runs.
+
+MuJoCo steps the bodies, and between two steps the controllers of all wheels step and set their
+motors.
+"""
 
 from __future__ import annotations
 
@@ -33,9 +37,10 @@ class Unstable(Exception):
 class Body:
     """Cars in a scene, with their controllers.
 
-    model: as host or caller has compiled it from `sim_motor.bodies.model.compose`. phases (rad): of the wheels at the
-    start, (wheels,), with potentials 0, as in the authors' programs; random ones if there are none, from `seed`. torque (N m): if given,
-    it is each wheel's, for ever, instead of the controllers'. Wheels are in the order of `wheels`: car0_left, car0_right, car1_left ...
+    model: as host or caller has compiled it from `sim_motor.bodies.model.compose`. phases (rad): of
+    the wheels at the start, (wheels,), with potentials 0, as in the authors' programs; random ones
+    if there are none, from `seed`. torque (N m): if given, it is each wheel's, for ever, instead of
+    the controllers'. Wheels are in the order of `wheels`: car0_left, car0_right, car1_left ...
     """
 
     def __init__(
@@ -53,17 +58,25 @@ class Body:
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         self.cars = sum(model.body(number).name.endswith("_car") for number in range(model.nbody))
         self.wheels = tuple(car_name(car) + side for car in range(self.cars) for side in SIDES)
-        self.joints = tuple(car_name(car) + name for name in ("yaw", "pitch") for car in range(1, self.cars))
+        self.joints = tuple(
+            car_name(car) + name for name in ("yaw", "pitch") for car in range(1, self.cars)
+        )
         self.neurons = Wheels(len(self.wheels), preset.a, preset.tau, preset.k, preset.wheel_radius)
         self.step, self._every = 0, max(1, round(record_s / float(model.opt.timestep)))
         self._angles = np.array([model.joint(name).qposadr[0] for name in self.wheels])
         self._speeds = np.array([model.joint(name).dofadr[0] for name in self.wheels])
-        self._bends = np.array([model.joint(name).qposadr[0] for name in self.joints], dtype=np.int64)
+        self._bends = np.array(
+            [model.joint(name).qposadr[0] for name in self.joints], dtype=np.int64
+        )
         self._bodies = np.array([model.body(car_name(car) + "car").id for car in range(self.cars)])
         self._drags = np.full(self.cars, preset.body_drag)
         self._kicks: list[Kick] = []
         self._notes: list[tuple[Any, ...]] = []
-        begin = np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels)) if phases is None else phases
+        begin = (
+            np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels))
+            if phases is None
+            else phases
+        )
         self.data.qpos[self._angles] = begin
         mujoco.mj_forward(model, self.data)
         self._note()
@@ -88,20 +101,36 @@ class Body:
     @property
     def rows(self) -> Array:
         """The state every record_s, from the start on, (times, columns)."""
-        steps, qpos, qvel, x, torque, places, turns = (np.array(values) for values in zip(*self._notes, strict=True))
+        steps, qpos, qvel, x, torque, places, turns = (
+            np.array(values) for values in zip(*self._notes, strict=True)
+        )
         times_s = steps[:, None] * float(self.model.opt.timestep)
-        poses = np.concatenate([places[:, self._bodies], _angles_of(turns[:, self._bodies])], axis=2).reshape(len(steps), -1)
-        wheels = (qpos[:, self._angles], qvel[:, self._speeds], x, _target_position(x, self.neurons.a), torque)
+        poses = np.concatenate(
+            [places[:, self._bodies], _angles_of(turns[:, self._bodies])], axis=2
+        ).reshape(len(steps), -1)
+        wheels = (
+            qpos[:, self._angles],
+            qvel[:, self._speeds],
+            x,
+            _target_position(x, self.neurons.a),
+            torque,
+        )
         return np.concatenate([times_s, *wheels, qpos[:, self._bends], poses], axis=1)
 
     def kick(self, kick: Kick) -> None:
-        """Begin a kick at its `begin`, in steps, on the wheels whose names it has. Raises ValueError if that is over or no wheel's.
+        """Begin a kick at its `begin`, in steps, on the wheels whose names it has.
+
+        Raises ValueError if that is over or no wheel's.
 
         A wheel has one quenched kick at a time; the next takes its place.
         """
         unknown = [name for name in kick.wheels if name not in self.wheels]
         if unknown or kick.begin < self.step:
-            raise ValueError(f"there is no wheel {', '.join(unknown)}" if unknown else f"step {kick.begin} is over")
+            raise ValueError(
+                f"there is no wheel {', '.join(unknown)}"
+                if unknown
+                else f"step {kick.begin} is over"
+            )
         self._kicks.append(kick)
         self._kicks.sort(key=lambda one: one.begin)
 
@@ -110,20 +139,41 @@ class Body:
         model, data, own = self.model, self.data, self.neurons
         end, dt_s = self.step + round(seconds / model.opt.timestep), model.opt.timestep
         # The same memory as long as the data live.
-        qpos, ctrl, pull, velocity, warnings = data.qpos, data.ctrl, data.xfrc_applied, data.sensordata, data.warning
+        qpos, ctrl, pull, velocity, warnings = (
+            data.qpos,
+            data.ctrl,
+            data.xfrc_applied,
+            data.sensordata,
+            data.warning,
+        )
         while self.step < end:
             while self._kicks and self._kicks[0].begin <= self.step:
                 self._begin(self._kicks.pop(0))
             until = min(end, self._next_record(), self._kicks[0].begin if self._kicks else end)
             for step in range(self.step, until):
                 mujoco.mj_step1(model, data)
-                drive(step, dt_s, own.floats, own.whole, self._angles, qpos, ctrl, self._drags, self._bodies, velocity, pull)
+                drive(
+                    step,
+                    dt_s,
+                    own.floats,
+                    own.whole,
+                    self._angles,
+                    qpos,
+                    ctrl,
+                    self._drags,
+                    self._bodies,
+                    velocity,
+                    pull,
+                )
                 if self.torque is not None:
                     ctrl[:] = self.torque
                 mujoco.mj_step2(model, data)
             self.step = until
             if any(warnings[bad].number for bad in _BAD):
-                raise Unstable(f"the simulation cannot be followed beyond {self.time_s:g} s: forces or speeds grew without bounds")
+                raise Unstable(
+                    f"the simulation cannot be followed beyond {self.time_s:g} s: forces or speeds"
+                    " grew without bounds"
+                )
             if self.step % self._every == 0:
                 self._note()
                 watch(self.time_s)
@@ -136,7 +186,11 @@ class Body:
         for name in kick.wheels:
             wheel = self.wheels.index(name)
             if kick.pulse:
-                own.begin[wheel], own.ticks[wheel], own.pulse[wheel] = kick.begin, kick.ticks, kick.pulse
+                own.begin[wheel], own.ticks[wheel], own.pulse[wheel] = (
+                    kick.begin,
+                    kick.ticks,
+                    kick.pulse,
+                )
                 own.value[wheel], own.smooth[wheel] = kick.values[wheel % len(SIDES)], kick.smooth
             elif kick.mode == MEMBRANE:
                 own.x1[wheel], own.x2[wheel] = invert_membrane(own.x1[wheel], own.x2[wheel])
@@ -151,9 +205,14 @@ class Body:
         self._notes.append((self.step, *(values.copy() for values in noted)))
 
 
-# Its words would go into a file of the folder where one happens to be; `run` looks for what is wrong itself.
+# Its words would go into a file of the folder where one happens to be; `run` looks for what is
+# wrong itself.
 mujoco.set_mju_user_warning(lambda words: None)
-_BAD = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+_BAD = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
 
 
 def _angles_of(turns: Array) -> Array:
@@ -162,5 +221,8 @@ def _angles_of(turns: Array) -> Array:
     Such a body is turned by yaw about z, then by pitch about its y, then by roll about its x.
     """
     w, x, y, z = np.moveaxis(turns, -1, 0)
-    roll, yaw = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    roll, yaw = (
+        np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+        np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
+    )
     return np.stack([roll, np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0)), yaw], axis=-1)

@@ -1,4 +1,7 @@
-"""The controllers of all wheels of a body, compiled together: robot/controller.py with one rod, and the kicks of robot/kicks.py."""
+"""The controllers of all wheels of a body, compiled together.
+
+Robot/controller.py with one rod, and the kicks of robot/kicks.py.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +16,22 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 _actual_positions, _step_wheel = compiled(actual_positions), compiled(step_wheel)
-_seen_positions, _pulse_weight, _pulsed = compiled(kicks.seen_positions), compiled(kicks.pulse_weight), compiled(kicks.pulsed)
+_seen_positions, _pulse_weight, _pulsed = (
+    compiled(kicks.seen_positions),
+    compiled(kicks.pulse_weight),
+    compiled(kicks.pulsed),
+)
 NEVER = -1
 
 
 class Wheels:
-    """All wheels of a body: potentials, constants, and the quenched kick that each is under; each name stands for (wheels,).
+    """All wheels of a body: potentials, constants, and the quenched kick that each is under.
 
-    x2 is a potential without a rod. begin, ticks: of the kick, in steps; begin is NEVER where there is none. All stand in two arrays,
-    `floats` (7, wheels) and `whole` (4, wheels), which compiled code gets faster than eleven.
+    Each name stands for (wheels,).
+
+    x2 is a potential without a rod. begin, ticks: of the kick, in steps; begin is NEVER where there
+    is none. All stand in two arrays, `floats` (7, wheels) and `whole` (4, wheels), which compiled
+    code gets faster than eleven.
     """
 
     def __init__(self, wheels: int, a: float, tau_s: float, k: float, radius_m: float) -> None:
@@ -30,7 +40,14 @@ class Wheels:
         self.whole = np.zeros((4, wheels), dtype=np.int64)
         self.x1, self.x2, self.a, self.tau_s, self.k, self.radius_m, self.value = self.floats
         self.begin, self.ticks, self.pulse, self.smooth = self.whole
-        self.a[:], self.tau_s[:], self.k[:], self.radius_m[:], self.begin[:], self.pulse[:] = a, tau_s, k, radius_m, NEVER, kicks.NO_PULSE
+        self.a[:], self.tau_s[:], self.k[:], self.radius_m[:], self.begin[:], self.pulse[:] = (
+            a,
+            tau_s,
+            k,
+            radius_m,
+            NEVER,
+            kicks.NO_PULSE,
+        )
 
 
 @assembled
@@ -49,8 +66,8 @@ def drive(
 ) -> None:
     """Step all neurons by dt_s, and set the motors' torques (N m), R k sin(phi) (x_t - cos phi), and the drag of bodies (N).
 
-    floats, whole: of Wheels. angles: where in qpos the wheels' angles stand; bodies: which rows of `pull`, (bodies, 6), are the cars';
-    velocity: theirs, 3 each.
+    floats, whole: of Wheels. angles: where in qpos the wheels' angles stand; bodies: which rows of
+    `pull`, (bodies, 6), are the cars'; velocity: theirs, 3 each.
     """
     x1, x2, gain, time_constant, spring, radius_m, value = floats
     begin, ticks, pulse, smooth = whole
@@ -64,7 +81,9 @@ def drive(
             weight = _pulse_weight(age, ticks[i], smooth[i])
             a, tau_s, k, beta, shift_rad = _pulsed(pulse[i], value[i], weight, a, tau_s, k)
             seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
-        x1[i], x2[i], force, _ = _step_wheel(x1[i], x2[i], actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, 1)
+        x1[i], x2[i], force, _ = _step_wheel(
+            x1[i], x2[i], actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, 1
+        )
         ctrl[i] = radius_m[i] * force
     for i in range(len(bodies)):
         for axis in range(3):

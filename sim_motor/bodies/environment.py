@@ -1,6 +1,9 @@
-"""A train of cars as a Gymnasium environment: what it does is up to its wheels, and an agent can only kick them.
+"""A train of cars as a Gymnasium environment.
 
-Importing this registers it: gymnasium.make("sim_motor.bodies.environment:kickctl/Train-v0", ...), from kickctl[gym].
+What it does is up to its wheels, and an agent can only kick them.
+
+Importing this registers it: gymnasium.make("sim_motor.bodies.environment:kickctl/Train-v0", ...),
+from kickctl[gym].
 """
 
 from __future__ import annotations
@@ -26,7 +29,8 @@ Observation = NDArray[np.float32]
 Action = NDArray[np.int64]
 
 ID = "kickctl/Train-v0"
-# What a wheel can be told: nothing, or one of the paper's kicks. A phase shift takes the sign that reverses this wheel.
+# What a wheel can be told: nothing, or one of the paper's kicks. A phase shift takes the sign that
+# reverses this wheel.
 KICKS = (None, MEMBRANE, POSITION, PHASE)
 # Observed speeds are parts of these (rad/s), which a body on its wheels does not reach.
 WHEEL_RAD_S, JOINT_RAD_S = 200.0, 50.0
@@ -38,22 +42,29 @@ _NEAR_M, _FURTHER_M = 0.7, 0.25
 
 
 class Train(gymnasium.Env[Observation, Action]):
-    """A train, or with cars=1 a car, in a scene; the names of presets and scenes are those of `compose`.
+    """A train, or with cars=1 a car, in a scene.
 
-    Action: (wheels,), for each wheel a number of KICKS. Every decision_s (s) one may be begun; a quenched one lasts kick_s (s), and takes
-    the place of one that still acts on the wheel. Observation: proprioception, each in [-1, 1]: of the wheels sin and cos of the angle,
-    omega / WHEEL_RAD_S, membrane potential; of the joints angle / its range, rate / JOINT_RAD_S; wheels and joints in the order of Body.
-    Info: time_s, cars (for each, head first, x m, y m, yaw rad), direction (1 forward, -1 backward, 0 at rest), kicks (how many so far),
-    summary (of `measures`, from the state at each decision so far), ended (why, if it is terminated). reward: what an info is worth.
+    The names of presets and scenes are those of `compose`.
 
-    Terminated if a car fell over or the simulation cannot be followed; truncated after time_s. Options of reset: scene, and phases (rad),
-    (wheels,), of the wheels at the start; all other chance is the seed's.
+    Action: (wheels,), for each wheel a number of KICKS. Every decision_s (s) one may be begun; a
+    quenched one lasts kick_s (s), and takes the place of one that still acts on the wheel.
+    Observation: proprioception, each in [-1, 1]: of the wheels sin and cos of the angle, omega /
+    WHEEL_RAD_S, membrane potential; of the joints angle / its range, rate / JOINT_RAD_S; wheels and
+    joints in the order of Body. Info: time_s, cars (for each, head first, x m, y m, yaw rad),
+    direction (1 forward, -1 backward, 0 at rest), kicks (how many so far), summary (of `measures`,
+    from the state at each decision so far), ended (why, if it is terminated). reward: what an info
+    is worth.
 
-    Raises ValueError of a preset, scene or time that there is not. To draw where there is no display, set MUJOCO_GL to egl or osmesa before
-    mujoco is imported.
+    Terminated if a car fell over or the simulation cannot be followed; truncated after time_s.
+    Options of reset: scene, and phases (rad), (wheels,), of the wheels at the start; all other
+    chance is the seed's.
+
+    Raises ValueError of a preset, scene or time that there is not. To draw where there is no
+    display, set MUJOCO_GL to egl or osmesa before mujoco is imported.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012, as gymnasium has it
+    # As gymnasium has it.
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
 
     def __init__(
         self,
@@ -71,34 +82,54 @@ class Train(gymnasium.Env[Observation, Action]):
             raise ValueError(f"there is no preset '{preset}'; there are {', '.join(NAMES)}")
         for name, value in (("decision_s", decision_s), ("kick_s", kick_s), ("time_s", time_s)):
             if not STEP_S <= value <= _LONGEST_S[name]:
-                raise ValueError(f"{name} cannot be {value!r}: give seconds from {STEP_S:g} to {_LONGEST_S[name]:g}")
+                raise ValueError(
+                    f"{name} cannot be {value!r}: give seconds from {STEP_S:g} to"
+                    f" {_LONGEST_S[name]:g}"
+                )
         self.metadata = {**self.metadata, "render_fps": max(1, round(1 / decision_s))}
         self.render_mode, self._reward = render_mode, reward
         self._preset, self._scene, self._cars = preset_of(preset), scene, cars
         self._decision_s, self._kick_s, self._time_s = decision_s, kick_s, time_s
         self._renderer: mujoco.Renderer | None = None
         self._begin(scene, 0, None)
-        self.action_space: gymnasium.Space[Action] = gymnasium.spaces.MultiDiscrete([len(KICKS)] * len(self._body.wheels))
-        self.observation_space: gymnasium.Space[Observation] = gymnasium.spaces.Box(-1.0, 1.0, self._observe().shape, np.float32)
+        self.action_space: gymnasium.Space[Action] = gymnasium.spaces.MultiDiscrete(
+            [len(KICKS)] * len(self._body.wheels)
+        )
+        self.observation_space: gymnasium.Space[Observation] = gymnasium.spaces.Box(
+            -1.0, 1.0, self._observe().shape, np.float32
+        )
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, Info]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, Info]:
         super().reset(seed=seed)
         options = options or {}
         unknown = set(options) - {"scene", "phases"}
         if unknown:
-            raise ValueError(f"reset has no option {', '.join(sorted(unknown))}; it has scene and phases")
+            raise ValueError(
+                f"reset has no option {', '.join(sorted(unknown))}; it has scene and phases"
+            )
         self.close()
-        self._begin(options.get("scene", self._scene), int(self.np_random.integers(2**31)), options.get("phases"))
+        self._begin(
+            options.get("scene", self._scene),
+            int(self.np_random.integers(2**31)),
+            options.get("phases"),
+        )
         return self._observe(), self._tell("")
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, Info]:
         if not self.action_space.contains(action):
-            raise ValueError(f"no such action: {action!r}; it has {len(self._body.wheels)} whole numbers from 0 to {len(KICKS) - 1}")
+            raise ValueError(
+                f"no such action: {action!r}; it has {len(self._body.wheels)} whole numbers from 0"
+                f" to {len(KICKS) - 1}"
+            )
         body, ended, ticks = self._body, "", round(self._kick_s / STEP_S)
         for wheel, omega, choice in zip(body.wheels, body.omega, action, strict=True):
             mode = KICKS[choice]
             if mode is not None:
-                request = {"id": wheel, "mode": mode} | ({} if mode == MEMBRANE else {"ticks": ticks})
+                request = {"id": wheel, "mode": mode} | (
+                    {} if mode == MEMBRANE else {"ticks": ticks}
+                )
                 kick = parse(request, (int(np.sign(omega)),) * 2, Params(), body.step)
                 kick.wheels = (wheel,)
                 body.kick(kick)
@@ -108,21 +139,39 @@ class Train(gymnasium.Env[Observation, Action]):
         except Unstable as error:
             ended = str(error)
         info = self._tell(ended)
-        return self._observe(), self._reward(info), bool(info["ended"]), body.time_s > self._time_s - STEP_S / 2, info
+        return (
+            self._observe(),
+            self._reward(info),
+            bool(info["ended"]),
+            body.time_s > self._time_s - STEP_S / 2,
+            info,
+        )
 
     def render(self) -> Any:
-        """What it looks like now, (height, width, 3), if the render mode is rgb_array. Raises RuntimeError if nothing here can draw."""
+        """What it looks like now, (height, width, 3), if the render mode is rgb_array.
+
+        Raises RuntimeError if nothing here can draw.
+        """
         if self.render_mode is None:
             return None
         if self._renderer is None:
             try:
                 self._renderer = mujoco.Renderer(self._body.model, PICTURE[1], PICTURE[0])
-            except Exception as error:  # what is wrong with a system's OpenGL comes as any kind of exception
+            except (
+                Exception
+            ) as error:  # what is wrong with a system's OpenGL comes as any kind of exception
                 hint = "install kickctl[bodies], set MUJOCO_GL to egl or osmesa, and begin anew"
                 raise RuntimeError(f"no picture can be made here ({error}): {hint}") from error
         camera = mujoco.MjvCamera()
-        camera.type, camera.trackbodyid = mujoco.mjtCamera.mjCAMERA_TRACKING, self._body.model.body(car_name(self._cars // 2) + "car").id
-        camera.azimuth, camera.elevation, camera.distance = 125.0, -28.0, _NEAR_M + _FURTHER_M * self._cars
+        camera.type, camera.trackbodyid = (
+            mujoco.mjtCamera.mjCAMERA_TRACKING,
+            self._body.model.body(car_name(self._cars // 2) + "car").id,
+        )
+        camera.azimuth, camera.elevation, camera.distance = (
+            125.0,
+            -28.0,
+            _NEAR_M + _FURTHER_M * self._cars,
+        )
         self._renderer.update_scene(self._body.data, camera)
         return self._renderer.render()
 
@@ -141,11 +190,23 @@ class Train(gymnasium.Env[Observation, Action]):
     def _observe(self) -> Observation:
         body = self._body
         bends, rates = (
-            np.array([getattr(body.data.joint(name), what)[0] for name in body.joints], dtype=np.float64) for what in ("qpos", "qvel")
+            np.array(
+                [getattr(body.data.joint(name), what)[0] for name in body.joints], dtype=np.float64
+            )
+            for what in ("qpos", "qvel")
         )
         phi = np.nan_to_num([body.data.joint(name).qpos[0] for name in body.wheels])
-        parts = (np.sin(phi), np.cos(phi), body.omega / WHEEL_RAD_S, body.neurons.x1, bends / self._preset.joint_range, rates / JOINT_RAD_S)
-        return np.asarray(np.clip(np.nan_to_num(np.concatenate(parts)), -1.0, 1.0), dtype=np.float32)
+        parts = (
+            np.sin(phi),
+            np.cos(phi),
+            body.omega / WHEEL_RAD_S,
+            body.neurons.x1,
+            bends / self._preset.joint_range,
+            rates / JOINT_RAD_S,
+        )
+        return np.asarray(
+            np.clip(np.nan_to_num(np.concatenate(parts)), -1.0, 1.0), dtype=np.float32
+        )
 
     def _tell(self, ended: str) -> Info:
         columns, rows = self._body.columns, self._body.rows

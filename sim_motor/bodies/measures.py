@@ -1,4 +1,7 @@
-"""What a body did, from the rows that it wrote down: direction, order, reversals, speed, and whether it got stuck or fell over."""
+"""What a body did, from the rows that it wrote down.
+
+Direction, order, reversals, speed, and whether it got stuck or fell over.
+"""
 
 from __future__ import annotations
 
@@ -9,19 +12,22 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Start-up is over when the wheels' mean |omega| first reaches this part of the greatest; a body has a direction from the second part on.
+# Start-up is over when the wheels' mean |omega| first reaches this part of the greatest; a body has
+# a direction from the second part on.
 STARTED, MOVING = 0.9, 0.25
-# A wheel that turns more slowly (rad/s) has no direction, and a body whose wheels all do is at rest. One whose wheels' mean never exceeds
-# the second rocks to and fro, which is no reversal.
+# A wheel that turns more slowly (rad/s) has no direction, and a body whose wheels all do is at
+# rest. One whose wheels' mean never exceeds the second rocks to and fro, which is no reversal.
 STILL_RAD_S, TRAVELS_RAD_S = 0.5, 3.0
-# A body is stuck if for so long (s) in the end it stays within so many metres; it has fallen over if a car leans by more than this (rad).
+# A body is stuck if for so long (s) in the end it stays within so many metres; it has fallen over
+# if a car leans by more than this (rad).
 STUCK_S, STUCK_M, FALLEN_RAD = 5.0, 0.25, np.pi / 2
 
 
 class Course(NamedTuple):
     """A body's rows by quantity, with the times first.
 
-    omega (rad/s): (times, wheels). centre_m: of all cars, (times, 3). lean_rad: the most that any car leans, (times,).
+    omega (rad/s): (times, wheels). centre_m: of all cars, (times, 3). lean_rad: the most that any
+    car leans, (times,).
     """
 
     t_s: Array
@@ -37,17 +43,27 @@ def course(columns: tuple[str, ...], rows: Array) -> Course:
         return rows[:, [column.endswith(ending) for column in columns]]
 
     centre = np.stack([of(f"_{axis}_m").mean(axis=1) for axis in "xyz"], axis=1)
-    lean = np.arccos(np.clip(np.cos(of("_roll_rad")) * np.cos(of("_pitch_rad")), -1.0, 1.0)).max(axis=1)
+    lean = np.arccos(np.clip(np.cos(of("_roll_rad")) * np.cos(of("_pitch_rad")), -1.0, 1.0)).max(
+        axis=1
+    )
     return Course(rows[:, 0], of("_omega_rad_s"), centre, lean)
 
 
 def order(omega: Array) -> Array:
-    """The order parameter at each time: the absolute mean of the signs of all wheels' omega; 0 at rest, 1 if all turn one way."""
-    return np.asarray(np.abs(np.where(np.abs(omega) < STILL_RAD_S, 0.0, np.sign(omega)).mean(axis=-1)))
+    """The order parameter at each time: the absolute mean of the signs of all wheels' omega.
+
+    0 at rest, 1 if all turn one way.
+    """
+    return np.asarray(
+        np.abs(np.where(np.abs(omega) < STILL_RAD_S, 0.0, np.sign(omega)).mean(axis=-1))
+    )
 
 
 def directions(moved: Course) -> NDArray[np.int64]:
-    """1 forward, -1 backward, at each time; what it was last while the wheels' mean is small; 0 before it first was anything."""
+    """1 forward, -1 backward, at each time; what it was last while the wheels' mean is small.
+
+    0 before it first was anything.
+    """
     mean = moved.omega.mean(axis=1)
     most = float(np.abs(mean).max())
     least = MOVING * most if most > TRAVELS_RAD_S else np.inf
@@ -57,7 +73,10 @@ def directions(moved: Course) -> NDArray[np.int64]:
 
 
 def reversals_s(moved: Course) -> list[float]:
-    """When the body as a whole took the other direction: at the wheels' mean omega's last change of sign before it was large again."""
+    """When the body as a whole took the other direction.
+
+    At the wheels' mean omega's last change of sign before it was large again.
+    """
     signs, mean = directions(moved), moved.omega.mean(axis=1)
     found = []
     for change in np.flatnonzero((signs[1:] != signs[:-1]) & (signs[:-1] != 0)) + 1:

@@ -17,7 +17,8 @@ SCENES = ("flat", "walls", "octagon", "slopes", "funnel", "halfpipe", "hills", "
 # Scenes whose slopes can be given another angle.
 SLOPED = ("slopes", "funnel")
 SIDES = ("left", "right")
-# A wall against which a robot of the program of 2019 bounces about as in LPZRobots: time constant (s) and damping ratio.
+# A wall against which a robot of the program of 2019 bounces about as in LPZRobots: time constant
+# (s) and damping ratio.
 BOUNCY = (0.02, 0.3)
 _BOXES, _OCTAGON_M = 16, 5.0
 # Steps after which a body stands.
@@ -43,11 +44,14 @@ def compose(
 ) -> mujoco.MjSpec:
     """A scene with a car, or with a train whose head is the first.
 
-    seed: of boxes and hills. angle (rad): of the scene's slopes. bouncy: whether its walls are springy rather than dead.
-    Raises ValueError of a file that is no MJCF, and of a scene or number of cars that there is not.
+    seed: of boxes and hills. angle (rad): of the scene's slopes. bouncy: whether its walls are
+    springy rather than dead. Raises ValueError of a file that is no MJCF, and of a scene or number
+    of cars that there is not.
     """
     if scene not in SCENES and not scene.endswith(".xml"):
-        raise ValueError(f"there is no scene '{scene}'; there are {', '.join(SCENES)}, and files NAME.xml")
+        raise ValueError(
+            f"there is no scene '{scene}'; there are {', '.join(SCENES)}, and files NAME.xml"
+        )
     if cars < 1:
         raise ValueError(f"a train of {cars} cars cannot be: give 1 or more")
     spec = _assemble(preset, scene, cars, seed, angle, bouncy, timestep)
@@ -55,13 +59,23 @@ def compose(
     return spec
 
 
-def _assemble(preset: Preset, scene: str, cars: int, seed: int, angle: float | None, bouncy: bool, timestep: float) -> mujoco.MjSpec:
+def _assemble(
+    preset: Preset,
+    scene: str,
+    cars: int,
+    seed: int,
+    angle: float | None,
+    bouncy: bool,
+    timestep: float,
+) -> mujoco.MjSpec:
     path = Path(scene) if scene.endswith(".xml") else HERE / "scenes" / f"{scene}.xml"
     if not path.is_file():
         raise ValueError(f"there is no file {path}")
     spec = mujoco.MjSpec.from_file(str(path))
     if any(body.name.endswith("car") for body in spec.bodies):
-        raise ValueError(f"{path} has cars in it already: open it in a viewer, or give a scene without")
+        raise ValueError(
+            f"{path} has cars in it already: open it in a viewer, or give a scene without"
+        )
     spec.option.timestep = timestep
     ground_m = _shape(spec, scene, np.random.default_rng(seed), angle, bouncy)
     frame = spec.worldbody.add_frame(pos=((cars - 1) * preset.pitch / 2, 0.0, ground_m))
@@ -79,9 +93,12 @@ def _assemble(preset: Preset, scene: str, cars: int, seed: int, angle: float | N
 
 
 def slip_per_newton(model: mujoco.MjModel) -> float:
-    """How fast a contact slides for each newton of friction, m/(s N): the mean of all contacts of a body that stands.
+    """How fast a contact slides for each newton of friction, m/(s N).
 
-    In MuJoCo friction is a force f with a + R f = -b v, and in steady sliding, a = 0, so v = R f / b.
+    The mean of all contacts of a body that stands.
+
+    In MuJoCo friction is a force f with a + R f = -b v, and in steady sliding, a = 0, so v = R f /
+    b.
     """
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, _STANDING)
@@ -91,27 +108,52 @@ def slip_per_newton(model: mujoco.MjModel) -> float:
 
 @cache
 def _impratio(preset: Preset, cars: int) -> float:
-    """MuJoCo's option that makes contacts slide as the preset says; without it they hold far better than those of the authors' engine."""
-    return slip_per_newton(_assemble(preset, "flat", cars, 1, None, False, 0.001).compile()) / preset.slip
+    """MuJoCo's option that makes contacts slide as the preset says.
+
+    Without it they hold far better than those of the authors' engine.
+    """
+    return (
+        slip_per_newton(_assemble(preset, "flat", cars, 1, None, False, 0.001).compile())
+        / preset.slip
+    )
 
 
 def _car(preset: Preset, *, alone: bool) -> mujoco.MjSpec:
-    """A car with the preset's numbers. Only one that is alone has casters: those of a train hold each other up."""
+    """A car with the preset's numbers. Only one that is alone has casters.
+
+    Those of a train hold each other up.
+    """
     spec = mujoco.MjSpec.from_file(str(HERE / "car.xml"))
     spec.body("car").pos = (0.0, 0.0, preset.wheel_radius)
     body = spec.geom("body")
-    body.size[:2], body.mass, body.friction[0] = (preset.body_radius, preset.body_height / 2), preset.body_mass, preset.friction
+    body.size[:2], body.mass, body.friction[0] = (
+        (preset.body_radius, preset.body_height / 2),
+        preset.body_mass,
+        preset.friction,
+    )
     for end, sign in (("front", 1.0), ("rear", -1.0)):
         caster, radius = spec.geom(f"{end}_caster"), preset.wheel_radius / 4
         if alone:
             caster.size[0] = radius
-            caster.pos = (sign * (preset.body_radius - 2 * radius), 0.0, radius - preset.wheel_radius)
+            caster.pos = (
+                sign * (preset.body_radius - 2 * radius),
+                0.0,
+                radius - preset.wheel_radius,
+            )
         else:
             spec.delete(caster)
     for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
-        spec.body(f"{side}_wheel").pos = (0.0, sign * (preset.body_radius + preset.wheel_width / 2), 0.0)
+        spec.body(f"{side}_wheel").pos = (
+            0.0,
+            sign * (preset.body_radius + preset.wheel_width / 2),
+            0.0,
+        )
         wheel, mark, joint = spec.geom(f"{side}_wheel"), spec.geom(f"{side}_mark"), spec.joint(side)
-        wheel.size[:2], wheel.mass, wheel.friction[0] = (preset.wheel_radius, preset.wheel_width / 2), preset.wheel_mass, preset.friction
+        wheel.size[:2], wheel.mass, wheel.friction[0] = (
+            (preset.wheel_radius, preset.wheel_width / 2),
+            preset.wheel_mass,
+            preset.friction,
+        )
         mark.pos, mark.size = (
             (0.0, 0.0, preset.wheel_radius / 2),
             (preset.wheel_radius / 8, 0.6 * preset.wheel_width, preset.wheel_radius / 2),
@@ -123,18 +165,32 @@ def _car(preset: Preset, *, alone: bool) -> mujoco.MjSpec:
 def _couple(body: Any, prefix: str, preset: Preset) -> None:
     """The torsion springs to the car before: yaw and pitch, halfway between the two."""
     for name, axis in (("yaw", (0.0, 0.0, 1.0)), ("pitch", (0.0, 1.0, 0.0))):
-        joint = body.add_joint(name=prefix + name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=axis, pos=(preset.pitch / 2, 0.0, 0.0))
+        joint = body.add_joint(
+            name=prefix + name,
+            type=mujoco.mjtJoint.mjJNT_HINGE,
+            axis=axis,
+            pos=(preset.pitch / 2, 0.0, 0.0),
+        )
         joint.stiffness[0], joint.damping[0] = preset.spring, preset.spring_damping
-        joint.limited, joint.range = mujoco.mjtLimited.mjLIMITED_TRUE, (-preset.joint_range, preset.joint_range)
+        joint.limited, joint.range = (
+            mujoco.mjtLimited.mjLIMITED_TRUE,
+            (-preset.joint_range, preset.joint_range),
+        )
 
 
-def _shape(spec: mujoco.MjSpec, scene: str, rng: np.random.Generator, angle: float | None, bouncy: bool) -> float:
+def _shape(
+    spec: mujoco.MjSpec, scene: str, rng: np.random.Generator, angle: float | None, bouncy: bool
+) -> float:
     """What of a scene is not in its file. Returns how high (m) the ground is in the middle."""
     if angle is not None:
         if scene not in SLOPED:
-            raise ValueError(f"the scene '{scene}' has no slopes of one angle; {' and '.join(SLOPED)} have")
+            raise ValueError(
+                f"the scene '{scene}' has no slopes of one angle; {' and '.join(SLOPED)} have"
+            )
         if not 0.0 <= angle < pi / 2:
-            raise ValueError(f"slopes of {angle!r} rad cannot be: give 0 or more and less than pi/2")
+            raise ValueError(
+                f"slopes of {angle!r} rad cannot be: give 0 or more and less than pi/2"
+            )
         for geom in spec.geoms:
             if geom.name.startswith("slope_"):
                 _tilt(geom, angle)
@@ -162,18 +218,25 @@ def _tilt(geom: Any, angle: float) -> None:
 
 
 def _strew(spec: mujoco.MjSpec, rng: np.random.Generator) -> None:
-    """Boxes of foam, as in LPZRobots' octagon: edges of 0.1 to 1 m there, to 0.5 m in this smaller one, 0.3 m high, 2 to 5 kg/m^3."""
+    """Boxes of foam, as in LPZRobots' octagon.
+
+    Edges of 0.1 to 1 m there, to 0.5 m in this smaller one, 0.3 m high, 2 to 5 kg/m^3.
+    """
     for number in range(_BOXES):
         edges = rng.uniform(0.1, 0.5, 2)
         away, around = _OCTAGON_M * sqrt(rng.uniform(0.12, 0.7)), rng.uniform(0.0, 2 * pi)
         turned = rng.uniform(0.0, pi)
         body = spec.worldbody.add_body(
-            name=f"box{number}", pos=(away * cos(around), away * sin(around), 0.15), quat=(cos(turned / 2), 0.0, 0.0, sin(turned / 2))
+            name=f"box{number}",
+            pos=(away * cos(around), away * sin(around), 0.15),
+            quat=(cos(turned / 2), 0.0, 0.0, sin(turned / 2)),
         )
         body.add_freejoint(name=f"box{number}")
         size = (edges[0] / 2, edges[1] / 2, 0.15)
         mass = float(rng.uniform(2.0, 5.0)) * 8 * size[0] * size[1] * size[2]
-        body.add_geom(spec.find_default("obstacle"), name=f"box{number}", size=size, mass=mass, contype=1)
+        body.add_geom(
+            spec.find_default("obstacle"), name=f"box{number}", size=size, mass=mass, contype=1
+        )
 
 
 def _hills(points: int, half_m: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -181,9 +244,14 @@ def _hills(points: int, half_m: float, rng: np.random.Generator) -> NDArray[np.f
     x, y = np.meshgrid(np.linspace(-half_m, half_m, points), np.linspace(-half_m, half_m, points))
     height = np.zeros_like(x)
     for length, direction, phase in zip(
-        rng.uniform(_SHORTEST_M, _LONGEST_M, _WAVES), rng.uniform(0.0, 2 * pi, _WAVES), rng.uniform(0.0, 2 * pi, _WAVES), strict=True
+        rng.uniform(_SHORTEST_M, _LONGEST_M, _WAVES),
+        rng.uniform(0.0, 2 * pi, _WAVES),
+        rng.uniform(0.0, 2 * pi, _WAVES),
+        strict=True,
     ):
-        height += length * np.cos(2 * pi * (x * cos(direction) + y * sin(direction)) / length + phase)
+        height += length * np.cos(
+            2 * pi * (x * cos(direction) + y * sin(direction)) / length + phase
+        )
     height = (height - height.min()) / (height.max() - height.min())
     level = height[points // 2, points // 2]
     near = np.exp(-((np.hypot(x, y) / 1.5) ** 4))

@@ -34,19 +34,27 @@ class Preset(NamedTuple):
     k: float
 
     def with_drag(self, drag: float) -> Preset:
-        """The same car with this drag, where the preset has it: on the body in N s/m, or on the wheels in N s/rad."""
+        """The same car with this drag, where the preset has it.
+
+        On the body in N s/m, or on the wheels in N s/rad.
+        """
         return self._replace(body_drag=drag) if self.body_drag else self._replace(wheel_drag=drag)
 
     def checked(self) -> Preset:
         """The same preset. Raises ValueError if a number of it is none that a car can have."""
         for name, value in self._asdict().items():
             if not isfinite(value) or value < 0.0 or (value == 0.0 and name not in _MAY_BE_0):
-                raise ValueError(f"{name} cannot be {value!r}: give a finite number, {'0 or more' if name in _MAY_BE_0 else 'above 0'}")
+                raise ValueError(
+                    f"{name} cannot be {value!r}: give a finite number,"
+                    f" {'0 or more' if name in _MAY_BE_0 else 'above 0'}"
+                )
         return self
 
 
 _MAY_BE_0 = ("body_drag", "wheel_drag", "friction", "spring", "spring_damping", "a", "k")
-_TABLE: dict[str, dict[str, Any]] = tomllib.loads((HERE / "presets.toml").read_text(encoding="utf-8"))
+_TABLE: dict[str, dict[str, Any]] = tomllib.loads(
+    (HERE / "presets.toml").read_text(encoding="utf-8")
+)
 NAMES = tuple(_TABLE)
 
 

@@ -30,7 +30,9 @@ class Mark(NamedTuple):
 
 
 class Emulator:
-    """Runs Python programs on an ARM926 in user mode. Raises Unavailable if something for it is missing.
+    """Runs Python programs on an ARM926 in user mode.
+
+    Raises Unavailable if something for it is missing.
 
     folder: where it keeps its plugin and the robot's sources while it is used.
     """
@@ -40,20 +42,51 @@ class Emulator:
         if not CACHE.exists():
             _fill_cache()
         self._plugin = folder / "count.so"
-        subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-o", self._plugin, Path(__file__).with_name("count.c")], check=True)
+        subprocess.run(
+            [
+                "gcc",
+                "-O2",
+                "-shared",
+                "-fPIC",
+                "-o",
+                self._plugin,
+                Path(__file__).with_name("count.c"),
+            ],
+            check=True,
+        )
         # Of the library alone, since its neighbours in .venv are for another processor.
         self._sources = folder / "sources"
         for source in (ROOT / "robot", ROOT / "tests" / "bench_arm", Path(ev3dev2.__file__).parent):
-            goal = self._sources / (source.relative_to(ROOT) if source.is_relative_to(ROOT / "tests") else source.name)
+            goal = self._sources / (
+                source.relative_to(ROOT) if source.is_relative_to(ROOT / "tests") else source.name
+            )
             shutil.copytree(source, goal, ignore=shutil.ignore_patterns("__pycache__"))
 
     @contextmanager
     def start(self, *arguments: str):
         """A running program, as a Popen with pipes; it is terminated in the end."""
-        command = ["qemu-arm", "-cpu", "arm926", "-plugin", str(self._plugin), "-L", str(CACHE), str(CACHE / "usr/bin" / PYTHON)]
-        environment = {"PYTHONPATH": str(self._sources), "PYTHONPYCACHEPREFIX": str(self._plugin.with_name("pyc")), "PYTHONHASHSEED": "0"}
+        command = [
+            "qemu-arm",
+            "-cpu",
+            "arm926",
+            "-plugin",
+            str(self._plugin),
+            "-L",
+            str(CACHE),
+            str(CACHE / "usr/bin" / PYTHON),
+        ]
+        environment = {
+            "PYTHONPATH": str(self._sources),
+            "PYTHONPYCACHEPREFIX": str(self._plugin.with_name("pyc")),
+            "PYTHONHASHSEED": "0",
+        }
         with subprocess.Popen(
-            [*command, *arguments], env=environment, cwd=self._sources, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [*command, *arguments],
+            env=environment,
+            cwd=self._sources,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
         ) as process:
             try:
                 yield process
@@ -67,14 +100,21 @@ class Emulator:
         if process.returncode:
             raise Unavailable(f"the emulated program failed: {err.strip()}")
         counts = [line.split()[1:] for line in err.splitlines() if line.startswith("COUNT")]
-        return [Mark(line, int(done), int(calls)) for line, (done, calls) in zip(out.splitlines(), counts, strict=True)]
+        return [
+            Mark(line, int(done), int(calls))
+            for line, (done, calls) in zip(out.splitlines(), counts, strict=True)
+        ]
 
     def until_line(self, *arguments: str) -> Mark:
         """The mark of a program's first line; it is terminated then."""
         with self.start(*arguments) as process:
             line = process.stdout.readline().strip()
             process.terminate()
-            counts = [text.split()[1:] for text in process.stderr.read().splitlines() if text.startswith("COUNT")]
+            counts = [
+                text.split()[1:]
+                for text in process.stderr.read().splitlines()
+                if text.startswith("COUNT")
+            ]
         if not line:
             raise Unavailable("the emulated program printed nothing")
         return Mark(line, *map(int, counts[0]))
@@ -84,7 +124,8 @@ def _need(tools: dict[str, str], why: str) -> None:
     missing = [package for tool, package in tools.items() if not shutil.which(tool)]
     if missing:
         raise Unavailable(
-            f"needs {', '.join(missing)}{why}. Install it (Debian, Ubuntu: apt-get install {' '.join(missing)}) and try again"
+            f"needs {', '.join(missing)}{why}. Install it (Debian, Ubuntu: apt-get install"
+            f" {' '.join(missing)}) and try again"
         )
 
 
@@ -93,15 +134,28 @@ def _fill_cache() -> None:
     why = f", once, for an ARM Python in {CACHE}"
     _need(TOOLS_FOR_CACHE, why)
     if os.geteuid() != 0:
-        raise Unavailable(f"needs root{why}, since debootstrap does. Run it as root, or keep XDG_CACHE_HOME from a run as root")
+        raise Unavailable(
+            f"needs root{why}, since debootstrap does. Run it as root, or keep XDG_CACHE_HOME from"
+            " a run as root"
+        )
     print(f"fetching an ARM Python into {CACHE} (about 40 MB; once)", flush=True)
     CACHE.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=CACHE.parent) as folder:
         packages = ["--include=python3-minimal,libpython3.11-stdlib"]
-        command = ["debootstrap", "--download-only", "--arch=armel", "--variant=minbase", *packages, SUITE, f"{folder}/download"]
+        command = [
+            "debootstrap",
+            "--download-only",
+            "--arch=armel",
+            "--variant=minbase",
+            *packages,
+            SUITE,
+            f"{folder}/download",
+        ]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise Unavailable(f"debootstrap failed: {(done.stdout + done.stderr).strip().splitlines()[-1]}")
+            raise Unavailable(
+                f"debootstrap failed: {(done.stdout + done.stderr).strip().splitlines()[-1]}"
+            )
         for package in sorted(Path(folder, "download/var/cache/apt/archives").glob("*.deb")):
             subprocess.run(["dpkg-deb", "-x", package, f"{folder}/root"], check=True)
         Path(folder, "root").rename(CACHE)

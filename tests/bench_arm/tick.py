@@ -1,4 +1,6 @@
-"""What runs on the emulated brick: whole ticks of the robot's loop, through robot.ev3 and through LargeMotor's properties.
+"""What runs on the emulated brick.
+
+Whole ticks of the robot's loop, through robot.ev3 and through LargeMotor's properties.
 
 A line on standard output ends each stretch that is to be counted.
 """

@@ -1,4 +1,7 @@
-"""Two motors as plain files, and the ways to drive them that the benchmarks compare. The emulated brick imports this too."""
+"""Two motors as plain files, and the ways to drive them that the benchmarks compare.
+
+The emulated brick imports this too.
+"""
 
 from pathlib import Path
 
@@ -26,7 +29,10 @@ BATTERY = {"technology": "Li-ion", "voltage_now": "7500000"}
 
 
 def make_tree(root):
-    """Fill the folder `root` with a motor at each port and a battery. Plain files: nothing moves, and nothing is refused."""
+    """Fill the folder `root` with a motor at each port and a battery. Plain files.
+
+    Nothing moves, and nothing is refused.
+    """
     for number, port in enumerate(PORTS):
         _write(Path(root, "tacho-motor", f"motor{number}"), dict(ATTRIBUTES, address=port))
     _write(Path(root, "power_supply", "lego-ev3-battery"), BATTERY)

@@ -1,7 +1,7 @@
 """heyoka.py: Taylor's method with adaptive order and steps, batches as wide as the processor's vectors, one thread for each core.
 
-heyoka's own ensemble_propagate_until_batch copies the integrator for every batch, which for this small system costs as much as the
-work; so each thread here keeps one integrator, which is faster.
+heyoka's own ensemble_propagate_until_batch copies the integrator for every batch, which for this
+small system costs as much as the work; so each thread here keeps one integrator, which is faster.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -13,16 +13,32 @@ import numpy as np
 
 from host.theory.model.wheel import Wheel, rates
 from sim_motor.compiled import retold
-from tests.bench_theory.problem import MEASURED_S, TRANSIENT_S, WORKERS, Contestant, averages, starts
+from tests.bench_theory.problem import (
+    MEASURED_S,
+    TRANSIENT_S,
+    WORKERS,
+    Contestant,
+    averages,
+    starts,
+)
 
 TOLERANCES = (1e-15, 1e-12, 1e-9, 1e-6)
 
 
 def equations():
-    """(those of a wheel, and with the integral for the standard deviation); tau, k and omega's offset in it are parameters."""
+    """(those of a wheel, and with the integral for the standard deviation).
+
+    Tau, k and omega's offset in it are parameters.
+    """
     state = heyoka.make_vars("x1", "x2", "phi", "omega")
     told = retold(rates, {"sin": heyoka.sin, "cos": heyoka.cos, "exp": heyoka.exp})
-    wheel = list(zip(state, told(*state, *Wheel()._replace(tau_s=heyoka.par[0], k=heyoka.par[1])), strict=True))
+    wheel = list(
+        zip(
+            state,
+            told(*state, *Wheel()._replace(tau_s=heyoka.par[0], k=heyoka.par[1])),
+            strict=True,
+        )
+    )
     return wheel, [*wheel, (heyoka.make_vars("square"), (state[3] - heyoka.par[2]) ** 2)]
 
 
@@ -52,14 +68,28 @@ def _followed(transient, measuring, parameters, real):
     constants = np.vstack([parameters[1:3], np.zeros(count)]).astype(real)
     begun = propagated(transient, starts(count).astype(real), constants, TRANSIENT_S)
     constants[2] = begun[3]
-    return averages(begun, propagated(measuring, np.vstack([begun, np.zeros(count, dtype=real)]), constants, MEASURED_S))
+    return averages(
+        begun,
+        propagated(
+            measuring, np.vstack([begun, np.zeros(count, dtype=real)]), constants, MEASURED_S
+        ),
+    )
 
 
 def batches(tolerance, parameters):
-    """The work in double precision. fast_math makes heyoka a third faster here, and no less accurate."""
+    """The work in double precision.
+
+    fast_math makes heyoka a third faster here, and no less accurate.
+    """
     width = heyoka.recommended_simd_size()
     integrators = [
-        heyoka.taylor_adaptive_batch(system, np.zeros((len(system), width)), tol=tolerance, compact_mode=False, fast_math=True)
+        heyoka.taylor_adaptive_batch(
+            system,
+            np.zeros((len(system), width)),
+            tol=tolerance,
+            compact_mode=False,
+            fast_math=True,
+        )
         for system in equations()
     ]
     return partial(_followed, *integrators, parameters, np.float64)
@@ -69,7 +99,13 @@ def exact(parameters):
     """The averages in extended precision (a mantissa of 64 bits), a wheel at a time, with a tolerance of 1e-18: the reference."""
     real = np.longdouble
     integrators = [
-        heyoka.taylor_adaptive(system, np.zeros(len(system), dtype=real), tol=real(1e-18), compact_mode=False, fp_type=real)
+        heyoka.taylor_adaptive(
+            system,
+            np.zeros(len(system), dtype=real),
+            tol=real(1e-18),
+            compact_mode=False,
+            fp_type=real,
+        )
         for system in equations()
     ]
     return _followed(*integrators, parameters, real)

@@ -3,7 +3,8 @@
 import os
 from functools import partial
 
-# Before JAX is imported: otherwise the processor is one device, of which small operations use one core.
+# Before JAX is imported: otherwise the processor is one device, of which small operations use one
+# core.
 os.environ["XLA_FLAGS"] = "--xla_force_host_platform_device_count=2"
 
 import diffrax
@@ -51,13 +52,23 @@ def prepared(solver, tolerance, parameters):
 
     def run():
         begun, ended = jax.block_until_ready(ready(shares))
-        return averages(*(np.array([np.asarray(row).T.ravel() for row in rows]) for rows in (begun, ended)))
+        return averages(
+            *(np.array([np.asarray(row).T.ravel() for row in rows]) for rows in (begun, ended))
+        )
 
     return run
 
 
 def contestants():
-    """Two of diffrax's explicit solvers. In lockstep, all points of a device do as many steps as the slowest, so they are not too many."""
+    """Two of diffrax's explicit solvers.
+
+    In lockstep, all points of a device do as many steps as the slowest, so they are not too many.
+    """
     for solver, tolerances in ((diffrax.Tsit5(), (1e-6,)), (diffrax.Dopri8(), (1e-6, 1e-9))):
         for tolerance in tolerances:
-            yield Contestant("diffrax", f"{type(solver).__name__} {tolerance:g}", 8, partial(prepared, solver, tolerance))
+            yield Contestant(
+                "diffrax",
+                f"{type(solver).__name__} {tolerance:g}",
+                8,
+                partial(prepared, solver, tolerance),
+            )

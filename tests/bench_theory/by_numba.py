@@ -1,4 +1,7 @@
-"""Runge and Kutta's classical method, written plainly for numba: sin, cos and exp of `math`, points spread over both cores by prange."""
+"""Runge and Kutta's classical method, written plainly for numba.
+
+Sin, cos and exp of `math`, points spread over both cores by prange.
+"""
 
 from functools import partial
 
@@ -32,7 +35,11 @@ def _follow(y, p, around, step_s, count):
         f2 = _field(_moved(y, step_s / 2, f1), p, around)
         f3 = _field(_moved(y, step_s / 2, f2), p, around)
         f4 = _field(_moved(y, step_s, f3), p, around)
-        y = _moved(_moved(_moved(_moved(y, step_s / 6, f1), step_s / 3, f2), step_s / 3, f3), step_s / 6, f4)
+        y = _moved(
+            _moved(_moved(_moved(y, step_s / 6, f1), step_s / 3, f2), step_s / 3, f3),
+            step_s / 6,
+            f4,
+        )
     return y
 
 
@@ -42,7 +49,9 @@ def _all(states, parameters, step_s, transient, measured):
     begun, ended = np.empty((4, count)), np.empty((5, count))
     for i in numba.prange(count):
         p = parameters[:, i].copy()
-        y = _follow((states[0, i], states[1, i], states[2, i], states[3, i], 0.0), p, 0.0, step_s, transient)
+        y = _follow(
+            (states[0, i], states[1, i], states[2, i], states[3, i], 0.0), p, 0.0, step_s, transient
+        )
         begun[0, i], begun[1, i], begun[2, i], begun[3, i] = y[:4]
         y = _follow((y[0], y[1], y[2], y[3], 0.0), p, y[3], step_s, measured)
         ended[0, i], ended[1, i], ended[2, i], ended[3, i], ended[4, i] = y
@@ -53,10 +62,17 @@ def prepared(step_s, parameters):
     """The work with steps of step_s."""
     states = starts(parameters.shape[1])
     _all(states[:, :2], parameters[:, :2], step_s, 1, 1)
-    return lambda: averages(*_all(states, parameters, step_s, round(TRANSIENT_S / step_s), round(MEASURED_S / step_s)))
+    return lambda: averages(
+        *_all(states, parameters, step_s, round(TRANSIENT_S / step_s), round(MEASURED_S / step_s))
+    )
 
 
 def contestants():
     """numba with all steps."""
     for step_s in STEPS_S:
-        yield Contestant("numba RK4", f"step {1000 * step_s:g} ms", int(max(4, 0.016 / step_s)), partial(prepared, step_s))
+        yield Contestant(
+            "numba RK4",
+            f"step {1000 * step_s:g} ms",
+            int(max(4, 0.016 / step_s)),
+            partial(prepared, step_s),
+        )

@@ -1,4 +1,7 @@
-"""scipy's solvers, a point at a time, on two processes. The rates are compiled, which is the best that its users can do."""
+"""scipy's solvers, a point at a time, on two processes.
+
+The rates are compiled, which is the best that its users can do.
+"""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -30,13 +33,31 @@ def field(time, state, constants):
 
 def by_solve_ivp(method, tolerance, state, seconds, constants):
     """The state after some seconds."""
-    found = solve_ivp(field, (0.0, seconds), state, method, (seconds,), rtol=tolerance, atol=tolerance, args=(constants,))
+    found = solve_ivp(
+        field,
+        (0.0, seconds),
+        state,
+        method,
+        (seconds,),
+        rtol=tolerance,
+        atol=tolerance,
+        args=(constants,),
+    )
     return found.y[:, -1]
 
 
 def by_odeint(tolerance, state, seconds, constants):
     """The state after some seconds."""
-    return odeint(field, state, (0.0, seconds), (constants,), rtol=tolerance, atol=tolerance, mxstep=10**8, tfirst=True)[-1]
+    return odeint(
+        field,
+        state,
+        (0.0, seconds),
+        (constants,),
+        rtol=tolerance,
+        atol=tolerance,
+        mxstep=10**8,
+        tfirst=True,
+    )[-1]
 
 
 def follow(solve, constants):
@@ -61,7 +82,9 @@ def prepared(pool, solve, parameters):
 
     def run():
         found = list(pool.map(partial(follow, solve), wheels))
-        return averages(np.array([begun for begun, _ in found]).T, np.array([ended for _, ended in found]).T)
+        return averages(
+            np.array([begun for begun, _ in found]).T, np.array([ended for _, ended in found]).T
+        )
 
     return run
 
@@ -69,9 +92,18 @@ def prepared(pool, solve, parameters):
 def contestants():
     """solve_ivp and odeint with all settings. The slower a method, the fewer points."""
     pool = ProcessPoolExecutor(WORKERS, get_context("spawn"))
-    for method, every, tolerances in (("RK45", 128, TOLERANCES[:2]), ("DOP853", 64, TOLERANCES), ("LSODA", 64, TOLERANCES)):
+    for method, every, tolerances in (
+        ("RK45", 128, TOLERANCES[:2]),
+        ("DOP853", 64, TOLERANCES),
+        ("LSODA", 64, TOLERANCES),
+    ):
         for tolerance in tolerances:
             work = partial(prepared, pool, partial(by_solve_ivp, method, tolerance))
             yield Contestant("scipy solve_ivp", f"{method} {tolerance:g}", every, work)
     for tolerance in TOLERANCES:
-        yield Contestant("scipy odeint", f"{tolerance:g}", 64, partial(prepared, pool, partial(by_odeint, tolerance)))
+        yield Contestant(
+            "scipy odeint",
+            f"{tolerance:g}",
+            64,
+            partial(prepared, pool, partial(by_odeint, tolerance)),
+        )

@@ -1,4 +1,7 @@
-"""What every engine has to compute: wheels at random points of the (k, tau) plane, and how far its averages may be from the truth."""
+"""What every engine has to compute.
+
+Wheels at random points of the (k, tau) plane, and how far its averages may be from the truth.
+"""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -15,7 +18,10 @@ WORKERS = 2
 
 
 class Averages(NamedTuple):
-    """abs(mean(omega)) and std(omega) in rad/s, (wheels,). After a chaotic transient, the mean's sign is an accident of rounding."""
+    """abs(mean(omega)) and std(omega) in rad/s, (wheels,).
+
+    After a chaotic transient, the mean's sign is an accident of rounding.
+    """
 
     mean: Array
     std: Array
@@ -24,8 +30,9 @@ class Averages(NamedTuple):
 class Contestant(NamedTuple):
     """An engine with its setting.
 
-    prepare: given all it will have to do, as parameters (6, wheels), compiles what it needs, and returns the function that does it.
-    every: it does only every so many of the points, because it is slow.
+    prepare: given all it will have to do, as parameters (6, wheels), compiles what it needs, and
+    returns the function that does it. every: it does only every so many of the points, because it
+    is slow.
     """
 
     name: str
@@ -43,19 +50,25 @@ def random_points(count: int, seed: int) -> Array:
 
 
 def starts(count: int) -> Array:
-    """The state in which all wheels begin, (4, count): off the fixpoints and on no symmetry's axis."""
+    """The state in which all wheels begin, (4, count).
+
+    Off the fixpoints and on no symmetry's axis.
+    """
     return np.repeat(np.array(START)[:, None], count, axis=1)
 
 
 def averages(begun: Any, ended: Any) -> Averages:
     """From states (4, wheels) before and (5, wheels) after measuring, in whatever precision they have.
 
-    The fifth is the integral of (omega - omega at the beginning)^2: with that of omega^2 every engine would lose digits of std(omega).
+    The fifth is the integral of (omega - omega at the beginning)^2: with that of omega^2 every
+    engine would lose digits of std(omega).
     """
     begun, ended = np.asarray(begun), np.asarray(ended)
     mean = (ended[2] - begun[2]) / MEASURED_S
     variance = ended[4] / MEASURED_S - (mean - begun[3]) ** 2
-    return Averages(np.abs(mean).astype(np.float64), np.sqrt(np.maximum(variance, 0.0)).astype(np.float64))
+    return Averages(
+        np.abs(mean).astype(np.float64), np.sqrt(np.maximum(variance, 0.0)).astype(np.float64)
+    )
 
 
 def difference(one: Averages, other: Averages) -> Array:

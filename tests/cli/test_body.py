@@ -12,20 +12,39 @@ CAR = ("body", "car", "--time", "1.5", "--seed", "4")
 
 
 def test_a_car_is_told_in_json_and_kept_in_files(kickctl, tmp_path):
-    status, out, _ = kickctl(*CAR, "--json", "--out", str(tmp_path), "--kick", "t=0.5,mode=phase,wheel=left,seconds=0.2,shift=pi/2")
+    status, out, _ = kickctl(
+        *CAR,
+        "--json",
+        "--out",
+        str(tmp_path),
+        "--kick",
+        "t=0.5,mode=phase,wheel=left,seconds=0.2,shift=pi/2",
+    )
     summary = json.loads(out)
     assert status == 0
-    assert {"reversals", "mean_speed", "order_parameter", "path_length", "flipped", "stuck"} <= set(summary)
+    assert {"reversals", "mean_speed", "order_parameter", "path_length", "flipped", "stuck"} <= set(
+        summary
+    )
     assert (summary["cars"], summary["seed"], summary["time_s"]) == (1, 4, pytest.approx(1.5))
     folder = tmp_path / summary["folder"].split("/")[-1]
     with (folder / "state.csv").open(newline="", encoding="utf-8") as file:
         columns, *rows = csv.reader(file)
-    assert {"t_s", "car0_left_phi_rad", "car0_right_omega_rad_s", "car0_left_x", "car0_left_target", "car0_left_torque_nm"} <= set(columns)
+    assert {
+        "t_s",
+        "car0_left_phi_rad",
+        "car0_right_omega_rad_s",
+        "car0_left_x",
+        "car0_left_target",
+        "car0_left_torque_nm",
+    } <= set(columns)
     assert "car0_yaw_rad" in columns
     values = np.array(rows, dtype=float)
     assert values.shape == (301, len(columns))
     with (folder / "state.mcap").open("rb") as file:
-        messages = [json.loads(message.data) for _, _, message in make_reader(file).iter_messages(topics=["/state"])]
+        messages = [
+            json.loads(message.data)
+            for _, _, message in make_reader(file).iter_messages(topics=["/state"])
+        ]
     assert np.array([list(message.values()) for message in messages]).tobytes() == values.tobytes()
     assert (folder / "body.png").stat().st_size > 10000
     assert json.loads((folder / "summary.json").read_text())["mean_speed"] == summary["mean_speed"]
@@ -40,7 +59,18 @@ def test_the_parameters_that_are_given_are_those_of_the_car(kickctl, tmp_path):
 
 
 def test_the_model_is_a_file_for_any_viewer(kickctl, tmp_path):
-    status, _, _ = kickctl("body", "train", "--cars", "3", "--time", "0.1", "--out", str(tmp_path), "--model", str(tmp_path / "train.xml"))
+    status, _, _ = kickctl(
+        "body",
+        "train",
+        "--cars",
+        "3",
+        "--time",
+        "0.1",
+        "--out",
+        str(tmp_path),
+        "--model",
+        str(tmp_path / "train.xml"),
+    )
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "train.xml"))
     assert (status, model.nu) == (0, 6)
 

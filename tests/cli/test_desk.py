@@ -20,10 +20,14 @@ def desk_robot(folder, *arguments):
     """A running `python -m sim_motor`: (its URI, the process)."""
     environment = dict(os.environ, KICK_TOKEN=str(folder / "token"))
     command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "3", *arguments]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
         try:
             line = process.stdout.readline()
-            assert re.fullmatch(r"READY tcp://127\.0\.0\.1:\d+\n", line), line + process.stderr.read()
+            assert re.fullmatch(r"READY tcp://127\.0\.0\.1:\d+\n", line), (
+                line + process.stderr.read()
+            )
             yield line.split()[1], process
         finally:
             process.terminate()
@@ -35,17 +39,34 @@ def outside(tmp_path):
     """kickctl as a process of its own: (exit status, standard output, standard error)."""
 
     def run(*arguments, **environment):
-        environment = {**os.environ, "KICK_TOKEN": str(tmp_path / "token"), "PYTHONPATH": str(Path.cwd()), **environment}
+        environment = {
+            **os.environ,
+            "KICK_TOKEN": str(tmp_path / "token"),
+            "PYTHONPATH": str(Path.cwd()),
+            **environment,
+        }
         command = [sys.executable, "-m", "host", *arguments]
-        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(
+            command,
+            env=environment,
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
         return done.returncode, done.stdout, done.stderr
 
     return run
 
 
-def test_a_kick_from_another_process_reverses_the_desk_robot_and_leaves_it_running(tmp_path, outside):
+def test_a_kick_from_another_process_reverses_the_desk_robot_and_leaves_it_running(
+    tmp_path, outside
+):
     with desk_robot(tmp_path) as (uri, process):
-        status, out, err = outside("--brick", uri, "kick", "--mode", "phase", "--ticks", "4", "--json")
+        status, out, err = outside(
+            "--brick", uri, "kick", "--mode", "phase", "--ticks", "4", "--json"
+        )
         result = json.loads(out)
         assert status == 0, err
         assert (result["reversed"], result["brick"]) == (True, uri)
@@ -70,7 +91,9 @@ def test_an_idle_robot_waits_for_start(tmp_path, outside):
 
 def test_without_the_token_one_may_look_and_stop_but_not_move(tmp_path, outside):
     with desk_robot(tmp_path) as (uri, _):
-        status, _, err = outside("--brick", uri, "kick", "--mode", "membrane", KICK_TOKEN=str(tmp_path / "none"))
+        status, _, err = outside(
+            "--brick", uri, "kick", "--mode", "membrane", KICK_TOKEN=str(tmp_path / "none")
+        )
         assert status == 4
         assert "token" in err
         assert outside("--brick", uri, "status", KICK_TOKEN=str(tmp_path / "none"))[0] == 0
@@ -90,7 +113,10 @@ def test_a_wrong_token_is_refused(tmp_path, outside):
 
 
 def test_one_controller_at_a_time(tmp_path, outside):
-    with desk_robot(tmp_path) as (uri, _), connect(uri, token=str(tmp_path / "token"), name="first") as first:
+    with (
+        desk_robot(tmp_path) as (uri, _),
+        connect(uri, token=str(tmp_path / "token"), name="first") as first,
+    ):
         first.lease()
         status, _, err = outside("--brick", uri, "kick", "--mode", "membrane", "--now")
         assert status == 4
@@ -115,7 +141,15 @@ def test_the_api_of_the_readme(tmp_path):
 def test_a_port_in_use_is_told_in_words(tmp_path):
     with desk_robot(tmp_path) as (uri, _):
         port = uri.rsplit(":", 1)[1]
-        command = [sys.executable, "-m", "sim_motor", "--port", port, "--token", str(tmp_path / "token")]
+        command = [
+            sys.executable,
+            "-m",
+            "sim_motor",
+            "--port",
+            port,
+            "--token",
+            str(tmp_path / "token"),
+        ]
         done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
         assert done.returncode == 2
         assert "cannot listen" in done.stderr

@@ -1,4 +1,7 @@
-"""Experiments run, resumed and broken off: with a small one of their own on real robots, and with `reliability` on the simulated one."""
+"""Experiments run, resumed and broken off.
+
+With a small one of their own on real robots, and with `reliability` on the simulated one.
+"""
 
 import json
 import os
@@ -44,10 +47,14 @@ class Toy:
             raise self.trouble[cell["number"]].pop(0)
         robot.wait(0.1)
         self.done.append(cell["number"])
-        return [{"chance": setting.seed_of(cell), "ticks": len(log) > 0, "state": log.records[-1].state}]
+        return [
+            {"chance": setting.seed_of(cell), "ticks": len(log) > 0, "state": log.records[-1].state}
+        ]
 
     def report(self, rows, setting):
-        claim = Claim("R1", "rows come", "all", len(rows), "1", None, len(rows) == setting.options["cells"])
+        claim = Claim(
+            "R1", "rows come", "all", len(rows), "1", None, len(rows) == setting.options["cells"]
+        )
         return Findings([claim], {"sum": sum(row["chance"] for row in rows)}, {"note.txt": "kept"})
 
 
@@ -56,10 +63,18 @@ def toy(monkeypatch):
     from matplotlib.figure import Figure
 
     made = Toy()
-    monkeypatch.setitem(table.ROBOT, "toy", table.Entry("a toy", (table.Option("cells", COUNT, 1, 100, "how many"),), ("R1",)))
+    monkeypatch.setitem(
+        table.ROBOT,
+        "toy",
+        table.Entry("a toy", (table.Option("cells", COUNT, 1, 100, "how many"),), ("R1",)),
+    )
     monkeypatch.setattr(run, "PAUSE_S", 0.1)
     monkeypatch.setitem(sys.modules, "host.experiments.robot.toy", made)
-    monkeypatch.setitem(sys.modules, "host.figures.robot.toy", types.SimpleNamespace(draw=lambda rows, findings: Figure()))
+    monkeypatch.setitem(
+        sys.modules,
+        "host.figures.robot.toy",
+        types.SimpleNamespace(draw=lambda rows, findings: Figure()),
+    )
     return made
 
 
@@ -73,7 +88,11 @@ def desk(tmp_path, monkeypatch):
 
 def results(folder):
     """What every file holds that a run leaves behind, its raw logs apart."""
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.suffix != ".svg"}
+    return {
+        path.name: path.read_bytes()
+        for path in folder.iterdir()
+        if path.is_file() and path.suffix != ".svg"
+    }
 
 
 @pytest.mark.parametrize("cut", range(COUNT))
@@ -98,14 +117,23 @@ def test_a_killed_process_goes_on_where_it_was(tmp_path):
     command = [sys.executable, "-m", "host", "--json", "experiment", "reliability", "--trials", "3"]
     folder = tmp_path / "killed"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen([*command, "--out", str(folder)], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL) as process:
+    with subprocess.Popen(
+        [*command, "--out", str(folder)], cwd=tmp_path, env=environment, stderr=subprocess.DEVNULL
+    ) as process:
         while process.poll() is None and not size(folder):
             time.sleep(0.001)
         process.send_signal(signal.SIGKILL)
     assert process.returncode == -signal.SIGKILL
     outcomes = []
     for out in (folder, tmp_path / "whole"):
-        done = subprocess.run([*command, "--out", str(out)], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [*command, "--out", str(out)],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         assert done.returncode in (0, 1), done.stderr
         outcomes.append(json.loads(done.stdout))
     assert outcomes[0]["numbers"] == outcomes[1]["numbers"]
@@ -141,11 +169,34 @@ def test_reliability_ends_with_its_claims_and_files(kickctl):
         (("experiment", "reliability", "--brick", "ftp://x"), 2, "no address of a robot"),
         (("experiment", "reliability", "--brick", "sim://?motor=none"), 2, "none"),
         (("experiment", "reliability", "--brick", "sim://?battery=much"), 2, "cannot be simulated"),
-        (("experiment", "reliability", "--brick", "tcp://127.0.0.1:1"), 3, "no robot's program runs"),
-        (("experiment", "reliability", "--brick", "tcp://127.0.0.1:1", "--scheduler", "tcp://127.0.0.1:2"), 2, "--scheduler"),
+        (
+            ("experiment", "reliability", "--brick", "tcp://127.0.0.1:1"),
+            3,
+            "no robot's program runs",
+        ),
+        (
+            (
+                "experiment",
+                "reliability",
+                "--brick",
+                "tcp://127.0.0.1:1",
+                "--scheduler",
+                "tcp://127.0.0.1:2",
+            ),
+            2,
+            "--scheduler",
+        ),
         (("experiment", "reliability", "--brick", "sim://?walls=2.0"), 2, "says walls"),
-        (("experiment", "reliability", "--brick", "sim://?battery=0.5"), 1, "0 rolled forward and 0 backward"),
-        (("experiment", "reliability", "--scheduler", "bogus"), 2, "no address of a Dask scheduler"),
+        (
+            ("experiment", "reliability", "--brick", "sim://?battery=0.5"),
+            1,
+            "0 rolled forward and 0 backward",
+        ),
+        (
+            ("experiment", "reliability", "--scheduler", "bogus"),
+            2,
+            "no address of a Dask scheduler",
+        ),
         (("reproduce", "--only", "R99"), 2, "there is no claim R99"),
     ],
 )
@@ -156,7 +207,9 @@ def test_wrong_use_is_told_in_words(kickctl, arguments, status, words):
     assert "Traceback" not in err
 
 
-def test_on_a_robot_a_try_into_which_a_fault_came_is_repeated_and_counted_apart(toy, desk, tmp_path):
+def test_on_a_robot_a_try_into_which_a_fault_came_is_repeated_and_counted_apart(
+    toy, desk, tmp_path
+):
     toy.trouble = {2: [RobotFault("its cable came off"), RobotFault("its cable came off")]}
     summary = perform("toy", desk[0], out=tmp_path)
     assert summary["spoiled"] == ["its cable came off"] * 2
@@ -174,7 +227,9 @@ def test_a_robot_that_stays_in_fault_ends_the_run_and_keeps_what_was_measured(to
     assert perform("toy", desk[0], out=tmp_path)["trials"] == COUNT
 
 
-def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(toy, desk, tmp_path, monkeypatch):
+def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(
+    toy, desk, tmp_path, monkeypatch
+):
     monkeypatch.setattr("host.client.robot.RECONNECT_S", 0.5)
     uri, process = desk
     real = toy.trial
@@ -192,7 +247,9 @@ def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(toy, 
     assert f"3 of {COUNT} pieces are kept" in said[-1]
 
 
-def test_a_try_in_which_the_robots_program_began_anew_does_not_count(toy, desk, tmp_path, monkeypatch):
+def test_a_try_in_which_the_robots_program_began_anew_does_not_count(
+    toy, desk, tmp_path, monkeypatch
+):
     real = toy.trial
     broken = []
 
@@ -211,7 +268,9 @@ def test_a_try_in_which_the_robots_program_began_anew_does_not_count(toy, desk, 
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(toy, desk, tmp_path, fails):
+def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(
+    toy, desk, tmp_path, fails
+):
     from host.client.robot import connect
 
     own = {"k": 2.0, "tick_s": 0.02, "tau_s": 0.5, "max_duty_pct": 20.0}
@@ -238,7 +297,10 @@ def test_a_robot_is_measured_with_the_papers_parameters_and_gets_its_own_back(to
 
 
 def test_a_simulated_robots_seed_may_stand_in_its_address(toy, tmp_path):
-    summaries = [perform("toy", uri, seed, out=tmp_path) for uri, seed in (("sim://?seed=7", None), ("sim://", 7), ("sim://", 8))]
+    summaries = [
+        perform("toy", uri, seed, out=tmp_path)
+        for uri, seed in (("sim://?seed=7", None), ("sim://", 7), ("sim://", 8))
+    ]
     assert [summary["seed"] for summary in summaries] == [7, 7, 8]
     assert summaries[0]["numbers"] == summaries[1]["numbers"] != summaries[2]["numbers"]
 
@@ -251,10 +313,19 @@ def test_no_real_robot_is_sent_against_a_wall_that_nobody_has_built(monkeypatch,
 
     def perform(name, uri, *_, **__):
         asked.append((name, uri))
-        claims = [Claim(number, "", "", 1.0, "1", None, True).as_dict() for number in table.TABLE[name].claims]
-        return {"claims": claims, "brick": uri, "seed": 1, "version": "", "figures": [str(figure)], "experiment": name, "options": {}} | (
-            {"spoiled": [], "trials": 1, "folder": ""}
-        )
+        claims = [
+            Claim(number, "", "", 1.0, "1", None, True).as_dict()
+            for number in table.TABLE[name].claims
+        ]
+        return {
+            "claims": claims,
+            "brick": uri,
+            "seed": 1,
+            "version": "",
+            "figures": [str(figure)],
+            "experiment": name,
+            "options": {},
+        } | ({"spoiled": [], "trials": 1, "folder": ""})
 
     figure = tmp_path / "figure.png"
     figure.write_bytes(b"")
@@ -279,7 +350,16 @@ def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
     claims = json.loads(out)
     assert status == 0
     assert [claim["id"] for claim in claims] == ["R8", "R10"]
-    assert set(claims[0]) == {"id", "claim", "paper", "measured", "unit", "interval", "holds", "note"}
+    assert set(claims[0]) == {
+        "id",
+        "claim",
+        "paper",
+        "measured",
+        "unit",
+        "interval",
+        "holds",
+        "note",
+    }
     page = Path("results/report-R8-R10.html").read_text()
     assert page.count("<img") == page.count("data:image/png;base64,") == 1
     assert "http" not in page

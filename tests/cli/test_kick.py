@@ -10,7 +10,17 @@ import pytest
 from host.logs.log import Log
 from robot.record import KICK_NAMES, STATES
 
-OUTCOME = {"mode", "ticks", "shift_rad", "wheel", "applied_tick", "before", "after", "reversed", "settling_s"}
+OUTCOME = {
+    "mode",
+    "ticks",
+    "shift_rad",
+    "wheel",
+    "applied_tick",
+    "before",
+    "after",
+    "reversed",
+    "settling_s",
+}
 FIELDS = OUTCOME | {"brick", "seed", "log", "figure"}
 
 
@@ -21,7 +31,12 @@ def test_the_json_is_one_object_that_says_what_happened(kickctl):
     assert out.count("\n") == 1
     assert set(result) >= FIELDS
     assert result["reversed"] is True
-    assert (result["mode"], result["ticks"], result["wheel"], result["seed"]) == ("phase", 4, "both", 5)
+    assert (result["mode"], result["ticks"], result["wheel"], result["seed"]) == (
+        "phase",
+        4,
+        "both",
+        5,
+    )
     for side in ("left", "right"):
         assert {result["before"][side], result["after"][side]} == {"forward", "backward"}
     assert 0.2 < result["settling_s"] < 2.0
@@ -29,7 +44,9 @@ def test_the_json_is_one_object_that_says_what_happened(kickctl):
 
 
 def test_log_and_figure_are_what_the_answer_names(kickctl):
-    result = json.loads(kickctl("kick", "--mode", "phase", "--ticks", "4", "--json", "--seed", "5")[1])
+    result = json.loads(
+        kickctl("kick", "--mode", "phase", "--ticks", "4", "--json", "--seed", "5")[1]
+    )
     log = Log.load(kickctl.folder / result["log"])
     marked = [record.tick for record in log.records if KICK_NAMES[record.kick] == "phase"]
     assert marked == list(range(result["applied_tick"], result["applied_tick"] + 4))
@@ -58,7 +75,9 @@ def test_a_kick_of_one_tick_does_not_reverse_and_exits_1(kickctl):
 
 
 def test_kicking_one_wheel_leaves_the_other_alone(kickctl):
-    status, out, _ = kickctl("kick", "--mode", "membrane", "--wheel", "left", "--json", "--seed", "5")
+    status, out, _ = kickctl(
+        "kick", "--mode", "membrane", "--wheel", "left", "--json", "--seed", "5"
+    )
     result = json.loads(out)
     assert status == 0
     assert result["after"]["left"] != result["before"]["left"]
@@ -68,14 +87,33 @@ def test_kicking_one_wheel_leaves_the_other_alone(kickctl):
 def test_a_positive_shift_ends_forward_motion_and_a_negative_one_backward_motion(kickctl):
     """R10, per sign; what the other sign does depends on the kick's length."""
     ended = 0
-    for shift, radians, ends in (("3pi/4", 2.356194490192345, "forward"), ("-3pi/4", -2.356194490192345, "backward")):
+    for shift, radians, ends in (
+        ("3pi/4", 2.356194490192345, "forward"),
+        ("-3pi/4", -2.356194490192345, "backward"),
+    ):
         for seed in range(4):
-            result = json.loads(kickctl("kick", "--mode", "phase", "--ticks", "3", "--shift", shift, "--json", "--seed", str(seed))[1])
+            result = json.loads(
+                kickctl(
+                    "kick",
+                    "--mode",
+                    "phase",
+                    "--ticks",
+                    "3",
+                    "--shift",
+                    shift,
+                    "--json",
+                    "--seed",
+                    str(seed),
+                )[1]
+            )
             assert result["shift_rad"] == pytest.approx(radians)
             for side in ("left", "right"):
                 if result["before"][side] == ends:
                     ended += 1
-                    assert result["after"][side] == {"forward": "backward", "backward": "forward"}[ends]
+                    assert (
+                        result["after"][side]
+                        == {"forward": "backward", "backward": "forward"}[ends]
+                    )
     assert ended >= 6
 
 
@@ -128,14 +166,48 @@ def test_wrong_use_exits_2_in_words_and_leaves_nothing_behind(kickctl, arguments
 
 
 def test_the_general_pulse_and_jump_reach_the_robot(kickctl):
-    pulse = json.loads(kickctl("kick", "--mode", "pulse", "--param", "beta", "--value", "1", "--ticks", "3", "--json", "--seed", "5")[1])
-    named = json.loads(kickctl("kick", "--mode", "position", "--ticks", "3", "--json", "--seed", "5")[1])
+    pulse = json.loads(
+        kickctl(
+            "kick",
+            "--mode",
+            "pulse",
+            "--param",
+            "beta",
+            "--value",
+            "1",
+            "--ticks",
+            "3",
+            "--json",
+            "--seed",
+            "5",
+        )[1]
+    )
+    named = json.loads(
+        kickctl("kick", "--mode", "position", "--ticks", "3", "--json", "--seed", "5")[1]
+    )
     columns = ("left_x1", "right_x2", "left_duty_pct")
     for column in columns:
-        assert (Log.load(pulse["log"]).column(column) == Log.load(named["log"]).column(column)).all()
-    smooth = json.loads(kickctl("kick", "--mode", "position", "--ticks", "5", "--shape", "smooth", "--json", "--seed", "5")[1])
+        assert (
+            Log.load(pulse["log"]).column(column) == Log.load(named["log"]).column(column)
+        ).all()
+    smooth = json.loads(
+        kickctl(
+            "kick",
+            "--mode",
+            "position",
+            "--ticks",
+            "5",
+            "--shape",
+            "smooth",
+            "--json",
+            "--seed",
+            "5",
+        )[1]
+    )
     assert smooth["reversed"]
-    jump = kickctl("kick", "--mode", "jump", "--variable", "x1", "--delta", "-0.01", "--json", "--seed", "5")
+    jump = kickctl(
+        "kick", "--mode", "jump", "--variable", "x1", "--delta", "-0.01", "--json", "--seed", "5"
+    )
     assert jump[0] == 1
     assert json.loads(jump[1])["reversed"] is False
 
@@ -148,9 +220,18 @@ def test_a_row_of_the_table_is_one_tick_as_it_happened(kickctl):
     text = kickctl("log", "export", result["log"], "--format", "csv")[1]
     rows = list(csv.DictReader(io.StringIO(text)))
     wheel = ["phi_rad", "x1", "x2", "force", "torque", "duty_pct", "omega_rad_s"]
-    names = ["tick", "t_s", "dt_s", *("left_" + name for name in wheel), *("right_" + name for name in wheel), "kick"]
+    names = [
+        "tick",
+        "t_s",
+        "dt_s",
+        *("left_" + name for name in wheel),
+        *("right_" + name for name in wheel),
+        "kick",
+    ]
     assert list(rows[0])[: len(names)] == names
-    assert [int(row["tick"]) for row in rows] == list(range(int(rows[0]["tick"]), int(rows[0]["tick"]) + len(rows)))
+    assert [int(row["tick"]) for row in rows] == list(
+        range(int(rows[0]["tick"]), int(rows[0]["tick"]) + len(rows))
+    )
     compared = 0
     for before, row in pairwise(rows):
         if row["kick"] or row["state"] != "running":
@@ -158,10 +239,17 @@ def test_a_row_of_the_table_is_one_tick_as_it_happened(kickctl):
         compared += 1
         for side in ("left", "right"):
             phi, x1, x2 = (float(row[f"{side}_{name}"]) for name in ("phi_rad", "x1", "x2"))
-            dt, old1, old2 = float(row["dt_s"]), float(before[side + "_x1"]), float(before[side + "_x2"])
+            dt, old1, old2 = (
+                float(row["dt_s"]),
+                float(before[side + "_x1"]),
+                float(before[side + "_x2"]),
+            )
             assert x1 == pytest.approx(old1 + dt * (cos(phi) - old1) / 0.25, abs=1e-12)
             assert x2 == pytest.approx(old2 + dt * (sin(phi) - old2) / 0.25, abs=1e-12)
-            spring = [8 * (2 / (1 + exp(-4 * x)) - 1 - seen) for x, seen in ((x1, cos(phi)), (x2, sin(phi)))]
+            spring = [
+                8 * (2 / (1 + exp(-4 * x)) - 1 - seen)
+                for x, seen in ((x1, cos(phi)), (x2, sin(phi)))
+            ]
             force = spring[0] * sin(phi) - spring[1] * cos(phi)
             assert float(row[side + "_force"]) == pytest.approx(force, abs=1e-9)
             assert float(row[side + "_torque"]) == pytest.approx(tanh(force), abs=1e-9)

@@ -1,4 +1,7 @@
-"""What goes wrong around kickctl: no room, no token, a robot that goes away, damaged logs. It is told in words, and nothing is lost."""
+"""What goes wrong around kickctl: no room, no token, a robot that goes away, damaged logs.
+
+It is told in words, and nothing is lost.
+"""
 
 import json
 import resource
@@ -24,7 +27,10 @@ def test_stop_needs_no_token_however_bad_the_one_that_is_there(kickctl, tmp_path
 
 
 def test_a_robot_that_begins_anew_while_it_is_recorded_is_told(kickctl, tmp_path):
-    with desk_robot(tmp_path) as (uri, process), connect(uri, token=str(tmp_path / "token")) as robot:
+    with (
+        desk_robot(tmp_path) as (uri, process),
+        connect(uri, token=str(tmp_path / "token")) as robot,
+    ):
         log = Log(robot.info())
         robot.add_tap(log)
         robot.wait(0.3)
@@ -96,7 +102,9 @@ def test_a_host_that_was_taken_for_lost_takes_control_again_unless_another_has_i
     with connect("sim://", seed=1) as robot:
         robot.lease()
         robot.stop()
-        robot.link.loop.lease.release(robot.link.loop.lease.holder)  # as after a silence, over a link that stays
+        robot.link.loop.lease.release(
+            robot.link.loop.lease.holder
+        )  # as after a silence, over a link that stays
         robot.start()
         assert robot.status()["state"] == "running"
         robot.link.loop.lease.release(robot.link.loop.lease.holder)

@@ -19,7 +19,10 @@ OTHER = {"forward": "backward", "backward": "forward"}
 
 
 def reversals(seed, rounds, changes, reverse):
-    """Reverse a robot round after round, at any moment, by reverse(robot, log, headings); the kicks that this took."""
+    """Reverse a robot round after round, at any moment, by reverse(robot, log, headings).
+
+    The kicks that this took.
+    """
     rng = np.random.default_rng(seed)
     with connect("sim://", seed) as robot:
         robot.set(**changes)
@@ -36,7 +39,9 @@ def reversals(seed, rounds, changes, reverse):
 
 def by_plan(robot, log, present):
     turned = tuple(OTHER[present[side]] for side in WHEELS)
-    target = {("forward", "backward"): "spin-right", ("backward", "forward"): "spin-left"}.get(turned, turned[0])
+    target = {("forward", "backward"): "spin-right", ("backward", "forward"): "spin-left"}.get(
+        turned, turned[0]
+    )
     result = drive(robot, log, target)
     assert result["reached"]
     return result["kicks"]
@@ -48,13 +53,23 @@ def blind(mode, ticks):
 
 @pytest.mark.parametrize(
     ("changes", "mode", "ticks", "most"),
-    [({"k": 8.0}, POSITION, 8, 0.6), ({"k": 2.0}, POSITION, 3, 0.8), ({"tick_s": 0.02}, POSITION, 3, 0.1)],
+    [
+        ({"k": 8.0}, POSITION, 8, 0.6),
+        ({"k": 2.0}, POSITION, 3, 0.8),
+        ({"tick_s": 0.02}, POSITION, 3, 0.1),
+    ],
 )
-def test_drive_reverses_by_quenched_kicks_of_which_none_fails_where_blind_ones_dip(changes, mode, ticks, most):
+def test_drive_reverses_by_quenched_kicks_of_which_none_fails_where_blind_ones_dip(
+    changes, mode, ticks, most
+):
     planned = [kicks for seed in range(2) for kicks in reversals(seed, 8, changes, by_plan)]
     assert {kick["mode"] for kicks in planned for kick in kicks} <= {POSITION, PHASE}
     assert sum(kick["reversed"] for kicks in planned for kick in kicks) == sum(map(len, planned))
-    tried = [kicks[0]["reversed"] for seed in range(2) for kicks in reversals(seed, 8, changes, blind(mode, ticks))]
+    tried = [
+        kicks[0]["reversed"]
+        for seed in range(2)
+        for kicks in reversals(seed, 8, changes, blind(mode, ticks))
+    ]
     assert np.mean(tried) <= most
 
 
@@ -79,11 +94,18 @@ def test_a_kick_that_dips_is_given_at_the_moment_at_which_it_reverses(only_a_kic
             drive(robot, log, "forward")
             robot.wait(seed / 20)
             kick = drive(robot, log, "spin-left")["kicks"][0]
-            assert (kick["mode"], kick["ticks"], kick["wheel"], kick["reversed"]) == (PHASE, 12, "left", True)
+            assert (kick["mode"], kick["ticks"], kick["wheel"], kick["reversed"]) == (
+                PHASE,
+                12,
+                "left",
+                True,
+            )
 
 
 def test_a_planned_kick_that_fails_is_repeated_and_at_last_the_membrane_is_inverted(monkeypatch):
-    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say: Plan(POSITION, 1))
+    monkeypatch.setattr(
+        "host.kicking.primitives.reversal", lambda before, params, say: Plan(POSITION, 1)
+    )
     kicks = reversals(1, 1, {"k": 8.0}, by_plan)[0]
     assert [kick["mode"] for kick in kicks][:3] == [POSITION] * 3
     assert {kick["mode"] for kick in kicks[3:]} == {MEMBRANE}
@@ -120,7 +142,9 @@ def test_plan_tells_mode_length_and_moment_for_each_wheel_and_kicks_nothing(kick
 
 
 def test_the_kick_that_plan_tells_reverses_the_wheel(kickctl):
-    left = json.loads(kickctl("plan", "--to", "backward", "--seed", "1", "--json")[1])["wheels"]["left"]
+    left = json.loads(kickctl("plan", "--to", "backward", "--seed", "1", "--json")[1])["wheels"][
+        "left"
+    ]
     with connect("sim://", 1) as robot:
         log = Log(robot.info())
         robot.add_tap(log)
@@ -142,7 +166,10 @@ def test_a_resting_wheel_is_set_going_and_a_window_is_told(kickctl, monkeypatch)
         rested.setattr("host.logs.motion.heading_of", lambda phi: "stopped")
         out = kickctl("plan", "--to", "forward", "--seed", "1")[1]
     assert "phase kick by -135° of 4 ticks, at any phase; sets a resting wheel going forward" in out
-    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99))
+    monkeypatch.setattr(
+        "host.kicking.primitives.reversal",
+        lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99),
+    )
     out = kickctl("plan", "--to", "backward", "--seed", "1")[1]
     assert "at a phase from 29° to 86°" in out
     assert "ticks from now" in out

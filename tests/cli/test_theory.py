@@ -42,7 +42,13 @@ def test_the_command_gives_the_hopf_point(kickctl):
 
 
 @pytest.mark.parametrize(
-    "arguments", [("hopf", "--f", "0"), ("hopf", "--tau", "0"), ("fixpoints", "--k", "nan"), ("fixpoints", "--I", "0")]
+    "arguments",
+    [
+        ("hopf", "--f", "0"),
+        ("hopf", "--tau", "0"),
+        ("fixpoints", "--k", "nan"),
+        ("fixpoints", "--I", "0"),
+    ],
 )
 def test_degenerate_input_is_refused_in_words(kickctl, arguments):
     status, _, err = kickctl("theory", *arguments)
@@ -73,6 +79,8 @@ def test_an_interrupt_in_a_destructor_comes_again():
         verb.run = run
         sys.exit(cli.main(["discover"]))
     """)
-    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    found = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False
+    )
     assert (found.returncode, found.stdout) == (130, "begun\n")
     assert found.stderr == "kickctl: interrupted\n"

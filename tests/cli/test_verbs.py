@@ -81,14 +81,32 @@ def test_replay_finds_a_changed_bit(kickctl):
 
 def test_params_list_has_what_scripts_rely_on(kickctl):
     rows = {row["name"]: row for row in json.loads(kickctl("params", "list", "--json")[1])}
-    assert set(rows) >= {"a", "tau_s", "k", "tick_s", "max_duty_pct", "rods", "polarity_left", "polarity_right", "link_loss"}
+    assert set(rows) >= {
+        "a",
+        "tau_s",
+        "k",
+        "tick_s",
+        "max_duty_pct",
+        "rods",
+        "polarity_left",
+        "polarity_right",
+        "link_loss",
+    }
     for row in rows.values():
         assert set(row) >= {"name", "value", "unit", "minimum", "maximum", "default", "doc"}
-    assert (rows["k"]["value"], rows["tau_s"]["value"], rows["tick_s"]["value"], rows["max_duty_pct"]["value"]) == (8.0, 0.25, 0.03, 85.0)
+    assert (
+        rows["k"]["value"],
+        rows["tau_s"]["value"],
+        rows["tick_s"]["value"],
+        rows["max_duty_pct"]["value"],
+    ) == (8.0, 0.25, 0.03, 85.0)
 
 
 def test_params_set_and_get(kickctl):
-    assert json.loads(kickctl("params", "set", "k=2.5", "link_loss=hold", "--json")[1]) == {"k": 2.5, "link_loss": "hold"}
+    assert json.loads(kickctl("params", "set", "k=2.5", "link_loss=hold", "--json")[1]) == {
+        "k": 2.5,
+        "link_loss": "hold",
+    }
     assert json.loads(kickctl("params", "get", "k", "--json")[1]) == {"k": 8.0}
 
 
@@ -134,7 +152,9 @@ def test_options_may_stand_before_the_verb_or_after_it(kickctl):
 
 def test_status_start_stop_clear(kickctl):
     assert json.loads(kickctl("status", "--json")[1])["state"] == "running"
-    assert json.loads(kickctl("start", "--brick", "sim://?idle=1", "--json")[1])["state"] == "running"
+    assert (
+        json.loads(kickctl("start", "--brick", "sim://?idle=1", "--json")[1])["state"] == "running"
+    )
     assert json.loads(kickctl("stop", "--json")[1])["state"] == "stopped"
     assert kickctl("clear")[0] == 1
 

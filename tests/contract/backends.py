@@ -1,4 +1,7 @@
-"""The motors that the contract is tried on: simulated, simulated behind the brick's files, and a real brick's."""
+"""The motors that the contract is tried on.
+
+Simulated, simulated behind the brick's files, and a real brick's.
+"""
 
 import os
 import time

@@ -1,4 +1,6 @@
-"""What the loop may expect of every robot.motors.Motor. Wheels must be free to turn; a real brick's are put up on a box.
+"""What the loop may expect of every robot.motors.Motor. Wheels must be free to turn.
+
+A real brick's are put up on a box.
 
 On a brick: KICK_TEST_PORTS=outB python3 -m pytest tests/contract -m brick
 """
@@ -31,7 +33,13 @@ def live(tmp_path_factory):
         "simulated",
         pytest.param("files", marks=needs_mount),
         pytest.param(
-            "brick", marks=[pytest.mark.brick, pytest.mark.skipif(REAL_PORTS not in os.environ, reason=f"name a port in {REAL_PORTS}")]
+            "brick",
+            marks=[
+                pytest.mark.brick,
+                pytest.mark.skipif(
+                    REAL_PORTS not in os.environ, reason=f"name a port in {REAL_PORTS}"
+                ),
+            ],
         ),
     ]
 )
@@ -101,7 +109,9 @@ def test_the_whole_range_is_there(rig, duty):
     assert turns_by(rig, duty / 100)
 
 
-@pytest.mark.parametrize("halt", [lambda motor: motor.stop(), lambda motor: motor.write_duty(0)], ids=["stop", "duty 0"])
+@pytest.mark.parametrize(
+    "halt", [lambda motor: motor.stop(), lambda motor: motor.write_duty(0)], ids=["stop", "duty 0"]
+)
 def test_it_stops(rig, halt):
     rig.motor.write_duty(DRIVE)
     assert turns_by(rig, 2.0)

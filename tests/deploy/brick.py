@@ -18,7 +18,9 @@ ROOT = Path(__file__).resolve().parents[2]
 SSHD = shutil.which("sshd", path="/usr/sbin:/usr/local/sbin:" + os.environ["PATH"])
 PRIVILEGE_SEPARATION = Path("/run/sshd")
 
-needs_sshd = pytest.mark.skipif(SSHD is None, reason="there is no sshd: apt-get install openssh-server")
+needs_sshd = pytest.mark.skipif(
+    SSHD is None, reason="there is no sshd: apt-get install openssh-server"
+)
 
 SSHD_CONFIG = """\
 ListenAddress 127.0.0.1
@@ -77,15 +79,22 @@ class Brick:
 
     def __init__(self, folder):
         self.folder = folder
-        self.home, self.sysfs, self.etc, self.bin = (folder / "brick" / name for name in ("home", "class", "etc", "bin"))
+        self.home, self.sysfs, self.etc, self.bin = (
+            folder / "brick" / name for name in ("home", "class", "etc", "bin")
+        )
         for path in (self.home, self.etc, self.bin):
             path.mkdir(parents=True)
         self.port = free_port()
         self.replace("python3", f'exec {sys.executable} "$@"')
         self.ssh_config = folder / "ssh_config"
         for key in ("host_key", "user_key"):
-            subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key], check=True)
-        write(folder / "known_hosts", f"[127.0.0.1]:{self.port} {(folder / 'host_key.pub').read_text(encoding='utf-8')}")
+            subprocess.run(
+                ["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key], check=True
+            )
+        write(
+            folder / "known_hosts",
+            f"[127.0.0.1]:{self.port} {(folder / 'host_key.pub').read_text(encoding='utf-8')}",
+        )
         write(folder / "login", LOGIN.format(brick=folder / "brick"), 0o755)
         self.reach_through(self.port)
         self._sshd = None
@@ -99,7 +108,10 @@ class Brick:
         settings = SSH_CONFIG.format(port=port, user=getpass.getuser(), folder=self.folder)
         write(
             self.ssh_config,
-            settings.replace("    StrictHostKeyChecking", f"    HostKeyAlias [127.0.0.1]:{self.port}\n    StrictHostKeyChecking"),
+            settings.replace(
+                "    StrictHostKeyChecking",
+                f"    HostKeyAlias [127.0.0.1]:{self.port}\n    StrictHostKeyChecking",
+            ),
         )
 
     def boot(self):
@@ -110,12 +122,17 @@ class Brick:
             PRIVILEGE_SEPARATION.mkdir(mode=0o755)
         write(self.folder / "sshd_config", SSHD_CONFIG.format(port=self.port, folder=self.folder))
         with (self.folder / "sshd.log").open("w") as log:
-            self._sshd = subprocess.Popen([SSHD, "-D", "-e", "-f", self.folder / "sshd_config"], stderr=log)
+            self._sshd = subprocess.Popen(
+                [SSHD, "-D", "-e", "-f", self.folder / "sshd_config"], stderr=log
+            )
         wait_until(self._answers)
 
     def _answers(self):
         assert self._sshd.poll() is None, (self.folder / "sshd.log").read_text(encoding="utf-8")
-        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0) as link:
+        with (
+            contextlib.suppress(OSError),
+            socket.create_connection(("127.0.0.1", self.port), 1.0) as link,
+        ):
             return link.recv(4) == b"SSH-"
 
     def shut_down(self):
@@ -133,7 +150,9 @@ class Brick:
         found = []
         for process in Path("/proc").iterdir():
             with contextlib.suppress(OSError):
-                if process.name.isdigit() and str((process / "cwd").readlink()).startswith(str(self.home)):
+                if process.name.isdigit() and str((process / "cwd").readlink()).startswith(
+                    str(self.home)
+                ):
                     found.append(int(process.name))
         return found
 
@@ -150,7 +169,11 @@ class Brick:
 
     def releases(self):
         """The names of whatever stands among the releases."""
-        return sorted(path.name for path in (self.kickctl / "releases").iterdir()) if (self.kickctl / "releases").exists() else []
+        return (
+            sorted(path.name for path in (self.kickctl / "releases").iterdir())
+            if (self.kickctl / "releases").exists()
+            else []
+        )
 
     def pid(self):
         """The number of the robot's program, None if it does not run."""
@@ -180,7 +203,10 @@ class Brick:
 
 
 class Checkout:
-    """A copy of what deploy.sh needs, to change at will; and the machine that it stands on, with a token of its own."""
+    """A copy of what deploy.sh needs, to change at will.
+
+    And the machine that it stands on, with a token of its own.
+    """
 
     def __init__(self, folder, brick):
         self.folder = folder / "checkout"
@@ -211,7 +237,9 @@ class Checkout:
 
     def deploying(self, *arguments, to="brick", **environment):
         """A running deploy.sh."""
-        environment.setdefault("KICK_ROBOT_ARGS", f"--sysfs {self._brick.sysfs} --host 127.0.0.1 --port 0 --seed 5")
+        environment.setdefault(
+            "KICK_ROBOT_ARGS", f"--sysfs {self._brick.sysfs} --host 127.0.0.1 --port 0 --seed 5"
+        )
         return subprocess.Popen(
             [self.folder / "deploy.sh", *arguments, to],
             env=self.environment(**environment),

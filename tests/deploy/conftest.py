@@ -7,7 +7,10 @@ from tests.deploy.brick import Brick, Checkout, write
 
 @pytest.fixture
 def brick(tmp_path):
-    """A brick without motors, whose battery is full: the robot's program starts, says which cable is out, and can be talked to."""
+    """A brick without motors, whose battery is full.
+
+    The robot's program starts, says which cable is out, and can be talked to.
+    """
     brick = Brick(tmp_path)
     battery = brick.sysfs / "power_supply" / "lego-ev3-battery"
     write(battery / "voltage_now", "7900000\n")

@@ -1,6 +1,9 @@
-"""As much of systemd as the service needs: `systemd.py start kickctl` and so on, in place of systemctl.
+"""As much of systemd as the service needs.
 
-It does what the unit file says of ExecStart, ExecStopPost, WatchdogSec, Restart and RestartSec, and notes each command in systemctl.log.
+`systemd.py start kickctl` and so on, in place of systemctl.
+
+It does what the unit file says of ExecStart, ExecStopPost, WatchdogSec, Restart and RestartSec, and
+notes each command in systemctl.log.
 """
 
 import configparser
@@ -40,7 +43,11 @@ def supervise(service):
 def run_once(service, link, address, stopped):
     """The main process's exit status."""
     patience = float(service["WatchdogSec"])
-    environment = {**os.environ, "NOTIFY_SOCKET": address, "WATCHDOG_USEC": str(int(1e6 * patience))}
+    environment = {
+        **os.environ,
+        "NOTIFY_SOCKET": address,
+        "WATCHDOG_USEC": str(int(1e6 * patience)),
+    }
     process = subprocess.Popen(words(service["ExecStart"]), env=environment)
     due = None
     while process.poll() is None:

@@ -1,4 +1,7 @@
-"""deploy.sh against a real sshd: what it does when all is well, and that whatever goes wrong leaves a brick that works."""
+"""deploy.sh against a real sshd.
+
+What it does when all is well, and that whatever goes wrong leaves a brick that works.
+"""
 
 import shutil
 import stat
@@ -22,7 +25,9 @@ def test_the_first_deploy_brings_a_whole_release_and_starts_it(brick, checkout):
         path.name for path in (checkout.folder / "robot").glob("*.py")
     )
     assert {path.name for path in current.iterdir()} == {"robot", "SHA256SUMS"}
-    compiled = {path.name.partition(".")[0] for path in (current / "robot" / "__pycache__").iterdir()}
+    compiled = {
+        path.name.partition(".")[0] for path in (current / "robot" / "__pycache__").iterdir()
+    }
     assert compiled == {path.stem for path in (current / "robot").glob("*.py")}
 
 
@@ -43,7 +48,9 @@ def test_a_second_host_takes_over_the_bricks_token(brick, checkout):
     assert status == 0, output
     assert checkout.token.read_text(encoding="ascii") == first.read_text(encoding="ascii")
     assert stat.S_IMODE(checkout.token.stat().st_mode) == 0o600
-    assert checkout.kickctl("--brick", brick.uri(), "clear")[0] == 5  # understood as a command: the motors are not there
+    assert (
+        checkout.kickctl("--brick", brick.uri(), "clear")[0] == 5
+    )  # understood as a command: the motors are not there
 
 
 def test_a_token_that_is_open_to_others_is_not_sent(brick, checkout):
@@ -87,7 +94,12 @@ def test_upgrade_then_rollback_and_forth_again(brick, checkout):
 def test_whoever_may_stand_beside_the_robot_is_warned_of_its_wheels(brick, checkout):
     assert "wheels will turn" in checkout.deploy()[1]
     checkout.change()
-    assert "wheels will turn" not in checkout.deploy(KICK_ROBOT_ARGS=f"--idle --sysfs {brick.sysfs} --host 127.0.0.1 --port 0")[1]
+    assert (
+        "wheels will turn"
+        not in checkout.deploy(
+            KICK_ROBOT_ARGS=f"--idle --sysfs {brick.sysfs} --host 127.0.0.1 --port 0"
+        )[1]
+    )
     assert "wheels will turn" not in checkout.deploy("--rollback")[1]
     checkout.deploy()
     status, output = checkout.deploy("--rollback")
@@ -118,7 +130,9 @@ def test_the_closing_words_can_be_typed_as_they_stand(brick, checkout, installed
     output = checkout.deploy(**environment)[1]
     assert "make setup" not in output
     (hint,) = [line for line in output.splitlines() if line.endswith("start")]
-    done = subprocess.run(["/bin/sh", "-c", hint], env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["/bin/sh", "-c", hint], env=environment, capture_output=True, text=True, check=True
+    )
     assert done.stdout == "--brick ssh://brick start\n"
 
 
@@ -158,7 +172,10 @@ def test_arguments_stay_until_others_are_given(brick, checkout):
     seed = '"seed": 77'
     assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
     environment = checkout.environment()
-    checkout.environment = lambda **more: {**environment, **{name: value for name, value in more.items() if name != "KICK_ROBOT_ARGS"}}
+    checkout.environment = lambda **more: {
+        **environment,
+        **{name: value for name, value in more.items() if name != "KICK_ROBOT_ARGS"},
+    }
     status, output = checkout.deploy()
     assert status == 0, output
     assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
@@ -236,5 +253,9 @@ def test_nothing_but_the_robots_own_files_is_sent(brick, checkout):
     write(checkout.folder / "robot" / "__pycache__" / "loop.cpython-35.pyc", "")
     shutil.copy(checkout.folder / "deploy.sh", checkout.folder / "robot" / "notes.sh")
     checkout.deploy()
-    sent = [path for path in (brick.kickctl / "current").rglob("*") if path.suffix in (".txt", ".sh") or "35" in path.name]
+    sent = [
+        path
+        for path in (brick.kickctl / "current").rglob("*")
+        if path.suffix in (".txt", ".sh") or "35" in path.name
+    ]
     assert [path.name for path in sent] == ["brick.sh"]

@@ -14,7 +14,8 @@ from host.link import discovery
 from host.link.discovery import BRICK, ROBOT, USER, look_around
 
 LOOPBACK = ["127.0.0.1"]
-# Questions go out at once, after 1 s and after 3 s, and a record that was told within the last second is not told again.
+# Questions go out at once, after 1 s and after 3 s, and a record that was told within the last
+# second is not told again.
 LONG_S = 4.0
 
 
@@ -25,8 +26,12 @@ def announced(*services):
         for kind, name, port, number, properties in services:
             addresses = [socket.inet_aton(f"127.0.0.{number}")]
             server = f"{name.replace(' ', '-')}.local."
-            info = ServiceInfo(kind, f"{name}.{kind}", port, 0, 0, properties, server, addresses=addresses)
-            network.register_service(info, cooperating_responders=True)  # nobody has to be asked whether the name is free
+            info = ServiceInfo(
+                kind, f"{name}.{kind}", port, 0, 0, properties, server, addresses=addresses
+            )
+            network.register_service(
+                info, cooperating_responders=True
+            )  # nobody has to be asked whether the name is free
         yield
 
 
@@ -52,7 +57,12 @@ def record(kind, name, **properties):
     """A service's record as it came in, unlike one to send, unchecked."""
     values = {key.encode(): value.encode() for key, value in properties.items()}
     return SimpleNamespace(
-        type=kind, name=f"{name}.{kind}", server="x.local.", port=1, properties=values, parsed_addresses=lambda version: ["127.0.0.6"]
+        type=kind,
+        name=f"{name}.{kind}",
+        server="x.local.",
+        port=1,
+        properties=values,
+        parsed_addresses=lambda version: ["127.0.0.6"],
     )
 
 
@@ -71,7 +81,11 @@ def test_the_verb_prints_addresses_that_the_other_verbs_take(capsys, monkeypatch
     out = capsys.readouterr().out
     if arguments:
         (robot,) = json.loads(out)["robots"]
-        assert (robot["uri"], robot["host"], robot["addresses"]) == ("tcp://127.0.0.4", "runner.local", ["127.0.0.4"])
+        assert (robot["uri"], robot["host"], robot["addresses"]) == (
+            "tcp://127.0.0.4",
+            "runner.local",
+            ["127.0.0.4"],
+        )
     else:
         assert out == "tcp://127.0.0.4  (runner: robot)\n"
 

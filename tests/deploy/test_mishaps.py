@@ -1,4 +1,7 @@
-"""What goes wrong in a deploy: the brick keeps, or gets back, a program that runs, and a person is told what to do."""
+"""What goes wrong in a deploy.
+
+The brick keeps, or gets back, a program that runs, and a person is told what to do.
+"""
 
 import os
 import signal
@@ -33,10 +36,19 @@ def unharmed(brick, release):
     [
         ("python3", "echo 3.4.2; exit 1", ("3.4.2", "3.5 or newer", "ev3dev-stretch")),
         ("python3", "exit 127", ("missing", "3.5 or newer")),
-        ("df", 'printf "Filesystem 1024-blocks Used Available Capacity Mounted\\n/dev/root 99 99 8123 99%% /\\n"', ("8 MB left", "delete")),
+        (
+            "df",
+            (
+                'printf "Filesystem 1024-blocks Used Available Capacity Mounted\\n/dev/root 99 99'
+                ' 8123 99%% /\\n"'
+            ),
+            ("8 MB left", "delete"),
+        ),
     ],
 )
-def test_a_brick_that_is_not_fit_is_refused_and_left_alone(deployed, checkout, program, script, words):
+def test_a_brick_that_is_not_fit_is_refused_and_left_alone(
+    deployed, checkout, program, script, words
+):
     release, pid = deployed.release(), deployed.pid()
     deployed.replace(program, script)
     status, output = checkout.deploy()
@@ -49,7 +61,13 @@ def test_a_brick_that_is_not_fit_is_refused_and_left_alone(deployed, checkout, p
 
 @pytest.mark.parametrize(
     ("technology", "microvolts", "status"),
-    [("Li-ion", 6490000, 4), ("Li-ion", 6510000, 0), ("Unknown", 5490000, 4), ("Unknown", 6000000, 0), ("NiMH", None, 0)],
+    [
+        ("Li-ion", 6490000, 4),
+        ("Li-ion", 6510000, 0),
+        ("Unknown", 5490000, 4),
+        ("Unknown", 6000000, 0),
+        ("NiMH", None, 0),
+    ],
 )
 def test_an_empty_battery_is_refused(brick, checkout, technology, microvolts, status):
     battery = brick.sysfs / "power_supply" / "lego-ev3-battery"
@@ -70,7 +88,11 @@ def test_an_empty_battery_is_refused(brick, checkout, technology, microvolts, st
         ("__main__", "\nraise SystemExit('the dog ate it')\n", "the dog ate it"),
         ("program", "\nimport nothing_of_that_name\n", "nothing_of_that_name"),
         ("server", "\nServer.serve = lambda self, timeout_s: None\n", "not well"),
-        ("loop", "\nLoop.tick = lambda self: setattr(self, 'deadline', self.deadline + 0.01)\n", "it does not tick"),
+        (
+            "loop",
+            "\nLoop.tick = lambda self: setattr(self, 'deadline', self.deadline + 0.01)\n",
+            "it does not tick",
+        ),
     ],
 )
 def test_a_release_that_is_not_well_is_rolled_back(brick, checkout, module, text, words):
@@ -83,7 +105,10 @@ def test_a_release_that_is_not_well_is_rolled_back(brick, checkout, module, text
     checkout.change(module, text)
     checkout.change("__main__", "".join(begin[1:]))
     health = checkout.folder / "robot" / "health.py"
-    health.write_text(health.read_text(encoding="utf-8").replace("PATIENCE_S = 20.0", "PATIENCE_S = 2.0"), encoding="utf-8")
+    health.write_text(
+        health.read_text(encoding="utf-8").replace("PATIENCE_S = 20.0", "PATIENCE_S = 2.0"),
+        encoding="utf-8",
+    )
     status, output = checkout.deploy()
     assert status == 1, output
     assert words in output
@@ -124,8 +149,13 @@ def test_arguments_that_were_put_back_are_told(brick, checkout):
     assert "instead of '--left'" in last
 
 
-def test_arguments_of_a_deploy_that_never_changed_over_are_of_no_use_to_the_next(deployed, checkout):
-    """The arguments arrive, and then somebody else holds the lock, or the line is cut; later comes --rollback, with none."""
+def test_arguments_of_a_deploy_that_never_changed_over_are_of_no_use_to_the_next(
+    deployed, checkout
+):
+    """The arguments arrive, and then somebody else holds the lock, or the line is cut.
+
+    Later comes --rollback, with none.
+    """
     checkout.deploy()
     arguments = (deployed.kickctl / "arguments").read_text(encoding="utf-8")
     release = deployed.release()
@@ -148,7 +178,10 @@ def test_arguments_are_never_a_command_for_the_bricks_shell(deployed, checkout):
 
 def test_a_program_that_hangs_is_told_and_a_deploy_ends_it(brick, checkout):
     health = checkout.folder / "robot" / "health.py"
-    health.write_text(health.read_text(encoding="utf-8").replace("PATIENCE_S = 20.0", "PATIENCE_S = 1.0"), encoding="utf-8")
+    health.write_text(
+        health.read_text(encoding="utf-8").replace("PATIENCE_S = 20.0", "PATIENCE_S = 1.0"),
+        encoding="utf-8",
+    )
     checkout.deploy()
     pid = brick.pid()
     os.kill(pid, signal.SIGSTOP)
@@ -210,7 +243,9 @@ def test_a_release_damaged_on_the_card_is_sent_again(brick, checkout):
 
 def test_a_program_that_does_not_listen_to_sigterm_is_killed(brick, checkout):
     checkout.change(
-        "program", "\nsignal.signal = lambda number, handler: None\nsignal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])\n"
+        "program",
+        "\nsignal.signal = lambda number, handler: None\nsignal.pthread_sigmask(signal.SIG_BLOCK,"
+        " [signal.SIGTERM])\n",
     )
     checkout.deploy()
     stubborn = brick.pid()
@@ -243,7 +278,10 @@ def test_two_deploys_at_once_do_not_get_into_each_others_way(deployed, checkout)
 
 @contextmanager
 def cut_after(brick, to_brick):
-    """Everything between ssh and the brick goes through here, until so many bytes were sent to it; then the line is dead."""
+    """Everything between ssh and the brick goes through here, until so many bytes were sent to it.
+
+    Then the line is dead.
+    """
     listener = socket.create_server(("127.0.0.1", 0))
     links = []
 
@@ -316,7 +354,9 @@ def test_a_connection_cut_in_the_change_over_to_a_bad_release_rolls_back(deploye
         wait_until(lambda: deployed.runs() not in (None, release))
         cut()
         process.communicate(timeout=60)
-    wait_until(lambda: deployed.runs() == deployed.release() == release and "READY" in deployed.log())
+    wait_until(
+        lambda: deployed.runs() == deployed.release() == release and "READY" in deployed.log()
+    )
 
 
 def test_no_brick_at_the_address_is_told_in_words(checkout, brick):
@@ -328,7 +368,10 @@ def test_no_brick_at_the_address_is_told_in_words(checkout, brick):
 
 
 def test_a_brick_with_a_new_card_is_told_from_one_that_is_off(brick, checkout):
-    write(brick.folder / "known_hosts", f"[127.0.0.1]:{brick.port} {(brick.folder / 'user_key.pub').read_text(encoding='utf-8')}")
+    write(
+        brick.folder / "known_hosts",
+        f"[127.0.0.1]:{brick.port} {(brick.folder / 'user_key.pub').read_text(encoding='utf-8')}",
+    )
     status, output = checkout.deploy()
     assert status == 3
     assert "IDENTIFICATION HAS CHANGED" in output

@@ -1,4 +1,7 @@
-"""The robot's program as a service: deploy.sh puts it in place, and the unit's own words make the motors stop however it ends."""
+"""The robot's program as a service.
+
+Deploy.sh puts it in place, and the unit's own words make the motors stop however it ends.
+"""
 
 import getpass
 import os
@@ -85,17 +88,29 @@ def test_upgrade_and_rollback_go_through_systemd(served, checkout):
 
 def is_no_service(brick):
     """Whether nothing of a service is left, and a program runs that systemd did not start."""
-    left = [path.name for folder in (unit(brick).parent, brick.etc / "avahi" / "services") for path in folder.glob("kickctl*")]
+    left = [
+        path.name
+        for folder in (unit(brick).parent, brick.etc / "avahi" / "services")
+        for path in folder.glob("kickctl*")
+    ]
     manager = unit(brick).parent / "manager.pid"
-    return left == [] and not manager.exists() and not list(brick.kickctl.glob("*.new")) and brick.runs() is not None
+    return (
+        left == []
+        and not manager.exists()
+        and not list(brick.kickctl.glob("*.new"))
+        and brick.runs() is not None
+    )
 
 
 @pytest.mark.parametrize(
     "systemctl",
-    [f'[ "$1" != {verb} ] || exit 1\n{SYSTEMCTL}' for verb in ("daemon-reload", "enable", "start")] + ["exit 1"],
+    [f'[ "$1" != {verb} ] || exit 1\n{SYSTEMCTL}' for verb in ("daemon-reload", "enable", "start")]
+    + ["exit 1"],
     ids=["daemon-reload", "enable", "start", "everything"],
 )
-def test_a_first_service_that_systemd_does_not_take_leaves_the_release_before_as_it_was(ready, checkout, systemctl):
+def test_a_first_service_that_systemd_does_not_take_leaves_the_release_before_as_it_was(
+    ready, checkout, systemctl
+):
     checkout.deploy()
     old = ready.release()
     ready.replace("systemctl", systemctl)
@@ -135,7 +150,9 @@ def test_a_bad_release_does_not_become_a_service(ready, checkout):
 def test_a_bad_release_of_a_service_takes_its_unit_file_with_it(served, checkout):
     old, text = served.release(), unit(served).read_bytes()
     template = checkout.folder / "robot" / "service" / "kickctl.service"
-    template.write_text(template.read_text(encoding="utf-8").replace("run --idle", "run --fly"), encoding="utf-8")
+    template.write_text(
+        template.read_text(encoding="utf-8").replace("run --idle", "run --fly"), encoding="utf-8"
+    )
     status, output = checkout.deploy("--service")
     assert status == 1, output
     assert unit(served).read_bytes() == text
@@ -201,19 +218,34 @@ def test_a_program_that_ends_well_is_not_started_again(served):
 
 
 def test_the_network_is_told_the_port_that_the_robot_listens_on(served):
-    told = dict(re.findall(r"<(\S+)>(.*)</\1>", (served.etc / "avahi" / "services" / "kickctl.service").read_text(encoding="utf-8")))
+    told = dict(
+        re.findall(
+            r"<(\S+)>(.*)</\1>",
+            (served.etc / "avahi" / "services" / "kickctl.service").read_text(encoding="utf-8"),
+        )
+    )
     assert told["type"] == "_kickctl._tcp"
     assert told["port"] == served.uri().partition("port=")[2]
 
 
-@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd-analyze: apt-get install systemd")
+@pytest.mark.skipif(
+    shutil.which("systemd-analyze") is None,
+    reason="there is no systemd-analyze: apt-get install systemd",
+)
 def test_systemd_understands_every_line_of_the_unit(tmp_path):
     text = (ROOT / "robot" / "service" / "kickctl.service").read_text(encoding="utf-8")
-    for name, value in (("@USER@", getpass.getuser()), ("@ROOT@", "/home/robot/kickctl"), ("@CLASS@", "/sys/class")):
+    for name, value in (
+        ("@USER@", getpass.getuser()),
+        ("@ROOT@", "/home/robot/kickctl"),
+        ("@CLASS@", "/sys/class"),
+    ):
         text = text.replace(name, value)
     write(tmp_path / "kickctl.service", text)
     done = subprocess.run(
-        ["systemd-analyze", "verify", "--man=no", tmp_path / "kickctl.service"], capture_output=True, text=True, check=False
+        ["systemd-analyze", "verify", "--man=no", tmp_path / "kickctl.service"],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert (done.returncode, done.stderr) == (0, "")
 
@@ -221,5 +253,13 @@ def test_systemd_understands_every_line_of_the_unit(tmp_path):
 def test_the_unit_uses_nothing_that_the_bricks_systemd_does_not_know():
     """What came after systemd 232, of what such a unit might want."""
     text = (ROOT / "robot" / "service" / "kickctl.service").read_text(encoding="utf-8")
-    for later in ("append:", "truncate:", "ExecCondition", "RestartMode", "RestartSteps", "OOMPolicy", "TimeoutStartFailureMode"):
+    for later in (
+        "append:",
+        "truncate:",
+        "ExecCondition",
+        "RestartMode",
+        "RestartSteps",
+        "OOMPolicy",
+        "TimeoutStartFailureMode",
+    ):
         assert later not in text

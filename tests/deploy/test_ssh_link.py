@@ -19,7 +19,9 @@ from tests.sysfs.mount import ended, mounted, needs_mount, started
 @pytest.fixture
 def desk(tmp_path):
     """The port of a desk robot on this machine."""
-    process, uri = started("sim_motor", "--port", "0", "--seed", "3", "--token", str(tmp_path / "token"))
+    process, uri = started(
+        "sim_motor", "--port", "0", "--seed", "3", "--token", str(tmp_path / "token")
+    )
     yield uri.rpartition(":")[2]
     ended(process)
 
@@ -33,7 +35,11 @@ def through(brick, monkeypatch):
 def tunnels():
     """Numbers of the ssh processes that this one has started."""
     children = Path(f"/proc/self/task/{os.getpid()}/children").read_text(encoding="ascii").split()
-    return [int(child) for child in children if Path(f"/proc/{child}/comm").read_text(encoding="ascii").strip() == "ssh"]
+    return [
+        int(child)
+        for child in children
+        if Path(f"/proc/{child}/comm").read_text(encoding="ascii").strip() == "ssh"
+    ]
 
 
 @needs_sshd
@@ -48,7 +54,9 @@ def test_deploy_then_a_kick_through_the_tunnel_reverses_the_wheels(brick, checko
             assert status == 0, output
             assert "running (started), battery" in output
             assert "kickctl --brick ssh://brick kick --mode phase" in output
-            status, out, err = checkout.kickctl("--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4", "--json")
+            status, out, err = checkout.kickctl(
+                "--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4", "--json"
+            )
             assert status == 0, err
             result = json.loads(out)
             assert result["reversed"] is True
@@ -56,7 +64,12 @@ def test_deploy_then_a_kick_through_the_tunnel_reverses_the_wheels(brick, checko
             assert (status, json.loads(out)["exact"]) == (0, True), err
             checkout.change()
             assert checkout.deploy()[0] == 0
-            assert checkout.kickctl("--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4")[0] == 0
+            assert (
+                checkout.kickctl("--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4")[
+                    0
+                ]
+                == 0
+            )
             assert checkout.deploy("--rollback")[0] == 0
             assert checkout.kickctl("--brick", brick.uri(), "stop")[0] == 0
         finally:
@@ -86,7 +99,9 @@ def test_a_tunnel_that_dies_is_dug_anew_and_no_tick_is_lost(desk, through, tmp_p
 
 
 @needs_sshd
-def test_an_interrupt_at_the_terminal_leaves_the_tunnel_to_stop_the_motors_through(desk, through, tmp_path):
+def test_an_interrupt_at_the_terminal_leaves_the_tunnel_to_stop_the_motors_through(
+    desk, through, tmp_path
+):
     with connect(f"ssh://brick?port={desk}", token=str(tmp_path / "token")) as robot:
         (tunnel,) = tunnels()
         os.kill(tunnel, signal.SIGINT)
@@ -152,7 +167,15 @@ def test_a_machine_without_ssh(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "uri", ["ssh://", "ssh://brick:x", "ssh://brick?port=x", "ssh://brick?prot=1", "ssh://brick/home", "ssh://robot:maker@brick"]
+    "uri",
+    [
+        "ssh://",
+        "ssh://brick:x",
+        "ssh://brick?port=x",
+        "ssh://brick?prot=1",
+        "ssh://brick/home",
+        "ssh://robot:maker@brick",
+    ],
 )
 def test_what_is_no_address(uri):
     with pytest.raises(WrongUse):

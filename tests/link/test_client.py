@@ -30,7 +30,12 @@ class RigLink(SimLink):
 
     def __init__(self, capacity=20000):
         clock = Clock()
-        super().__init__("sim://rig", SimpleNamespace(motors=(Motor(turn=0.1), Motor(turn=0.2)), battery=None, clock=clock, seed=1))
+        super().__init__(
+            "sim://rig",
+            SimpleNamespace(
+                motors=(Motor(turn=0.1), Motor(turn=0.2)), battery=None, clock=clock, seed=1
+            ),
+        )
         self.capacity = capacity
         self.loop.blackbox.__init__(self.loop.params.values(), capacity)
         self.loop.safety.__init__()
@@ -93,7 +98,9 @@ def open_files():
 
 
 @settings(max_examples=40)
-@given(st.lists(st.tuples(st.integers(0, 3000), st.sampled_from(("kick", "set", "wait"))), max_size=12))
+@given(
+    st.lists(st.tuples(st.integers(0, 3000), st.sampled_from(("kick", "set", "wait"))), max_size=12)
+)
 def test_a_log_misses_nothing_and_hears_nothing_twice_wherever_the_link_is_cut(cuts):
     link = RigLink()
     link.loop.set_params({"link_loss": "continue"})
@@ -116,12 +123,19 @@ def test_a_log_misses_nothing_and_hears_nothing_twice_wherever_the_link_is_cut(c
     noted = json.loads(json.dumps([event for event in link.events() if event["tick"] >= first]))
     assert told == noted[: len(told)]
     assert all(event["tick"] > log.records[-1].tick for event in noted[len(told) :])
-    assert len([event for event in told if event["event"] == "kick"]) == sum(what == "kick" for _, what in cuts)
-    assert [event["event"] for event in log.events if event["event"] in ("snapshot", "lost")] == ["snapshot"]
+    assert len([event for event in told if event["event"] == "kick"]) == sum(
+        what == "kick" for _, what in cuts
+    )
+    assert [event["event"] for event in log.events if event["event"] in ("snapshot", "lost")] == [
+        "snapshot"
+    ]
 
 
 def test_a_command_that_the_link_swallowed_is_done_once(robot, link):
-    """Cut before the robot has read it, and cut before its answer is back: the kick happens, once, in the tick that is told."""
+    """Cut before the robot has read it, and cut before its answer is back.
+
+    The kick happens, once, in the tick that is told.
+    """
     robot.set(link_loss="continue")
     for cut_the_answer in (False, True):
         before = len(link.events())
@@ -253,7 +267,10 @@ def test_a_lease_is_kept_while_waiting_and_given_back_at_the_end(link):
 
 
 def test_numbers_that_are_none_are_refused_before_they_are_sent(robot):
-    for call in (lambda: robot.set(k=float("nan")), lambda: robot.kick("phase", shift=float("inf"))):
+    for call in (
+        lambda: robot.set(k=float("nan")),
+        lambda: robot.kick("phase", shift=float("inf")),
+    ):
         with pytest.raises(WrongUse):
             call()
     assert robot.status()["params"]["k"] == 8.0
@@ -263,7 +280,13 @@ def test_a_machine_without_the_token_may_look_and_stop(link):
     with Robot(link, None) as robot:
         assert robot.status()["state"] == "running"
         assert len(robot.record(0.3).records) >= 10
-        for call in (robot.start, robot.lease, lambda: robot.kick("phase"), lambda: robot.set(k=1.0), robot.clear):
+        for call in (
+            robot.start,
+            robot.lease,
+            lambda: robot.kick("phase"),
+            lambda: robot.set(k=1.0),
+            robot.clear,
+        ):
             with pytest.raises(RefusedByRobot, match="token"):
                 call()
         robot.stop()

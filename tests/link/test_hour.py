@@ -1,4 +1,7 @@
-"""An hour of the simulated robot with a link that breaks every minute: not one tick is missing at the host."""
+"""An hour of the simulated robot with a link that breaks every minute.
+
+Not one tick is missing at the host.
+"""
 
 from random import Random
 
@@ -18,7 +21,10 @@ MINUTE_S = 60.0
 
 
 class BreakingLink(SimLink):
-    """sim:// whose link breaks once a minute: in the middle of what is on its way, and for a while."""
+    """sim:// whose link breaks once a minute.
+
+    In the middle of what is on its way, and for a while.
+    """
 
     def __init__(self, seed, longest_s=3.0):
         super().__init__("sim://", SimBrick(seed))
@@ -106,4 +112,6 @@ def test_a_host_that_is_away_for_longer_than_the_black_box_is_told_exactly_what_
     ticks = ticks_of(log)
     assert sorted(ticks + told) == list(range(first, ticks[-1] + 1))
     written = bytes(link.written)
-    assert packed(log.records) == b"".join(written[tick * STRUCT.size : (tick + 1) * STRUCT.size] for tick in ticks)
+    assert packed(log.records) == b"".join(
+        written[tick * STRUCT.size : (tick + 1) * STRUCT.size] for tick in ticks
+    )

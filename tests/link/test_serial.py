@@ -1,4 +1,7 @@
-"""The same conversation over serial lines: pseudo-terminals with a cable between them that makes noise and comes off."""
+"""The same conversation over serial lines.
+
+Pseudo-terminals with a cable between them that makes noise and comes off.
+"""
 
 import os
 import select
@@ -26,7 +29,10 @@ TICK_S = 0.01
 
 
 class Cable:
-    """Two serial ports, `robot` and `host`, and what joins them; between frames it adds what `noise` returns."""
+    """Two serial ports, `robot` and `host`, and what joins them.
+
+    Between frames it adds what `noise` returns.
+    """
 
     def __init__(self, folder, noise=lambda: b""):
         self.paths = {name: folder / name for name in ("robot", "host")}
@@ -101,7 +107,11 @@ class Machine:
 
 def noisy(seed):
     random = Random(seed)
-    return lambda: random.randbytes(random.randrange(12)) if random.random() < 0.5 else random.choice((b"", b"\xa5", wire.SYNC, STOP[:6]))
+    return lambda: (
+        random.randbytes(random.randrange(12))
+        if random.random() < 0.5
+        else random.choice((b"", b"\xa5", wire.SYNC, STOP[:6]))
+    )
 
 
 @pytest.fixture
@@ -130,7 +140,11 @@ def test_a_whole_conversation_over_a_noisy_line(joined):
     ticks = [record.tick for record in log.records]
     assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
     assert len(ticks) >= 0.5 / TICK_S
-    assert [record.tick for record in log.records if record.kick] == [applied, applied + 1, applied + 2]
+    assert [record.tick for record in log.records if record.kick] == [
+        applied,
+        applied + 1,
+        applied + 2,
+    ]
     assert [event["event"] for event in log.events] == ["snapshot", "params", "kick", "stop"]
     box = machine.loop.blackbox
     assert log.records[:30] == unpack(b"".join(box.read(tick, 1) for tick in ticks[:30]))
@@ -199,7 +213,17 @@ def test_a_silent_line_stays_open(line):
     assert len(server._peers) == 1
 
 
-@pytest.mark.parametrize("noise", [b"", b"\xff", b"\xa5", os.urandom(100).replace(wire.SYNC, b""), wire.SYNC + b"\x63", STOP[:3] + STOP])
+@pytest.mark.parametrize(
+    "noise",
+    [
+        b"",
+        b"\xff",
+        b"\xa5",
+        os.urandom(100).replace(wire.SYNC, b""),
+        wire.SYNC + b"\x63",
+        STOP[:3] + STOP,
+    ],
+)
 def test_a_stop_behind_noise_is_heard(line, noise):
     rig, server, master = line
     os.write(master, noise + STOP)
@@ -208,8 +232,12 @@ def test_a_stop_behind_noise_is_heard(line, noise):
     assert STATES[rig.loop.safety.state] == "stopped"
 
 
-@pytest.mark.parametrize("header", [wire.SYNC + b"\x08\x0f\xff", wire.SYNC + b"\x03\x10\x00" + STOP[:2]])
-def test_a_stop_behind_what_looks_like_a_long_frame_is_heard_once_the_line_falls_silent(line, header):
+@pytest.mark.parametrize(
+    "header", [wire.SYNC + b"\x08\x0f\xff", wire.SYNC + b"\x03\x10\x00" + STOP[:2]]
+)
+def test_a_stop_behind_what_looks_like_a_long_frame_is_heard_once_the_line_falls_silent(
+    line, header
+):
     """A flipped bit in a length would otherwise swallow everything for kilobytes."""
     rig, server, master = line
     os.write(master, header + STOP)
@@ -238,7 +266,12 @@ def test_a_refused_conversation_on_a_line_can_begin_anew_but_not_go_on(line):
     (peer,) = server._peers
     assert not peer.session.closing
     assert wire.load(_one_frame(master)[1])["error"]["code"] == "broken"
-    os.write(master, wire.encode_json(wire.HELLO, {"protocol": [1, 0], "name": "n", "client": "c", "nonce": "00" * 16}))
+    os.write(
+        master,
+        wire.encode_json(
+            wire.HELLO, {"protocol": [1, 0], "name": "n", "client": "c", "nonce": "00" * 16}
+        ),
+    )
     served(rig, server)
     assert _one_frame(master)[0] == wire.HELLO
     os.write(master, wire.encode(wire.COMMAND, bytes(30)))

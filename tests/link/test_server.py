@@ -1,4 +1,7 @@
-"""The robot's links over real sockets, in virtual time: whatever peers do, ticks go on, memory is bounded, and a stop is heard."""
+"""The robot's links over real sockets, in virtual time.
+
+Whatever peers do, ticks go on, memory is bounded, and a stop is heard.
+"""
 
 import os
 import socket
@@ -297,7 +300,9 @@ def test_a_peer_that_asks_and_never_reads_is_not_read_either(desk):
         sent += taken
         idle = 0 if taken else idle + 1
         desk.run()
-        largest = max(largest, *(len(link.out) + len(link.decoder._buffer) for link in desk.server._peers))
+        largest = max(
+            largest, *(len(link.out) + len(link.decoder._buffer) for link in desk.server._peers)
+        )
     assert FULL_BYTES < largest <= FULL_BYTES + 3 * FRAME
     assert desk.loop.missed == 0
 
@@ -341,7 +346,10 @@ class BusyClock(Clock):
 
 
 def test_the_work_that_a_tick_can_be_late_by_is_one_frame_of_each_peer(monkeypatch):
-    """Every frame costs 1 ms here, and there is always another: a tick is at most one round of all peers late."""
+    """Every frame costs 1 ms here, and there is always another.
+
+    A tick is at most one round of all peers late.
+    """
     clock = BusyClock()
     desk = Desk(clock, capacity=2000)
     try:
@@ -369,11 +377,17 @@ def test_the_work_that_a_tick_can_be_late_by_is_one_frame_of_each_peer(monkeypat
 
 
 def test_who_gives_way_when_all_places_are_taken(desk):
-    """Strangers first, the longest there before others; then those with the token; the one that controls last."""
+    """Strangers first, the longest there before others; then those with the token.
+
+    The one that controls last.
+    """
     holder = desk.connect(name="holder").greet()
     holder.ask("lease", sealed=True)
     trusted = [desk.connect(name=f"trusted {number}").greet() for number in range(3)]
-    strangers = [desk.connect(token=None, name=f"stranger {number}").greet() for number in range(MAX_PEERS - 4)]
+    strangers = [
+        desk.connect(token=None, name=f"stranger {number}").greet()
+        for number in range(MAX_PEERS - 4)
+    ]
     everybody = [*strangers, *trusted, holder]
     assert len(desk.server._peers) == MAX_PEERS
     gone = []
@@ -381,7 +395,9 @@ def test_who_gives_way_when_all_places_are_taken(desk):
         desk.connect(name=f"new {number}").greet()
         holder.send(holder.talk.request("heartbeat", {}, sealed=True)[1])
         gone += [peer for peer in everybody if peer not in gone and not peer.read()]
-    assert [peer.talk._name for peer in gone] == [peer.talk._name for peer in [*strangers, *trusted][:6]]
+    assert [peer.talk._name for peer in gone] == [
+        peer.talk._name for peer in [*strangers, *trusted][:6]
+    ]
     assert holder.ask("status")["controller"] == "holder"
 
 

@@ -131,7 +131,9 @@ def test_a_heartbeat_keeps_it(rig, client):
 # Version, token, seals
 
 
-@pytest.mark.parametrize("protocol", [[2, 0], [0, 9], ["1", 0], [1], [], None, "1.0", {}, [[1], 0], [1, 0, 0]])
+@pytest.mark.parametrize(
+    "protocol", [[2, 0], [0, 9], ["1", 0], [1], [], None, "1.0", {}, [[1], 0], [1, 0, 0]]
+)
 def test_another_version_is_refused_with_both_named(rig, protocol):
     session = Session(rig.loop, TOKEN, "boot")
     before = rig.fingerprint()
@@ -147,7 +149,10 @@ def test_another_version_is_refused_with_both_named(rig, protocol):
 @pytest.mark.parametrize(
     "change",
     [
-        *({"nonce": nonce} for nonce in ("", "00" * 15, "00" * 17, "zz" * 16, "é" * 32, None, 7, [])),
+        *(
+            {"nonce": nonce}
+            for nonce in ("", "00" * 15, "00" * 17, "zz" * 16, "é" * 32, None, 7, [])
+        ),
         *({"client": client} for client in ("", "x" * 65, None, 7, [])),
         *({"name": name} for name in (None, 7, ["a"])),
     ],
@@ -189,7 +194,10 @@ def test_a_wrong_token_ends_the_conversation(rig):
 def test_what_is_no_proof_proves_nothing(rig, proof):
     client = Client(rig.loop)
     client.give(client.talk.hello_frame())
-    assert reply(client.session.receive(wire.AUTH, wire.dump({"proof": proof})))["error"]["code"] == "token"
+    assert (
+        reply(client.session.receive(wire.AUTH, wire.dump({"proof": proof})))["error"]["code"]
+        == "token"
+    )
     assert not client.session.trusted
 
 
@@ -247,7 +255,11 @@ def test_a_command_that_is_not_freshly_sealed_ends_the_conversation(rig, client,
 @pytest.mark.parametrize(
     ("do", "arguments"),
     [
-        *(("set", {"set": {name: value}}) for name in TABLE for value in (None, "x", True, [], 1e9, -1e9)),
+        *(
+            ("set", {"set": {name: value}})
+            for name in TABLE
+            for value in (None, "x", True, [], 1e9, -1e9)
+        ),
         ("set", {}),
         ("set", {"set": {}}),
         ("set", {"set": {"k": 1.0, "speed": 1.0}}),
@@ -257,7 +269,10 @@ def test_a_command_that_is_not_freshly_sealed_ends_the_conversation(rig, client,
         ("stop", {"now": True}),
         ("kick", {}),
         ("kick", {"kick": []}),
-        *(("kick", {"kick": {"id": "1", "mode": "phase", "ticks": ticks}}) for ticks in (0, -1, 1.5, None, 10**9)),
+        *(
+            ("kick", {"kick": {"id": "1", "mode": "phase", "ticks": ticks}})
+            for ticks in (0, -1, 1.5, None, 10**9)
+        ),
         ("kick", {"kick": {"id": "1", "mode": "shove"}}),
         ("kick", {"kick": {"mode": "phase"}}),
         ("jump", {}),
@@ -283,7 +298,9 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(rig, client, do, arg
 @pytest.mark.parametrize("do", ["set", "kick"])
 def test_numbers_that_are_none_never_arrive(rig, client, do, number):
     """Neither as JSON that says NaN, nor as JSON that overflows."""
-    arguments = {"set": {"k": number}} if do == "set" else {"id": "1", "mode": "phase", "shift": number}
+    arguments = (
+        {"set": {"k": number}} if do == "set" else {"id": "1", "mode": "phase", "shift": number}
+    )
     before = rig.fingerprint()
     for text in (
         json.dumps({"id": 9, "do": do, do: arguments}),
@@ -304,7 +321,9 @@ def test_a_kick_while_one_acts_is_refused(rig, client):
     assert rig.fingerprint() == before
 
 
-@pytest.mark.parametrize("identity", [None, "1", 1.0, True, [], pytest.param(10**3900, id="huge"), -1, 2**70])
+@pytest.mark.parametrize(
+    "identity", [None, "1", 1.0, True, [], pytest.param(10**3900, id="huge"), -1, 2**70]
+)
 def test_a_request_without_a_number_is_not_carried_out(rig, client, identity):
     """Its answer could not be told from others."""
     client.tell("heartbeat")
@@ -318,8 +337,15 @@ def test_a_request_without_a_number_is_not_carried_out(rig, client, identity):
 
 
 def test_the_tables_fit_into_a_frame_and_name_everything(rig, client):
-    tables = {name: client.ask("describe", table=name)["table"] for name in ("params", "channels", "commands")}
-    assert [row["name"] for row in tables["params"]] == list(client.ask("status")["params"]) == list(TABLE)
+    tables = {
+        name: client.ask("describe", table=name)["table"]
+        for name in ("params", "channels", "commands")
+    }
+    assert (
+        [row["name"] for row in tables["params"]]
+        == list(client.ask("status")["params"])
+        == list(TABLE)
+    )
     assert {row["name"] for row in tables["commands"] if not row["sealed"]} == set(OPEN)
 
 
@@ -330,25 +356,60 @@ def test_a_status_with_the_longest_names_fits_into_a_frame(rig):
     assert longest.ask("status")["controller"] == "\U0001f9be" * 40
 
 
-@pytest.mark.parametrize("text", ["\U0001f9be" * 300, "\x7f" * 4000, "\u20ac" * 600, "\ud800" * 600, "'\\" * 900], ids=ascii)
 @pytest.mark.parametrize(
-    "request_", [{"do": "{}"}, {"do": "status", "{}": 1}, {"do": "describe", "table": "{}"}, {"do": "subscribe", "from": "{}"}]
+    "text",
+    ["\U0001f9be" * 300, "\x7f" * 4000, "\u20ac" * 600, "\ud800" * 600, "'\\" * 900],
+    ids=ascii,
+)
+@pytest.mark.parametrize(
+    "request_",
+    [
+        {"do": "{}"},
+        {"do": "status", "{}": 1},
+        {"do": "describe", "table": "{}"},
+        {"do": "subscribe", "from": "{}"},
+    ],
 )
 def test_a_refusal_of_something_long_fits_into_a_frame(rig, client, text, request_):
-    message = {name.replace("{}", text): value.replace("{}", text) if isinstance(value, str) else value for name, value in request_.items()}
-    error = reply(client.session.receive(wire.ASK, json.dumps(dict(message, id=1)).encode()))["error"]
+    message = {
+        name.replace("{}", text): value.replace("{}", text) if isinstance(value, str) else value
+        for name, value in request_.items()
+    }
+    error = reply(client.session.receive(wire.ASK, json.dumps(dict(message, id=1)).encode()))[
+        "error"
+    ]
     assert len(error["message"]) <= 200
 
 
 # Anything at all
 
-strings = st.text(max_size=20) | st.sampled_from(("\U0001f9be" * 300, "\x7f" * 3000, "\u20ac" * 1300, "\ud800" * 600))
+strings = st.text(max_size=20) | st.sampled_from(
+    ("\U0001f9be" * 300, "\x7f" * 3000, "\u20ac" * 1300, "\ud800" * 600)
+)
 values = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | strings | st.just(10**3000),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3)
+    ),
     max_leaves=8,
 )
-names = st.sampled_from(("id", "do", "from", "table", "kick", "set", "proof", "protocol", "name", "client", "nonce", "mode", "k"))
+names = st.sampled_from(
+    (
+        "id",
+        "do",
+        "from",
+        "table",
+        "kick",
+        "set",
+        "proof",
+        "protocol",
+        "name",
+        "client",
+        "nonce",
+        "mode",
+        "k",
+    )
+)
 sensible = st.fixed_dictionaries(
     {"do": st.sampled_from(list(commands.TABLE)) | values, "id": st.integers(0, 9) | values},
     optional={
@@ -356,11 +417,16 @@ sensible = st.fixed_dictionaries(
         "set": st.dictionaries(names, values) | values,
     },
 )
-messages = (st.dictionaries(names | strings, values, max_size=5) | sensible).map(lambda message: json.dumps(message).encode())
+messages = (st.dictionaries(names | strings, values, max_size=5) | sensible).map(
+    lambda message: json.dumps(message).encode()
+)
 payloads = st.binary(max_size=100) | messages
 
 
-@given(st.lists(st.tuples(st.sampled_from(wire.TYPES), st.booleans(), payloads), max_size=5), st.booleans())
+@given(
+    st.lists(st.tuples(st.sampled_from(wire.TYPES), st.booleans(), payloads), max_size=5),
+    st.booleans(),
+)
 def test_any_frame_gets_sound_frames_and_nothing_is_raised(sent, greeted):
     rig = Rig(capacity=10)
     rig.loop.start()
@@ -375,7 +441,10 @@ def test_any_frame_gets_sound_frames_and_nothing_is_raised(sent, greeted):
     rig.run(2)
 
 
-@pytest.mark.parametrize("request_", ["%s", '"describe","table":%s', '"kick","kick":{"id":"1","mode":%s}', '"set","set":{"k":%s}'])
+@pytest.mark.parametrize(
+    "request_",
+    ["%s", '"describe","table":%s', '"kick","kick":{"id":"1","mode":%s}', '"set","set":{"k":%s}'],
+)
 @pytest.mark.parametrize(("opening", "closing"), [("[", "]"), ('{"a":', "}")])
 def test_no_depth_of_nesting_is_too_much(rig, client, request_, opening, closing):
     """Neither to read nor, which happens deeper in the stack, to show in a refusal."""

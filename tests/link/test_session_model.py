@@ -1,4 +1,7 @@
-"""Several hosts at one robot, against a model of who may do what: leases, heartbeats, kicks, cut links and the time that passes."""
+"""Several hosts at one robot, against a model of who may do what.
+
+Leases, heartbeats, kicks, cut links and the time that passes.
+"""
 
 from contextlib import contextmanager
 
@@ -21,7 +24,10 @@ CAPACITY = 60
 
 
 class SessionMachine(RuleBasedStateMachine):
-    """ann and bob have the token, eve does not. What the model expects is in `state`, `holder`, `heard`, `policy`, `kick_end`, `kicks`."""
+    """ann and bob have the token, eve does not.
+
+    What the model expects is in `state`, `holder`, `heard`, `policy`, `kick_end`, `kicks`.
+    """
 
     def __init__(self):
         super().__init__()
@@ -48,7 +54,9 @@ class SessionMachine(RuleBasedStateMachine):
 
     def client(self, name):
         if name not in self.clients:
-            self.clients[name] = Client(self.rig.loop, TOKEN if name in TRUSTED else None, name).greet()
+            self.clients[name] = Client(
+                self.rig.loop, TOKEN if name in TRUSTED else None, name
+            ).greet()
             self.due[name] = None
         return self.clients[name]
 
@@ -67,7 +75,10 @@ class SessionMachine(RuleBasedStateMachine):
         assert then == before
 
     def _tell(self, name, do, allowed, **arguments):
-        """The answer if the model allows the command; None after it has been refused and has changed nothing."""
+        """The answer if the model allows the command.
+
+        None after it has been refused and has changed nothing.
+        """
         client = self.client(name)
         call = client.tell if name in TRUSTED else client.ask
         if name in TRUSTED and name == self.holder:
@@ -112,7 +123,10 @@ class SessionMachine(RuleBasedStateMachine):
 
     @rule(name=names)
     def start(self, name):
-        if self._tell(name, "start", self.holder == name and self.state in ("idle", "stopped")) is not None:
+        if (
+            self._tell(name, "start", self.holder == name and self.state in ("idle", "stopped"))
+            is not None
+        ):
             self._enter("running")
 
     @rule(name=names)
@@ -143,7 +157,9 @@ class SessionMachine(RuleBasedStateMachine):
         known = identity in self.kicks
         allowed = self.holder == name and (known or (self.state == "running" and not self.kicked))
         tick = self.kicks.get(identity, self.tick)
-        answer = self._tell(name, "kick", allowed, kick={"id": identity, "mode": "position", "ticks": ticks})
+        answer = self._tell(
+            name, "kick", allowed, kick={"id": identity, "mode": "position", "ticks": ticks}
+        )
         if answer is not None:
             assert answer == {"tick": tick}
             if not known:
@@ -152,7 +168,12 @@ class SessionMachine(RuleBasedStateMachine):
 
     @rule(name=names, k=st.sampled_from((1.0, 5.0, -1.0, 200.0)))
     def set_k(self, name, k):
-        if self._tell(name, "set", self.holder == name and 0.0 <= k <= 100.0, set={"k": k, "a": 4.0}) is not None:
+        if (
+            self._tell(
+                name, "set", self.holder == name and 0.0 <= k <= 100.0, set={"k": k, "a": 4.0}
+            )
+            is not None
+        ):
             self.k = k
 
     @rule(name=names, policy=st.sampled_from(("stop", "hold", "continue")))
@@ -226,7 +247,10 @@ class SessionMachine(RuleBasedStateMachine):
     @invariant()
     def a_lost_host_is_noticed_within_two_ticks(self):
         silence = self.rig.clock.time - self.heard
-        assert self.rig.loop.lease.holder is None or silence <= LINK_LOSS_S + 2 * self.rig.loop.params.tick_s
+        assert (
+            self.rig.loop.lease.holder is None
+            or silence <= LINK_LOSS_S + 2 * self.rig.loop.params.tick_s
+        )
 
     @invariant()
     def everybody_sees_the_same_controller(self):

@@ -1,4 +1,7 @@
-"""The stream of a subscription, from the session that sends it to the host that follows it: all of it, once, and in order."""
+"""The stream of a subscription, from the session that sends it to the host that follows it.
+
+All of it, once, and in order.
+"""
 
 import pytest
 from hypothesis import given, settings
@@ -104,16 +107,40 @@ def test_a_new_hello_ends_the_subscription_and_the_trust(rig, client):
 
 scraps = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(max_size=8),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3)
+    ),
     max_leaves=6,
 )
 fields = st.sampled_from(
-    ("id", "result", "error", "event", "tick", "number", "from", "params", "kick", "nonce", "host_nonce", "boot", "proof", "code")
+    (
+        "id",
+        "result",
+        "error",
+        "event",
+        "tick",
+        "number",
+        "from",
+        "params",
+        "kick",
+        "nonce",
+        "host_nonce",
+        "boot",
+        "proof",
+        "code",
+    )
 )
-messages = st.dictionaries(fields, scraps | st.sampled_from(("snapshot", "lost", "params", "kick", "00" * 16)), max_size=6).map(wire.dump)
+messages = st.dictionaries(
+    fields, scraps | st.sampled_from(("snapshot", "lost", "params", "kick", "00" * 16)), max_size=6
+).map(wire.dump)
 
 
-@given(st.lists(st.tuples(st.sampled_from(wire.TYPES), st.binary(max_size=300) | messages), max_size=6), st.booleans())
+@given(
+    st.lists(
+        st.tuples(st.sampled_from(wire.TYPES), st.binary(max_size=300) | messages), max_size=6
+    ),
+    st.booleans(),
+)
 def test_no_frame_of_a_strange_robot_raises_anything_but_words(frames, greeted):
     talk = Conversation(TOKEN, "n", "c")
     place = Subscription()
@@ -201,6 +228,10 @@ def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
     ticks = [record.tick for record in log.records]
     assert sorted({*ticks, *told}) == list(range(rig.loop.blackbox.next_tick))
     assert len(ticks) + len(told) == rig.loop.blackbox.next_tick
-    numbers = [event["number"] for event in log.events if event["event"] not in ("snapshot", "lost")]
+    numbers = [
+        event["number"] for event in log.events if event["event"] not in ("snapshot", "lost")
+    ]
     assert numbers == sorted(set(numbers))
-    assert {number for number, tick in enumerate(ticks_of_events) if tick not in told} <= set(numbers)
+    assert {number for number, tick in enumerate(ticks_of_events) if tick not in told} <= set(
+        numbers
+    )

@@ -10,12 +10,18 @@ from hypothesis import strategies as st
 from robot import wire
 
 kinds = st.sampled_from(wire.TYPES)
-payloads = st.binary(max_size=200) | st.integers(0, wire.MAX_PAYLOAD).map(bytes) | st.just(wire.SYNC * 20)
+payloads = (
+    st.binary(max_size=200) | st.integers(0, wire.MAX_PAYLOAD).map(bytes) | st.just(wire.SYNC * 20)
+)
 frames = st.tuples(kinds, payloads)
 # Bytes that look like the beginning of a frame, more often than chance would make them.
-noise = st.lists(st.binary(max_size=30) | st.just(wire.SYNC) | st.just(wire.SYNC + b"\x08\x00") | st.just(b"\xa5"), max_size=30).map(
-    b"".join
-)
+noise = st.lists(
+    st.binary(max_size=30)
+    | st.just(wire.SYNC)
+    | st.just(wire.SYNC + b"\x08\x00")
+    | st.just(b"\xa5"),
+    max_size=30,
+).map(b"".join)
 
 
 def decode(chunks):
@@ -31,7 +37,8 @@ def decode(chunks):
 def cut(data, places):
     """The bytes in pieces that end at the places."""
     ends = [*sorted(place % (len(data) + 1) for place in places), len(data)]
-    return [data[begin:end] for begin, end in zip([0, *ends], ends)]  # noqa: B905 - zip(strict=) is of 3.10
+    # zip(strict=) is of 3.10.
+    return [data[begin:end] for begin, end in zip([0, *ends], ends)]  # noqa: B905
 
 
 @given(st.lists(frames, max_size=6), st.lists(st.integers(0, 1 << 16), max_size=12))
@@ -55,25 +62,49 @@ def test_what_does_not_fit_into_a_frame_is_refused():
         wire.encode(wire.ASK, bytes(wire.MAX_PAYLOAD + 1))
 
 
-@given(st.lists(noise | frames.map(lambda frame: wire.encode(*frame)), max_size=8), st.lists(st.integers(0, 1 << 16), max_size=8))
+@given(
+    st.lists(noise | frames.map(lambda frame: wire.encode(*frame)), max_size=8),
+    st.lists(st.integers(0, 1 << 16), max_size=8),
+)
 def test_whatever_arrives_nothing_is_raised_and_memory_is_bounded(pieces, places):
     data = b"".join(pieces)
     taken, decoder = decode(cut(data, places))
     assert len(decoder._buffer) <= wire.MAX_PAYLOAD + wire.OVERHEAD
-    assert decoder.discarded + len(decoder._buffer) + sum(len(payload) + wire.OVERHEAD for _, payload in taken) == len(data)
+    assert decoder.discarded + len(decoder._buffer) + sum(
+        len(payload) + wire.OVERHEAD for _, payload in taken
+    ) == len(data)
     assert all(kind in wire.TYPES for kind, _ in taken)
 
 
-@given(st.binary(max_size=3000).filter(lambda data: wire.SYNC not in data and not data.endswith(wire.SYNC[:1])), frames)
+@given(
+    st.binary(max_size=3000).filter(
+        lambda data: wire.SYNC not in data and not data.endswith(wire.SYNC[:1])
+    ),
+    frames,
+)
 def test_noise_in_front_of_a_frame_is_skipped(garbage, frame):
     taken, decoder = decode([garbage + wire.encode(*frame)])
     assert taken == [frame]
     assert decoder.discarded == len(garbage)
 
 
-@pytest.mark.parametrize("lead", [b"\xa5", b"\xa5\xa5", b"K", wire.SYNC, wire.SYNC + b"\x08", wire.SYNC + b"\x63\x00\x00", wire.SYNC * 5])
+@pytest.mark.parametrize(
+    "lead",
+    [
+        b"\xa5",
+        b"\xa5\xa5",
+        b"K",
+        wire.SYNC,
+        wire.SYNC + b"\x08",
+        wire.SYNC + b"\x63\x00\x00",
+        wire.SYNC * 5,
+    ],
+)
 def test_half_a_frame_in_front_of_a_frame_is_skipped_as_soon_as_it_shows(lead):
-    """What looks like a header may have to wait for as many bytes as it claims; the frames behind it are not lost."""
+    """What looks like a header may have to wait for as many bytes as it claims.
+
+    The frames behind it are not lost.
+    """
     stop = wire.encode(wire.STOP, b"")
     taken, _ = decode([lead + stop, *[stop] * 5000])
     assert len(taken) > 4000
@@ -98,7 +129,9 @@ def test_a_wrong_checksum_is_no_frame(payload, kind):
     assert decode([whole[:-4] + wrong.to_bytes(4, "big")])[0] == []
 
 
-@pytest.mark.parametrize("header", [b"\x00\x00\x00", b"\x09\x00\x00", b"\x01\x10\x01", b"\xff\xff\xff"])
+@pytest.mark.parametrize(
+    "header", [b"\x00\x00\x00", b"\x09\x00\x00", b"\x01\x10\x01", b"\xff\xff\xff"]
+)
 def test_an_unknown_type_or_length_is_no_frame_whatever_its_checksum(header):
     body = wire.SYNC + header + bytes(int.from_bytes(header[1:], "big"))
     taken, decoder = decode([body + zlib.crc32(body).to_bytes(4, "big")])
@@ -121,7 +154,11 @@ def test_the_cost_of_false_starts_is_bounded(monkeypatch):
 # Messages
 
 json_values = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=4),
     max_leaves=15,
 )
@@ -132,7 +169,11 @@ def test_messages_come_back(message):
     assert wire.load(wire.dump(message)) == message
 
 
-@given(st.binary(max_size=300) | json_values.map(lambda value: json.dumps(value).encode()) | st.sampled_from((b"[" * 4096, b'{"a":' * 800)))
+@given(
+    st.binary(max_size=300)
+    | json_values.map(lambda value: json.dumps(value).encode())
+    | st.sampled_from((b"[" * 4096, b'{"a":' * 800))
+)
 def test_any_payload_is_a_message_or_a_bad_one(payload):
     try:
         message = wire.load(payload)
@@ -142,7 +183,20 @@ def test_any_payload_is_a_message_or_a_bad_one(payload):
 
 
 @pytest.mark.parametrize(
-    "text", ['{"a": NaN}', '{"a": Infinity}', '{"a": -Infinity}', "[]", "1", '"a"', "null", "", "{", '{"a": 1}x', "\ufeff{}"]
+    "text",
+    [
+        '{"a": NaN}',
+        '{"a": Infinity}',
+        '{"a": -Infinity}',
+        "[]",
+        "1",
+        '"a"',
+        "null",
+        "",
+        "{",
+        '{"a": 1}x',
+        "\ufeff{}",
+    ],
 )
 def test_what_is_no_json_object_is_a_bad_message(text):
     with pytest.raises(wire.BadMessage):
@@ -197,7 +251,12 @@ def test_no_two_lists_of_parts_have_one_digest(one, other):
 
 
 def test_both_ends_of_a_handshake_agree_and_nobody_else():
-    derived = [wire.Handshake(token, host, robot) for token in (b"t" * 32, b"u" * 32) for host in (b"h", b"i") for robot in (b"r", b"s")]
+    derived = [
+        wire.Handshake(token, host, robot)
+        for token in (b"t" * 32, b"u" * 32)
+        for host in (b"h", b"i")
+        for robot in (b"r", b"s")
+    ]
     for name in ("host_proof", "robot_proof", "key"):
         assert len({getattr(handshake, name) for handshake in derived}) == len(derived)
     one = derived[0]

@@ -8,18 +8,29 @@ ROOMS = ("robot", "sim_motor", "host")
 
 def modules(*folders: str) -> list[str]:
     """The Python files below the folders, relative to the root, in order."""
-    return [str(path.relative_to(ROOT)) for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+    return [
+        str(path.relative_to(ROOT))
+        for folder in folders
+        for path in sorted((ROOT / folder).rglob("*.py"))
+    ]
 
 
 def robot_tests() -> list[str]:
-    """What `make test-py35` runs: the unit tests named after the robot's modules, and what else needs nothing but the robot."""
+    """What `make test-py35` runs.
+
+    The unit tests named after the robot's modules, and what else needs nothing but the robot.
+    """
     unit = (
         path
         for module in sorted((ROOT / "robot").glob("*.py"))
         for path in sorted((ROOT / "tests/unit/robot").glob("test_*.py"))
         if path.stem == f"test_{module.stem}" or path.stem.startswith(f"test_{module.stem}_")
     )
-    return [*(str(path.relative_to(ROOT)) for path in unit), "tests/link/test_wire.py", "tests/sysfs/test_panels.py"]
+    return [
+        *(str(path.relative_to(ROOT)) for path in unit),
+        "tests/link/test_wire.py",
+        "tests/sysfs/test_panels.py",
+    ]
 
 
 if __name__ == "__main__":

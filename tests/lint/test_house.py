@@ -1,4 +1,7 @@
-"""The rules of the house that no linter knows: who may import whom, where the equations stand, how long a file may be."""
+"""The rules of the house that no linter knows.
+
+Who may import whom, where the equations stand, how long a file may be.
+"""
 
 import ast
 import subprocess
@@ -18,12 +21,23 @@ MAY_IMPORT = {
 }
 LONGEST_FILE = 400
 # In pieces, so that this file does not name them either.
-REGISTRIES = [".".join(name) for name in (("pypi", "org"), ("pythonhosted", "org"), ("npmjs", "org"), ("deb", "debian", "org"))]
+REGISTRIES = [
+    ".".join(name)
+    for name in (
+        ("pypi", "org"),
+        ("pythonhosted", "org"),
+        ("npmjs", "org"),
+        ("deb", "debian", "org"),
+    )
+]
 HEAVY = {"matplotlib", "mcap", "numba", "numpy", "rich", "scipy"}
 
 
 def imported_modules(source: str) -> set[str]:
-    """The modules that a source imports or takes names from, at its top or anywhere else; relative imports stay in the room."""
+    """The modules that a source imports or takes names from, at its top or anywhere else.
+
+    Relative imports stay in the room.
+    """
     found = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -69,9 +83,18 @@ def restated_equations(source: str) -> Iterator[tuple[int, str]]:
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
-    files = {path.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path for path in modules(*ROOMS)}
-    arrows = {name: imported_modules((ROOT / path).read_text(encoding="utf-8")) & set(files) - {name} for name, path in files.items()}
-    assert arrows["host.logs.log"] >= {"host.logs.mcap_files", "robot.record"}  # it sees imports within functions too
+    files = {
+        path.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
+        for path in modules(*ROOMS)
+    }
+    arrows = {
+        name: imported_modules((ROOT / path).read_text(encoding="utf-8")) & set(files) - {name}
+        for name, path in files.items()
+    }
+    assert arrows["host.logs.log"] >= {
+        "host.logs.mcap_files",
+        "robot.record",
+    }  # it sees imports within functions too
     TopologicalSorter(arrows).prepare()  # raises CycleError, which names the circle
 
 
@@ -85,7 +108,14 @@ def test_a_room_imports_only_what_it_may_know(module: str) -> None:
     [
         ("robot", "def f():\n    import numpy.linalg", {"numpy"}),
         ("robot", "from sim_motor import motor", {"sim_motor"}),
-        ("robot", "import os, serial\nfrom ev3dev2.motor import LargeMotor\nfrom . import wire\nfrom robot import wire", set()),
+        (
+            "robot",
+            (
+                "import os, serial\nfrom ev3dev2.motor import LargeMotor\nfrom . import wire\nfrom"
+                " robot import wire"
+            ),
+            set(),
+        ),
         ("sim_motor", "import numba\nfrom host import api", {"host"}),
         ("host", "import tests.unit, rich, sim_motor", {"tests"}),
     ],
@@ -94,7 +124,9 @@ def test_strangers_are_found(room: str, source: str, expected: set[str]) -> None
     assert strangers(room, source) == expected
 
 
-@pytest.mark.parametrize("module", [module for module in modules(*ROOMS) if module != "robot/controller.py"], ids=str)
+@pytest.mark.parametrize(
+    "module", [module for module in modules(*ROOMS) if module != "robot/controller.py"], ids=str
+)
 def test_the_papers_equations_stand_only_in_the_controller(module: str) -> None:
     assert list(restated_equations((ROOT / module).read_text(encoding="utf-8"))) == []
 
@@ -115,7 +147,12 @@ def test_a_second_copy_of_an_equation_is_found(source: str, expected: list[str])
 
 
 def test_the_controller_itself_would_be_found() -> None:
-    kinds = {kind for _, kind in restated_equations((ROOT / "robot/controller.py").read_text(encoding="utf-8"))}
+    kinds = {
+        kind
+        for _, kind in restated_equations(
+            (ROOT / "robot/controller.py").read_text(encoding="utf-8")
+        )
+    }
     assert kinds == {"tanh", "1 + exp"}
 
 
@@ -126,11 +163,20 @@ def test_no_file_is_too_long_to_read(module: str) -> None:
 
 def test_no_file_names_a_package_registry() -> None:
     listed = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     files = [ROOT / name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
     assert ROOT / "requirements.lock" in files
-    named = [(str(path.relative_to(ROOT)), host) for path in files for host in REGISTRIES if host.encode() in path.read_bytes()]
+    named = [
+        (str(path.relative_to(ROOT)), host)
+        for path in files
+        for host in REGISTRIES
+        if host.encode() in path.read_bytes()
+    ]
     assert named == []
 
 
@@ -140,6 +186,12 @@ def test_help_loads_nothing_heavy() -> None:
         "import contextlib, sys\nfrom host.cli import main\nsys.argv = ['kickctl', '--help']\n"
         "with contextlib.suppress(SystemExit):\n    main()\nprint(*sys.modules, file=sys.stderr)"
     )
-    done = subprocess.run([sys.executable, "-c", help_then_modules], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", help_then_modules],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert "kickctl" in done.stdout
     assert HEAVY & set(done.stderr.split()) == set()

@@ -18,7 +18,9 @@ LATER = {
     "comma after *args": "def f(\n    a,\n    *args,  # why\n): pass",
     "comma after **kwargs": "def f(**kwargs,): pass",
     "comma after keyword-only": "def f(a, *, b=(1, 2),): pass",
-    "comma in a decorated method": "class A:\n    @property\n    def f(self, *, b={1: (2,)},): pass",
+    "comma in a decorated method": (
+        "class A:\n    @property\n    def f(self, *, b={1: (2,)},): pass"
+    ),
     "return star": "def f(a):\n    return 1, *a",
     "yield star": "def f(a):\n    yield 1, *a",
     "for star": "for x in 1, *[2]: pass",
@@ -75,7 +77,9 @@ def test_the_gate_lets_pass(source: str) -> None:
 
 
 def test_a_violation_tells_its_line() -> None:
-    assert violations("x = 1\nimport pathlib\n") == [(2, "pathlib: open() and os.path take no Path before 3.6: use os.path")]
+    assert violations("x = 1\nimport pathlib\n") == [
+        (2, "pathlib: open() and os.path take no Path before 3.6: use os.path")
+    ]
 
 
 @pytest.mark.parametrize("module", modules("robot"), ids=str)

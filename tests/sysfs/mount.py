@@ -15,7 +15,10 @@ ROOT = Path(__file__).resolve().parents[2]
 def why_not():
     """What this machine lacks for a mount, and how to get it; empty if nothing."""
     if not Path("/dev/fuse").exists():
-        return "there is no /dev/fuse: load the kernel module (modprobe fuse), or give the container the device"
+        return (
+            "there is no /dev/fuse: load the kernel module (modprobe fuse), or give the container"
+            " the device"
+        )
     if shutil.which("fusermount3") is None:
         return "there is no fusermount3: apt-get install fuse3"
     if importlib.util.find_spec("mfusepy") is None:
@@ -29,7 +32,12 @@ needs_mount = pytest.mark.skipif(bool(why_not()), reason=why_not())
 def started(*arguments):
     """A process of the project, once it has printed its READY line, and the words after READY."""
     process = subprocess.Popen(
-        [sys.executable, "-m", *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=1
+        [sys.executable, "-m", *arguments],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        bufsize=1,
     )
     line = process.stdout.readline()
     if not line.startswith("READY "):
@@ -72,4 +80,8 @@ def inject(folder, fault):
 
 def motor_folder(folder, port):
     """Where the motor at a port is just now."""
-    return next(path.parent for path in folder.glob("tacho-motor/*/address") if path.read_text(encoding="ascii").strip().endswith(port))
+    return next(
+        path.parent
+        for path in folder.glob("tacho-motor/*/address")
+        if path.read_text(encoding="ascii").strip().endswith(port)
+    )

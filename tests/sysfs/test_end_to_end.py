@@ -25,7 +25,9 @@ def live(tmp_path):
 @contextmanager
 def robot_on(live, *options):
     """A host's connection to a robot on the live tree."""
-    process, uri = started("robot", "--sysfs", str(live), "--host", "127.0.0.1", "--port", "0", "--seed", "5", *options)
+    process, uri = started(
+        "robot", "--sysfs", str(live), "--host", "127.0.0.1", "--port", "0", "--seed", "5", *options
+    )
     try:
         with connect(uri) as robot:
             yield robot
@@ -87,7 +89,10 @@ def test_a_cable_that_comes_off_is_a_fault_until_it_is_back_and_cleared(live):
         robot.start()
         log = robot.record(2.0)
         assert {record.state for record in log.records[3:]} == {1}
-        assert max(abs(record.left_phi_rad - log.records[0].left_phi_rad) for record in log.records) > 1.0
+        assert (
+            max(abs(record.left_phi_rad - log.records[0].left_phi_rad) for record in log.records)
+            > 1.0
+        )
         assert [event["event"] for event in log.events].count("fault") == 0
 
 
@@ -98,7 +103,9 @@ def test_the_fault_is_told_once_in_the_record(live):
         inject(live, "eio outC")
         robot.wait(20.0, until=lambda: any(event["event"] == "fault" for event in log.events))
         robot.wait(1.0)
-        assert [event["reason"].partition(":")[0] for event in log.events if event["event"] == "fault"] == ["right motor (outC)"]
+        assert [
+            event["reason"].partition(":")[0] for event in log.events if event["event"] == "fault"
+        ] == ["right motor (outC)"]
         assert log.records[-1].state == 4
         assert text(live, "outB", "state") == text(live, "outC", "state") == ""
         assert cleared(robot)
@@ -116,7 +123,14 @@ def test_a_robot_without_its_motors_starts_in_fault_and_can_be_mended(live):
         assert state_of(robot) == "running"
 
 
-@pytest.mark.parametrize("make", [lambda path: None, lambda path: path.write_text(""), lambda path: (path.mkdir(), (path / "a").touch())])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda path: None,
+        lambda path: path.write_text(""),
+        lambda path: (path.mkdir(), (path / "a").touch()),
+    ],
+)
 def test_what_cannot_be_mounted_on_is_refused_in_words(tmp_path, make):
     make(tmp_path / "sys")
     arguments = [sys.executable, "-m", "sim_motor", "--sysfs", str(tmp_path / "sys")]
@@ -128,7 +142,12 @@ def test_what_cannot_be_mounted_on_is_refused_in_words(tmp_path, make):
 
 def test_an_empty_battery_stops_the_robot_and_the_lights_follow(live):
     def lights():
-        return [(live / f"leds/led0:{colour}:brick-status/brightness").read_text(encoding="ascii").strip() for colour in ("red", "green")]
+        return [
+            (live / f"leds/led0:{colour}:brick-status/brightness")
+            .read_text(encoding="ascii")
+            .strip()
+            for colour in ("red", "green")
+        ]
 
     # Ten milliseconds a tick have the battery read every three seconds.
     with robot_on(live, "--tick", "0.01") as robot:
@@ -139,6 +158,8 @@ def test_an_empty_battery_stops_the_robot_and_the_lights_follow(live):
         robot.wait(60.0, until=lambda: any(event["event"] == "stop" for event in log.events))
         wait_until(lambda: lights() == ["255", "0"])
         assert "the battery is empty" in robot.status()["reason"]
-        assert [event["event"] for event in log.events if event["event"] in ("battery", "stop")] == ["battery", "stop"]
+        assert [
+            event["event"] for event in log.events if event["event"] in ("battery", "stop")
+        ] == ["battery", "stop"]
         assert text(live, "outB", "state") == ""
     assert lights() == ["0", "0"]

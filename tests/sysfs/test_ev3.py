@@ -1,4 +1,7 @@
-"""The brick's motors and battery (robot.ev3): on plain files where the kernel is to be odd, on the live tree for all the rest."""
+"""The brick's motors and battery (robot.ev3).
+
+On plain files where the kernel is to be odd, on the live tree for all the rest.
+"""
 
 import gc
 import os
@@ -12,7 +15,10 @@ from robot.motors import MotorFault
 from tests.sysfs.mount import inject, motor_folder, mounted, needs_mount
 
 # The library leaves the files that it opened to the garbage collector.
-pytestmark = [pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning"), pytest.mark.usefixtures("collected")]
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning"),
+    pytest.mark.usefixtures("collected"),
+]
 
 
 @pytest.fixture
@@ -27,8 +33,15 @@ def plain(tmp_path):
     """A motor at outB whose files are plain ones: they take everything and do nothing."""
     folder = tmp_path / "tacho-motor" / "motor0"
     folder.mkdir(parents=True)
-    values = {"address": "ev3-ports:outB", "driver_name": "lego-ev3-l-motor", "count_per_rot": "360", "max_speed": "1050"}
-    values |= dict.fromkeys(("command", "stop_action", "polarity", "position", "duty_cycle", "duty_cycle_sp"), "0")
+    values = {
+        "address": "ev3-ports:outB",
+        "driver_name": "lego-ev3-l-motor",
+        "count_per_rot": "360",
+        "max_speed": "1050",
+    }
+    values |= dict.fromkeys(
+        ("command", "stop_action", "polarity", "position", "duty_cycle", "duty_cycle_sp"), "0"
+    )
     values |= dict.fromkeys(("ramp_up_sp", "ramp_down_sp"), "9")
     for name, value in values.items():
         (folder / name).write_text(value + "\n", encoding="ascii")
@@ -120,7 +133,10 @@ def test_a_motor_that_does_not_stop_is_told_and_counts_as_lost(plain):
     motor._close()
 
 
-@pytest.mark.parametrize(("technology", "warn_v", "stop_v"), [("Li-ion", 6.5, 6.2), ("Unknown", 5.5, 5.0), ("NiMH", 5.5, 5.0)])
+@pytest.mark.parametrize(
+    ("technology", "warn_v", "stop_v"),
+    [("Li-ion", 6.5, 6.2), ("Unknown", 5.5, 5.0), ("NiMH", 5.5, 5.0)],
+)
 def test_when_a_battery_is_low_depends_on_its_kind(tmp_path, technology, warn_v, stop_v):
     folder = tmp_path / "power_supply" / "lego-ev3-battery"
     folder.mkdir(parents=True)
@@ -148,7 +164,15 @@ def test_a_found_motor_is_set_up_and_braked(live, motor):
         (folder / name).write_text(value, encoding="ascii")
     again = Ev3Motor("left", "outB", str(live))
     again.find()
-    names = ("stop_action", "polarity", "ramp_up_sp", "ramp_down_sp", "duty_cycle_sp", "position", "state")
+    names = (
+        "stop_action",
+        "polarity",
+        "ramp_up_sp",
+        "ramp_down_sp",
+        "duty_cycle_sp",
+        "position",
+        "state",
+    )
     assert [text(folder, name) for name in names] == ["brake", "normal", "0", "0", "0", "0", ""]
     again._close()
 

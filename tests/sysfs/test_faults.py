@@ -1,4 +1,7 @@
-"""Each row of the fault table once, for what comes of it; `make faults` tries them often enough for their times to mean something."""
+"""Each row of the fault table once, for what comes of it.
+
+`make faults` tries them often enough for their times to mean something.
+"""
 
 from random import Random
 
@@ -28,7 +31,13 @@ def test_the_motors_stop_and_the_host_is_told(folder, tmp_path, row):
 
 @pytest.mark.parametrize(
     ("seconds", "failures", "verdict"),
-    [([0.1, 0.2], [], "holds"), ([0.1, 0.3], [], "late"), ([0.1], ["why"], "fails"), ([], [], "late"), ([None], [], "late")],
+    [
+        ([0.1, 0.2], [], "holds"),
+        ([0.1, 0.3], [], "late"),
+        ([0.1], ["why"], "fails"),
+        ([], [], "late"),
+        ([None], [], "late"),
+    ],
 )
 def test_a_row_holds_only_if_every_try_does_and_in_time(seconds, failures, verdict):
     text, holds = line(ROWS[0], Result(seconds, "", failures))

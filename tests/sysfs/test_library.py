@@ -1,4 +1,7 @@
-"""python-ev3dev2, as it is, on the live tree: every answer that it has for the brick's kernel, it has for this one."""
+"""python-ev3dev2, as it is, on the live tree.
+
+Every answer that it has for the brick's kernel, it has for this one.
+"""
 
 import gc
 import time
@@ -10,12 +13,19 @@ from ev3dev2.power import PowerSupply
 
 from tests.sysfs.mount import inject, mounted, needs_mount
 
-pytestmark = [needs_mount, pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning"), pytest.mark.usefixtures("collected")]
+pytestmark = [
+    needs_mount,
+    pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning"),
+    pytest.mark.usefixtures("collected"),
+]
 
 
 @pytest.fixture
 def collected():
-    """The library leaves its files to the garbage collector: have it find them before another test begins."""
+    """The library leaves its files to the garbage collector.
+
+    Have it find them before another test begins.
+    """
     yield
     gc.collect()
 
@@ -42,7 +52,12 @@ def wait_until(condition, seconds=20.0):
 
 
 def test_it_finds_motors_by_port_and_kind(motor):
-    assert (motor.address, motor.driver_name, motor.count_per_rot, motor.max_speed) == ("ev3-ports:outC", "lego-ev3-l-motor", 360, 1050)
+    assert (motor.address, motor.driver_name, motor.count_per_rot, motor.max_speed) == (
+        "ev3-ports:outC",
+        "lego-ev3-l-motor",
+        360,
+        1050,
+    )
     assert "run-direct" in motor.commands
     for kind, port in ((MediumMotor, "outC"), (LargeMotor, "outA")):
         with pytest.raises(ev3dev2.DeviceNotFound, match="is not connected"):

@@ -9,7 +9,12 @@ from robot.lights import LEFT_AND_RIGHT, Lights
 from robot.record import STATES
 from tests.rig import Rig
 
-LEDS = ("led0:red:brick-status", "led0:green:brick-status", "led1:red:brick-status", "led1:green:brick-status")
+LEDS = (
+    "led0:red:brick-status",
+    "led0:green:brick-status",
+    "led1:red:brick-status",
+    "led1:green:brick-status",
+)
 
 
 @pytest.fixture
@@ -26,7 +31,9 @@ def sysfs(tmp_path):
 
 def shown(sysfs):
     """Brightness of left red, left green, right red, right green."""
-    return [int((sysfs / "leds" / name / "brightness").read_text(encoding="ascii")) for name in LEDS]
+    return [
+        int((sysfs / "leds" / name / "brightness").read_text(encoding="ascii")) for name in LEDS
+    ]
 
 
 def test_every_state_looks_different(rig, sysfs):
@@ -70,7 +77,10 @@ def pressing(device):
     """The button, and a function that sends it events as (type, code, value)."""
     button = BackButton(str(device))
     end = os.open(device, os.O_WRONLY)
-    yield button, lambda *events: os.write(end, b"".join(EVENT.pack(1, 2, *event) for event in events))
+    yield (
+        button,
+        lambda *events: os.write(end, b"".join(EVENT.pack(1, 2, *event) for event in events)),
+    )
     os.close(end)
     button.close()
 

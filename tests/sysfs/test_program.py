@@ -1,4 +1,7 @@
-"""The robot's program over the live tree: how it starts, what it refuses, and motors that stop however badly they obey."""
+"""The robot's program over the live tree.
+
+How it starts, what it refuses, and motors that stop however badly they obey.
+"""
 
 import json
 import os
@@ -32,7 +35,14 @@ def live(folder, tmp_path, monkeypatch):
 
 
 def python(*arguments):
-    return subprocess.run([sys.executable, "-m", *arguments], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60)
+    return subprocess.run(
+        [sys.executable, "-m", *arguments],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
 
 
 def test_a_second_program_leaves_the_first_alone(live):
@@ -56,7 +66,16 @@ def test_a_second_program_leaves_the_first_alone(live):
     ],
 )
 def test_wrong_arguments_are_told_in_words_and_nothing_else_is(folder, tmp_path, arguments, words):
-    done = python("robot", "--sysfs", str(folder), "--port", "0", "--token", str(tmp_path / "token"), *arguments)
+    done = python(
+        "robot",
+        "--sysfs",
+        str(folder),
+        "--port",
+        "0",
+        "--token",
+        str(tmp_path / "token"),
+        *arguments,
+    )
     assert done.returncode == 2
     assert words in done.stderr
     assert "watchdog" not in done.stderr
@@ -65,7 +84,9 @@ def test_wrong_arguments_are_told_in_words_and_nothing_else_is(folder, tmp_path,
 
 def test_parameters_are_there_from_the_first_tick(folder, tmp_path, monkeypatch):
     monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "token"))
-    with Live(folder, "--set", "k=2", "--set", "polarity_right=-1", "--set", "link_loss=hold") as robot:
+    with Live(
+        folder, "--set", "k=2", "--set", "polarity_right=-1", "--set", "link_loss=hold"
+    ) as robot:
         params = robot.robot.status()["params"]
     assert (params["k"], params["polarity_right"], params["link_loss"]) == (2.0, -1, "hold")
 
@@ -105,15 +126,30 @@ def test_what_cannot_be_mended_is_not_cleared(live):
 
 
 def test_the_lights_are_red_when_the_program_is_dead(live):
-    red, green = (live.folder / "leds" / f"led0:{colour}:brick-status" / "brightness" for colour in ("red", "green"))
+    red, green = (
+        live.folder / "leds" / f"led0:{colour}:brick-status" / "brightness"
+        for colour in ("red", "green")
+    )
     assert (red.read_text().strip(), green.read_text().strip()) == ("0", "255")
     live.process.kill()
-    wait_until(lambda: (red.read_text().strip(), green.read_text().strip()) == ("255", "0"), "the lights are red")
+    wait_until(
+        lambda: (red.read_text().strip(), green.read_text().strip()) == ("255", "0"),
+        "the lights are red",
+    )
 
 
 def test_a_record_tells_of_a_fault(live, tmp_path):
     threading.Timer(1.0, lambda: live.inject("unplug " + PORTS[0])).start()
-    done = python("host", "--brick", live.address, "--json", "record", "3", "--out", str(tmp_path / "log.mcap"))
+    done = python(
+        "host",
+        "--brick",
+        live.address,
+        "--json",
+        "record",
+        "3",
+        "--out",
+        str(tmp_path / "log.mcap"),
+    )
     assert done.returncode == 5
     assert "its cable came off" in json.loads(done.stdout)["fault"]
     live.inject("replug " + PORTS[0])

@@ -1,4 +1,7 @@
-"""The file tree in virtual time: that it is what the brick's kernel shows, down to the errors and the delays."""
+"""The file tree in virtual time.
+
+That it is what the brick's kernel shows, down to the errors and the delays.
+"""
 
 import errno
 import os
@@ -69,12 +72,17 @@ def fails(number):
 
 def test_a_motor_has_the_attributes_of_the_kernels_class(files):
     assert files.tree.names("/tacho-motor") == ["motor0", "motor1"]
-    assert " ".join(files.tree.names(MOTOR[:-1])) == (
-        "address command commands count_per_rot driver_name duty_cycle duty_cycle_sp hold_pid max_speed polarity position position_sp "
-        "ramp_down_sp ramp_up_sp speed speed_pid speed_sp state stop_action stop_actions time_sp uevent"
+    assert (
+        " ".join(files.tree.names(MOTOR[:-1]))
+        == "address command commands count_per_rot driver_name duty_cycle duty_cycle_sp hold_pid"
+        " max_speed polarity position position_sp ramp_down_sp ramp_up_sp speed speed_pid"
+        " speed_sp state stop_action stop_actions time_sp uevent"
     )
     assert files.tree.names(MOTOR + "speed_pid") == ["Kd", "Ki", "Kp"]
-    values = {name: files.read(MOTOR + name) for name in ("address", "driver_name", "count_per_rot", "max_speed", "stop_action", "state")}
+    values = {
+        name: files.read(MOTOR + name)
+        for name in ("address", "driver_name", "count_per_rot", "max_speed", "stop_action", "state")
+    }
     assert values == {
         "address": "ev3-ports:outB",
         "driver_name": "lego-ev3-l-motor",
@@ -86,7 +94,9 @@ def test_a_motor_has_the_attributes_of_the_kernels_class(files):
     assert files.read("/tacho-motor/motor1/address") == "ev3-ports:outC"
 
 
-@pytest.mark.parametrize("text", ["101", "-101", "33.9", "", "\n", " 5", "5 ", "0x10", "1e1", "five", "5\n\n", "٣"])
+@pytest.mark.parametrize(
+    "text", ["101", "-101", "33.9", "", "\n", " 5", "5 ", "0x10", "1e1", "five", "5\n\n", "٣"]
+)
 def test_a_wrong_duty_is_refused_and_the_motor_keeps_the_old_one(files, text):
     files.run(40)
     files.wait(0.5)
@@ -117,7 +127,14 @@ def test_a_shorter_value_leaves_nothing_of_a_longer_one(files):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("command", "go"), ("stop_action", "halt"), ("polarity", "1"), ("ramp_up_sp", "60001"), ("speed_sp", "1051"), ("time_sp", "-1")],
+    [
+        ("command", "go"),
+        ("stop_action", "halt"),
+        ("polarity", "1"),
+        ("ramp_up_sp", "60001"),
+        ("speed_sp", "1051"),
+        ("time_sp", "-1"),
+    ],
 )
 def test_what_no_attribute_knows_is_invalid(files, name, value):
     with fails(errno.EINVAL):
@@ -137,7 +154,9 @@ def test_permissions_are_the_groups(files):
         files.handle(MOTOR + "speed", WRITE)
     with fails(errno.ENOENT):
         files.handle(MOTOR + "colour", READ)
-    assert [oct(files.tree.mode(MOTOR + name) & 0o777) for name in ("command", "position", "speed")] == ["0o220", "0o664", "0o444"]
+    assert [
+        oct(files.tree.mode(MOTOR + name) & 0o777) for name in ("command", "position", "speed")
+    ] == ["0o220", "0o664", "0o444"]
 
 
 def test_a_duty_acts_at_once_under_run_direct_and_is_only_stored_before(files):
@@ -169,15 +188,35 @@ def test_the_duty_survives_a_stop_and_acts_again(files):
 
 
 def test_a_reset_forgets_everything(files):
-    for name, value in {"stop_action": "brake", "polarity": "inversed", "ramp_up_sp": "100"}.items():
+    for name, value in {
+        "stop_action": "brake",
+        "polarity": "inversed",
+        "ramp_up_sp": "100",
+    }.items():
         files.write(MOTOR + name, value)
     files.run(60)
     files.wait(0.5)
     assert files.position > 90
     assert files.brick.truth()[0].motor_speed < 0
     files.write(MOTOR + "command", "reset")
-    names = ("position", "duty_cycle_sp", "stop_action", "polarity", "ramp_up_sp", "state", "speed_pid/Kp")
-    assert [files.read(MOTOR + name) for name in names] == ["0", "0", "coast", "normal", "0", "", "1000"]
+    names = (
+        "position",
+        "duty_cycle_sp",
+        "stop_action",
+        "polarity",
+        "ramp_up_sp",
+        "state",
+        "speed_pid/Kp",
+    )
+    assert [files.read(MOTOR + name) for name in names] == [
+        "0",
+        "0",
+        "coast",
+        "normal",
+        "0",
+        "",
+        "1000",
+    ]
 
 
 def test_a_position_can_be_written_even_while_the_motor_runs(files):
@@ -213,11 +252,17 @@ def test_the_position_is_whole_degrees_sampled_every_2_ms(files):
     seen = []
     for _ in range(1000):
         files.wait(0.0005)
-        seen.append((files.now, files.position, (files.brick.truth()[0].motor_angle - start) * 180 / pi))
-    changes = [now for (now, new, _), (_, old, _) in zip(seen[1:], seen, strict=False) if new != old]
+        seen.append(
+            (files.now, files.position, (files.brick.truth()[0].motor_angle - start) * 180 / pi)
+        )
+    changes = [
+        now for (now, new, _), (_, old, _) in zip(seen[1:], seen, strict=False) if new != old
+    ]
     assert len(changes) > 100
     assert {round(now / 0.0005) % 4 for now in changes} == {0}
-    fastest = max(after - before for (_, _, after), (_, _, before) in zip(seen[4:], seen, strict=False))
+    fastest = max(
+        after - before for (_, _, after), (_, _, before) in zip(seen[4:], seen, strict=False)
+    )
     assert all(true - fastest - 1.5 <= position <= true + 0.5 for _, position, true in seen)
 
 
@@ -277,7 +322,10 @@ def test_an_unplugged_motor_freezes_and_is_gone_100_ms_later(files):
     files.write(MOTOR + "duty_cycle_sp", "-60")
     assert files.brick.truth()[0].motor_speed > 0
     files.wait(0.02)
-    for access in (lambda: files.read(MOTOR + "position"), lambda: files.write(MOTOR + "duty_cycle_sp", "0")):
+    for access in (
+        lambda: files.read(MOTOR + "position"),
+        lambda: files.write(MOTOR + "duty_cycle_sp", "0"),
+    ):
         with fails(errno.ENODEV):
             access()
     with fails(errno.ENOENT):
@@ -332,14 +380,31 @@ def test_the_battery_is_in_microvolts_sags_and_can_be_changed(files):
     assert files.brick.truth()[0].motor_speed == pytest.approx(fast * 6.1 / 7.5, rel=0.05)
 
 
-@pytest.mark.parametrize("fault", ["", "unplug", "unplug outA", "replug outZ", "battery full", "battery 84", "eio outB x", "fire outB"])
+@pytest.mark.parametrize(
+    "fault",
+    [
+        "",
+        "unplug",
+        "unplug outA",
+        "replug outZ",
+        "battery full",
+        "battery 84",
+        "eio outB x",
+        "fire outB",
+    ],
+)
 def test_an_unknown_fault_is_refused(files, fault):
     with fails(errno.EINVAL):
         files.inject(fault)
 
 
 def test_the_file_of_faults_names_them_all(files):
-    assert re.findall(r"^\w+", files.read("/.faults"), re.MULTILINE) == ["unplug", "replug", "eio", "battery"]
+    assert re.findall(r"^\w+", files.read("/.faults"), re.MULTILINE) == [
+        "unplug",
+        "replug",
+        "eio",
+        "battery",
+    ]
 
 
 def test_the_lights_keep_their_brightness(files):

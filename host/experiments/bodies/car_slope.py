@@ -1,7 +1,10 @@
-"""The paper's car between four slopes, for ten minutes: whether it stays inside and on its wheels, and where it goes (B1).
+"""The paper's car between four slopes, for ten minutes.
 
-Drag on the body does not brake a car that spins on the spot, its wheels turning opposite ways. That is another of its steady motions,
-into which a slope may throw it, and in which it stays where it is.
+Whether it stays inside and on its wheels, and where it goes (B1).
+
+Drag on the body does not brake a car that spins on the spot, its wheels turning opposite ways. That
+is another of its steady motions, into which a slope may throw it, and in which it stays where it
+is.
 """
 
 from __future__ import annotations
@@ -17,10 +20,12 @@ from host.util.intervals import fraction, wilson
 from sim_motor.bodies.measures import FALLEN_RAD, STILL_RAD_S, reversals_s
 from sim_motor.bodies.presets import PUSHED, preset
 
-# The slopes of the authors' programs are of 0.3 rad, in a funnel, and of 0.37 rad; the claim is tried on both, and shallower ones shown.
+# The slopes of the authors' programs are of 0.3 rad, in a funnel, and of 0.37 rad; the claim is
+# tried on both, and shallower ones shown.
 ANGLES, THEIRS = (0.2, 0.3, 0.37), (0.3, 0.37)
 EVERY_S = 0.2
-# A car that goes more slowly (m/s), on the mean over so long (s), is not on its way any more: it rests, or turns on the spot.
+# A car that goes more slowly (m/s), on the mean over so long (s), is not on its way any more: it
+# rests, or turns on the spot.
 TRAVELS_M_S, MEAN_S = 0.1, 2.0
 # The floor is counted in squares of this side (m).
 SQUARE_M = 0.5
@@ -28,19 +33,23 @@ SQUARE_M = 0.5
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
     """A car each; its chance is its heading at the start."""
-    return [{"angle": angle, "number": number} for angle in ANGLES for number in range(options["seeds"])]
+    return [
+        {"angle": angle, "number": number} for angle in ANGLES for number in range(options["seeds"])
+    ]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """The run in a row, and the car's way, every EVERY_S.
 
-    last_s: until when it was on its way. travelled, spun: for what part of the time it was, and its wheels turned opposite ways.
-    squares: how many of SQUARE_M it was in.
+    last_s: until when it was on its way. travelled, spun: for what part of the time it was, and its
+    wheels turned opposite ways. squares: how many of SQUARE_M it was in.
     """
     seed, own = setting.seed_of({"number": cell["number"]}), preset("paper")
     heading = float(np.random.default_rng(seed).uniform(0.0, 2 * np.pi))
     phases = np.full(2, PUSHED)
-    body = made(own, "slopes", 1, seed=seed, angle=cell["angle"], phases=phases, prepare=headed(heading))
+    body = made(
+        own, "slopes", 1, seed=seed, angle=cell["angle"], phases=phases, prepare=headed(heading)
+    )
     did = ran(body, setting.options["seconds"])
     t, centre = did.moved.t_s, did.moved.centre_m
     span = round(MEAN_S / float(t[1]))
@@ -57,7 +66,13 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
         "last_s": float(t[span:][travels][-1]) if travels.any() else 0.0,
         "squares": len(np.unique(np.floor(centre[:, :2] / SQUARE_M), axis=0)),
     }
-    return [run, *({"t_s": float(t[at]), "x_m": float(centre[at, 0]), "y_m": float(centre[at, 1])} for at in did.every(EVERY_S))]
+    return [
+        run,
+        *(
+            {"t_s": float(t[at]), "x_m": float(centre[at, 0]), "y_m": float(centre[at, 1])}
+            for at in did.every(EVERY_S)
+        ),
+    ]
 
 
 def runs_of(rows: list[Row]) -> list[Row]:
@@ -73,9 +88,10 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     good = sum(row["inside"] and not row["flipped"] for row in tried)
     numbers = [_angle([row for row in runs if row["angle"] == angle], angle) for angle in ANGLES]
     notes = [
-        f"slopes of {told['angle']:g} rad: {told['inside']} of {told['cars']} inside, {told['flipped']} flipped, on their way until"
-        f" {told['last_s_median']:.0f} s (median), for {told['travelled']:.0%} of the time, spinning on the spot for {told['spun']:.0%},"
-        f" at most {told['reach_m']:.1f} m away"
+        f"slopes of {told['angle']:g} rad: {told['inside']} of {told['cars']} inside,"
+        f" {told['flipped']} flipped, on their way until {told['last_s_median']:.0f} s (median),"
+        f" for {told['travelled']:.0%} of the time, spinning on the spot for {told['spun']:.0%}, at"
+        f" most {told['reach_m']:.1f} m away"
         for told in numbers
     ]
     claim = Claim(

@@ -21,16 +21,20 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 PRESETS = ("paper", "snake2019")
-# The program of 2019 starts with straight joints, which no train has: here they are bent a little (rad, standard deviation), by chance.
+# The program of 2019 starts with straight joints, which no train has: here they are bent a little
+# (rad, standard deviation), by chance.
 BENT = 0.01
 # A train whose wheels' order parameter is above this goes one way.
 ORDERED = 0.9
-# Here slopes have no end; those of the authors' programs, 2 m long, end so far (m) from the middle, and what gets farther is not inside.
+# Here slopes have no end; those of the authors' programs, 2 m long, end so far (m) from the middle,
+# and what gets farther is not inside.
 EDGE_M = 6.0
 
 
 class Ran(NamedTuple):
-    """What a body did. joints (rad): (times, joints), first all that yaw; head: (times, x m, y m, yaw rad) of its first car.
+    """What a body did. joints (rad): (times, joints), first all that yaw; head.
+
+    (times, x m, y m, yaw rad) of its first car.
 
     broke_s: when it could not be followed any more, if so; what is here was before that.
     """
@@ -66,7 +70,10 @@ def made(
     bouncy: bool = False,
     prepare: Callable[[mujoco.MjSpec], None] = lambda spec: None,
 ) -> Body:
-    """A body as `compose` and `Body` have it. prepare: what else is done to it before it is compiled."""
+    """A body as `compose` and `Body` have it. prepare.
+
+    What else is done to it before it is compiled.
+    """
     from sim_motor.bodies.body import Body
     from sim_motor.bodies.model import compose
 
@@ -75,11 +82,18 @@ def made(
     return Body(spec.compile(), preset, seed=seed, phases=phases, torque=torque)
 
 
-def pushed_off(preset: Preset, scene: str = "flat", *, seed: int, bent: float = BENT, **others: Any) -> Body:
-    """A train whose wheels begin at PUSHED, its joints bent in yaw by `seed`. others: as for `made`."""
+def pushed_off(
+    preset: Preset, scene: str = "flat", *, seed: int, bent: float = BENT, **others: Any
+) -> Body:
+    """A train whose wheels begin at PUSHED, its joints bent in yaw by `seed`. others.
+
+    As for `made`.
+    """
     from sim_motor.bodies.model import SIDES
 
-    body = made(preset, scene, seed=seed, phases=np.full(CARS_OF_A_TRAIN * len(SIDES), PUSHED), **others)
+    body = made(
+        preset, scene, seed=seed, phases=np.full(CARS_OF_A_TRAIN * len(SIDES), PUSHED), **others
+    )
     yaws = [body.model.joint(name).qposadr[0] for name in body.joints if name.endswith("yaw")]
     body.data.qpos[yaws] = np.random.default_rng(seed).normal(0.0, bent, len(yaws))
     return body

@@ -24,15 +24,35 @@ EVERY_S, LATE = 0.1, 0.5
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A train each, that is pushed off. Its chance is a slight bend at the start, and its wheels' radii."""
+    """A train each, that is pushed off.
+
+    Its chance is a slight bend at the start, and its wheels' radii.
+    """
     numbers = range(options["seeds"])
-    weak = [{"part": "weaker", "wheel": WEAK, "percent": percent, "number": number} for percent in WEAKER for number in numbers]
-    dead = [{"part": "dead", "wheel": wheel, "percent": -100, "number": number} for wheel in DEAD for number in numbers]
-    return weak + dead + [{"part": "sizes", "wheel": None, "percent": SIZES, "number": number} for number in numbers]
+    weak = [
+        {"part": "weaker", "wheel": WEAK, "percent": percent, "number": number}
+        for percent in WEAKER
+        for number in numbers
+    ]
+    dead = [
+        {"part": "dead", "wheel": wheel, "percent": -100, "number": number}
+        for wheel in DEAD
+        for number in numbers
+    ]
+    return (
+        weak
+        + dead
+        + [
+            {"part": "sizes", "wheel": None, "percent": SIZES, "number": number}
+            for number in numbers
+        ]
+    )
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """The run's second half in a row: order parameter, speed, turning (left > 0), and omega of the faulty wheel and of all.
+    """The run's second half in a row.
+
+    Order parameter, speed, turning (left > 0), and omega of the faulty wheel and of all.
 
     Of each first also its head's way, every EVERY_S.
     """
@@ -56,11 +76,18 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
             "speed_m_s": float(way / (t[late][-1] - t[late][0])),
             "turning_rad_s": float((heading[-1] - heading[0]) / (t[late][-1] - t[late][0])),
             "omega_rad_s": float(np.abs(omega).mean()),
-            "own_rad_s": None if cell["wheel"] is None else float(np.abs(omega[:, body.wheels.index(cell["wheel"])]).mean()),
+            "own_rad_s": (
+                None
+                if cell["wheel"] is None
+                else float(np.abs(omega[:, body.wheels.index(cell["wheel"])]).mean())
+            ),
         }
     ]
     if cell["number"] == 0:
-        rows += [{"t_s": float(t[at]), "x_m": float(did.head[at, 0]), "y_m": float(did.head[at, 1])} for at in did.every(EVERY_S)]
+        rows += [
+            {"t_s": float(t[at]), "x_m": float(did.head[at, 0]), "y_m": float(did.head[at, 1])}
+            for at in did.every(EVERY_S)
+        ]
     return rows
 
 
@@ -68,7 +95,11 @@ def sized(factors: Any) -> Callable[[mujoco.MjSpec], None]:
     """For `prepare`: each wheel's radius, in the order of a Body's wheels, is its preset's times one of these."""
 
     def prepare(spec: mujoco.MjSpec) -> None:
-        wheels = [f"car{car}_{side}_wheel" for car in range(len(factors) // 2) for side in ("left", "right")]
+        wheels = [
+            f"car{car}_{side}_wheel"
+            for car in range(len(factors) // 2)
+            for side in ("left", "right")
+        ]
         for name, factor in zip(wheels, factors, strict=True):
             spec.geom(name).size[0] *= factor
 
@@ -79,7 +110,15 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     """Means over the runs of each fault; no claim of the paper."""
     runs = [row for row in rows if "order" in row]
     kinds = dict.fromkeys((row["part"], row["wheel"], row["percent"]) for row in runs)
-    return Findings([], {"faults": [_kind([row for row in runs if (row["part"], row["wheel"], row["percent"]) == kind]) for kind in kinds]})
+    return Findings(
+        [],
+        {
+            "faults": [
+                _kind([row for row in runs if (row["part"], row["wheel"], row["percent"]) == kind])
+                for kind in kinds
+            ]
+        },
+    )
 
 
 def _kind(own: list[Row]) -> dict[str, Any]:
@@ -94,5 +133,7 @@ def _kind(own: list[Row]) -> dict[str, Any]:
         "lowest_order": min(row["order"] for row in own),
         "speed_m_s": mean("speed_m_s"),
         "turning_rad_s": [row["turning_rad_s"] for row in own],
-        "own_of_all": None if first["wheel"] is None else mean("own_rad_s") / max(mean("omega_rad_s"), 1e-9),
+        "own_of_all": (
+            None if first["wheel"] is None else mean("own_rad_s") / max(mean("omega_rad_s"), 1e-9)
+        ),
     }

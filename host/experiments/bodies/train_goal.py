@@ -1,8 +1,10 @@
-"""Whether kicks can drive a train that nobody steers to a goal (beyond the paper): planned ones, beside random ones and none.
+"""Whether kicks can drive a train that nobody steers to a goal (beyond the paper).
 
-The goal is 3 m from the train's middle, anywhere around it, and reached if the middle comes within 0.2 m of it, a quarter of the
-train's length. The train of 2019 is taken: the same kicks turn the paper's, which has weaker wheels and springs as stiff,
-on a circle of 10 m instead of 2 m.
+Planned ones, beside random ones and none.
+
+The goal is 3 m from the train's middle, anywhere around it, and reached if the middle comes within
+0.2 m of it, a quarter of the train's length. The train of 2019 is taken: the same kicks turn the
+paper's, which has weaker wheels and springs as stiff, on a circle of 10 m instead of 2 m.
 """
 
 from __future__ import annotations
@@ -12,7 +14,18 @@ from functools import partial
 
 import numpy as np
 
-from host.bodies.steering import CHOICES, KICK_S, LOOK_S, ON, Array, Drive, environment, learn, plan, seen_from
+from host.bodies.steering import (
+    CHOICES,
+    KICK_S,
+    LOOK_S,
+    ON,
+    Array,
+    Drive,
+    environment,
+    learn,
+    plan,
+    seen_from,
+)
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import wilson
 
@@ -34,9 +47,12 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """A train on its way to a goal: when it was there, if so; how near it came; and its course, as seen from where it was asked to go.
+    """A train on its way to a goal: when it was there, if so; how near it came.
 
-    What a train begins with and where its goal is are the same for all ways. One that plans learns on another drive first.
+    And its course, as seen from where it was asked to go.
+
+    What a train begins with and where its goal is are the same for all ways. One that plans learns
+    on another drive first.
     """
     rng = np.random.default_rng(setting.seed_of({"goal": cell["goal"]}))
     bearing = rng.uniform(-np.pi, np.pi)
@@ -63,11 +79,17 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 
 
 def go(drive: Drive, goal: Array, choose: Chooser) -> Array:
-    """Let a train go to the goal, as seen from where it is, or until LIMIT_S. Returns its course, (times, 3), seen from there."""
+    """Let a train go to the goal, as seen from where it is, or until LIMIT_S.
+
+    Returns its course, (times, 3), seen from there.
+    """
     origin = drive.poses[-1]
     while True:
         course = seen_from(origin, drive.poses)
-        if np.hypot(*(course[:, :2] - goal).T).min() <= REACHED_M or len(drive.choices) * KICK_S >= LIMIT_S:
+        if (
+            np.hypot(*(course[:, :2] - goal).T).min() <= REACHED_M
+            or len(drive.choices) * KICK_S >= LIMIT_S
+        ):
             return course
         drive.choose(choose(course[-1], drive.last, goal))
 
@@ -94,14 +116,30 @@ def report(rows: list[Row], setting: Setting) -> Findings:
                 "interval": list(wilson(len(times), len(own))),
                 "median_s": float(np.median(times)) if times else None,
                 "median_nearest_m": float(np.median([row["nearest_m"] for row in own])),
-                "mean_kicks": float(np.mean([sum(choice != ON for choice in row["choices"]) for row in own])),
+                "mean_kicks": float(
+                    np.mean([sum(choice != ON for choice in row["choices"]) for row in own])
+                ),
             }
         )
     effects = np.array([row["effects"] for row in rows if row["effects"] is not None])
     names = ("on", "left", "right")
     learned = [
-        {"after": names[last], "choice": names[choice], "m_ahead_m_left_rad_left": effects[:, last, choice].mean(axis=0).tolist()}
+        {
+            "after": names[last],
+            "choice": names[choice],
+            "m_ahead_m_left_rad_left": effects[:, last, choice].mean(axis=0).tolist(),
+        }
         for last in CHOICES
         for choice in CHOICES
     ]
-    return Findings([], {"preset": PRESET, "away_m": AWAY_M, "reached_m": REACHED_M, "limit_s": LIMIT_S, "ways": ways, "learned": learned})
+    return Findings(
+        [],
+        {
+            "preset": PRESET,
+            "away_m": AWAY_M,
+            "reached_m": REACHED_M,
+            "limit_s": LIMIT_S,
+            "ways": ways,
+            "learned": learned,
+        },
+    )

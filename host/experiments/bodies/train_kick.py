@@ -1,7 +1,8 @@
 """How many of a running train's wheels must be kicked, and for how long, that all of it reverses (beyond the paper).
 
-The kicks are the paper's membrane and position inversion, on wheels drawn by chance, at a moment drawn by chance. The train weighs much
-more than its rods can stop within a turn of the wheels: so the position inversion is also tried for so long that it brakes the train.
+The kicks are the paper's membrane and position inversion, on wheels drawn by chance, at a moment
+drawn by chance. The train weighs much more than its rods can stop within a turn of the wheels: so
+the position inversion is also tried for so long that it brakes the train.
 """
 
 from __future__ import annotations
@@ -23,9 +24,11 @@ if TYPE_CHECKING:
 
 WHEELS = (4, 6, 7, 8, 9, 10)
 LENGTHS_S = (0.1, 0.5, 1.0, 1.25, 1.5, 2.0, 2.5, 3.5)
-# A train is let run for so long (s) before the first kick; then for up to a little longer, and after the kick.
+# A train is let run for so long (s) before the first kick; then for up to a little longer, and
+# after the kick.
 START_S, CHANCE_S, WATCH_S = 5.0, 0.3, 5.0
-# A train whose wheels turn more slowly than the first part of the speed before the kick is stopped; a kick has braked it at the second.
+# A train whose wheels turn more slowly than the first part of the speed before the kick is stopped;
+# a kick has braked it at the second.
 STOPPED, BRAKED = 0.2, 0.25
 REVERSED, STOPS, ON, MIXED = "reversed", "stopped", "goes on", "wheels disagree"
 
@@ -33,7 +36,11 @@ REVERSED, STOPS, ON, MIXED = "reversed", "stopped", "goes on", "wheels disagree"
 def cells(options: Options, *, batch: bool) -> list[Cell]:
     """All trials of a kick on so many wheels."""
     inversions = [{"mode": MEMBRANE, "wheels": wheels, "seconds": None} for wheels in WHEELS]
-    return inversions + [{"mode": POSITION, "wheels": wheels, "seconds": seconds} for wheels in WHEELS for seconds in LENGTHS_S]
+    return inversions + [
+        {"mode": POSITION, "wheels": wheels, "seconds": seconds}
+        for wheels in WHEELS
+        for seconds in LENGTHS_S
+    ]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
@@ -47,7 +54,10 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
             body.run(START_S)
         body.run(rng.uniform(0.0, CHANCE_S))
         before = body.omega.copy()
-        kicked = [body.wheels[wheel] for wheel in rng.permutation(len(body.wheels))[: cell["wheels"]].tolist()]
+        kicked = [
+            body.wheels[wheel]
+            for wheel in rng.permutation(len(body.wheels))[: cell["wheels"]].tolist()
+        ]
         body.kick(kick_of(cell, kicked, body))
         body.run(cell["seconds"] or 0.0)
         end = float(body.omega.mean())
@@ -55,7 +65,13 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
         after = body.omega.copy()
         outcome = outcome_of(before, after)
         rows.append(
-            {"trial": trial, "before_rad_s": float(before.mean()), "end_rad_s": end, "after_rad_s": float(after.mean()), "outcome": outcome}
+            {
+                "trial": trial,
+                "before_rad_s": float(before.mean()),
+                "end_rad_s": end,
+                "after_rad_s": float(after.mean()),
+                "outcome": outcome,
+            }
         )
         if outcome in (STOPS, MIXED):
             body = None
@@ -67,7 +83,9 @@ def kick_of(cell: Cell, wheels: list[str], body: Body) -> Kick:
     if cell["mode"] == MEMBRANE:
         return Kick("membrane", MEMBRANE, wheels, 1, begin=body.step)
     ticks = round(cell["seconds"] / body.model.opt.timestep)
-    return Kick("position", POSITION, wheels, ticks, pulse=PULSE_BETA, values=(1.0, 1.0), begin=body.step)
+    return Kick(
+        "position", POSITION, wheels, ticks, pulse=PULSE_BETA, values=(1.0, 1.0), begin=body.step
+    )
 
 
 def outcome_of(before: Any, after: Any) -> str:
@@ -82,10 +100,17 @@ def outcome_of(before: Any, after: Any) -> str:
 def report(rows: list[Row], setting: Setting) -> Findings:
     """By kick: how many trials reversed the train, or ended otherwise; no claim of the paper."""
     kinds = dict.fromkeys((row["mode"], row["wheels"], row["seconds"]) for row in rows)
-    kicks = [_kind(kind, [row for row in rows if (row["mode"], row["wheels"], row["seconds"]) == kind]) for kind in kinds]
+    kicks = [
+        _kind(kind, [row for row in rows if (row["mode"], row["wheels"], row["seconds"]) == kind])
+        for kind in kinds
+    ]
     reversing = [kick["wheels"] for kick in kicks if kick["reversed"]]
     best = max(kicks, key=lambda kick: kick["reversed"] / kick["trials"])
-    numbers = {"preset": setting.options["preset"], "kicks": kicks, "fewest_wheels_that_reversed": min(reversing, default=None)}
+    numbers = {
+        "preset": setting.options["preset"],
+        "kicks": kicks,
+        "fewest_wheels_that_reversed": min(reversing, default=None),
+    }
     return Findings([], {**numbers, "surest": best if best["reversed"] else None})
 
 

@@ -1,4 +1,7 @@
-"""Trains on a flat floor, all wheels at random phases: how they find one direction by themselves, and which (B2)."""
+"""Trains on a flat floor, all wheels at random phases.
+
+How they find one direction by themselves, and which (B2).
+"""
 
 from __future__ import annotations
 
@@ -17,14 +20,23 @@ EVERY_S, JUDGED_S = 0.05, 1.0
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
     """A train each."""
-    return [{"preset": name, "number": number} for name in PRESETS for number in range(options["seeds"])]
+    return [
+        {"preset": name, "number": number} for name in PRESETS for number in range(options["seeds"])
+    ]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """Order parameter and mean omega of all wheels (rad/s), every EVERY_S."""
     did = ran(made(preset(cell["preset"]), seed=setting.seed_of(cell)), setting.options["seconds"])
     order, omega = did.order, did.moved.omega.mean(axis=1)
-    return [{"t_s": float(did.moved.t_s[at]), "order": float(order[at]), "omega_rad_s": float(omega[at])} for at in did.every(EVERY_S)]
+    return [
+        {
+            "t_s": float(did.moved.t_s[at]),
+            "order": float(order[at]),
+            "omega_rad_s": float(omega[at]),
+        }
+        for at in did.every(EVERY_S)
+    ]
 
 
 def starts(rows: list[Row]) -> list[dict[str, Any]]:
@@ -32,10 +44,14 @@ def starts(rows: list[Row]) -> list[dict[str, Any]]:
     found = []
     for name, number in dict.fromkeys((row["preset"], row["number"]) for row in rows):
         own = [row for row in rows if (row["preset"], row["number"]) == (name, number)]
-        t, order, omega = (np.array([row[field] for row in own]) for field in ("t_s", "order", "omega_rad_s"))
+        t, order, omega = (
+            np.array([row[field] for row in own]) for field in ("t_s", "order", "omega_rad_s")
+        )
         late = t > t[-1] - JUDGED_S
         unordered = np.flatnonzero(order <= ORDERED)
-        since = float(t[unordered[-1] + 1]) if len(unordered) and unordered[-1] + 1 < len(t) else None
+        since = (
+            float(t[unordered[-1] + 1]) if len(unordered) and unordered[-1] + 1 < len(t) else None
+        )
         found.append(
             {
                 "preset": name,
@@ -51,11 +67,15 @@ def starts(rows: list[Row]) -> list[dict[str, Any]]:
 def report(rows: list[Row], setting: Setting) -> Findings:
     """B2."""
     found = starts(rows)
-    numbers = {name: _told([one for one in found if one["preset"] == name]) for name in dict.fromkeys(one["preset"] for one in found)}
+    numbers = {
+        name: _told([one for one in found if one["preset"] == name])
+        for name in dict.fromkeys(one["preset"] for one in found)
+    }
     done, tried = sum(one["order"] > ORDERED for one in found), len(found)
     both = all(told["forward"] and told["backward"] for told in numbers.values())
     note = "; ".join(
-        f"{name}: {told['ordered']} of {told['trains']}, {told['forward']} forward and {told['backward']} backward"
+        f"{name}: {told['ordered']} of {told['trains']}, {told['forward']} forward and"
+        f" {told['backward']} backward"
         for name, told in numbers.items()
     )
     claim = Claim(

@@ -1,7 +1,10 @@
-"""A train between two walls, of which no sensor tells it: how often in a row it reverses as a whole (B3).
+"""A train between two walls, of which no sensor tells it.
 
-Beside it a train whose wheels have a constant torque instead of a controller. A train that hits a wall at an angle may turn along it, and
-leave sideways, where there is no wall; or it rests at a wall, its rods at their dead centres. Walls are dead or bouncy, as in LPZRobots.
+How often in a row it reverses as a whole (B3).
+
+Beside it a train whose wheels have a constant torque instead of a controller. A train that hits a
+wall at an angle may turn along it, and leave sideways, where there is no wall; or it rests at a
+wall, its rods at their dead centres. Walls are dead or bouncy, as in LPZRobots.
 """
 
 from __future__ import annotations
@@ -24,7 +27,8 @@ TRAINS: tuple[Cell, ...] = (
     {"preset": "snake2019", "drag": None},
     {"preset": "snake2019", "drag": 0.005},
 )
-# A constant force at the wheel's rim, as a part of k: "calculated from mean angular velocity" in the program of 2019.
+# A constant force at the wheel's rim, as a part of k: "calculated from mean angular velocity" in
+# the program of 2019.
 CONSTANT = 0.162
 LEAST = 5
 EVERY_S, WHOLE_S, END_S, STUCK_M = 0.05, (0.5, 1.5), 5.0, 0.25
@@ -32,9 +36,16 @@ STUCK, RUNS, LOST = "stuck", "runs", "could not be followed"
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A train each. `number` is that of its chance, the wheels' phases at the start; without a controller there is none."""
+    """A train each. `number` is that of its chance, the wheels' phases at the start.
+
+    Without a controller there is none.
+    """
     walls = [{**train, "bouncy": bouncy} for train in TRAINS for bouncy in (False, True)]
-    driven = [{**wall, "controller": True, "number": number} for wall in walls for number in range(options["seeds"])]
+    driven = [
+        {**wall, "controller": True, "number": number}
+        for wall in walls
+        for number in range(options["seeds"])
+    ]
     return driven + [{**wall, "controller": False, "number": 0} for wall in walls]
 
 
@@ -43,12 +54,19 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     own = _train(cell)
     torque = None if cell["controller"] else CONSTANT * own.k * own.wheel_radius
     seed = setting.seed_of({"number": cell["number"]})  # the same start between all walls
-    did = ran(made(own, "walls", seed=seed, bouncy=cell["bouncy"], torque=torque), setting.options["seconds"])
+    did = ran(
+        made(own, "walls", seed=seed, bouncy=cell["bouncy"], torque=torque),
+        setting.options["seconds"],
+    )
     rows = [told(did)]
     if cell["number"] == 0:
         omega = did.moved.omega.mean(axis=1)
         rows += [
-            {"t_s": float(did.moved.t_s[at]), "x_m": float(did.moved.centre_m[at, 0]), "omega_rad_s": float(omega[at])}
+            {
+                "t_s": float(did.moved.t_s[at]),
+                "x_m": float(did.moved.centre_m[at, 0]),
+                "omega_rad_s": float(omega[at]),
+            }
             for at in did.every(EVERY_S)
         ]
     return rows
@@ -60,7 +78,10 @@ def _train(cell: Cell) -> Preset:
 
 
 def told(did: Ran) -> Row:
-    """reversals_s: when most wheels reversed; whole: how often all went one way soon after; aside_m: how far it is along the walls."""
+    """reversals_s: when most wheels reversed; whole: how often all went one way soon after.
+
+    aside_m: how far it is along the walls.
+    """
     moved = did.moved
     times = reversals_s(moved)
     soon = [(moved.t_s >= time + WHOLE_S[0]) & (moved.t_s <= time + WHOLE_S[1]) for time in times]
@@ -75,14 +96,20 @@ def told(did: Ran) -> Row:
 
 def runs_of(rows: list[Row], **fields: Any) -> list[Row]:
     """The rows that tell of a whole run, of a kind."""
-    return [row for row in rows if "ended" in row and all(row[name] == value for name, value in fields.items())]
+    return [
+        row
+        for row in rows
+        if "ended" in row and all(row[name] == value for name, value in fields.items())
+    ]
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
     """B3: by the lesser preset, each between the walls at which it reverses more often (median of its runs)."""
     kinds = [_kind(rows, train, bouncy) for train in TRAINS for bouncy in (False, True)]
     best = {
-        name: max((kind for kind in kinds if kind["preset"] == name and kind["drag"] is None), key=_median)
+        name: max(
+            (kind for kind in kinds if kind["preset"] == name and kind["drag"] is None), key=_median
+        )
         for name in ("paper", "snake2019")
     }
     least = min(_median(kind) for kind in best.values())
@@ -95,7 +122,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         "1",
         None,
         least >= LEAST and still,
-        f"median of the runs, in the preset that has fewer, in {setting.options['seconds']:g} s; " + "; ".join(map(_words, kinds)),
+        f"median of the runs, in the preset that has fewer, in {setting.options['seconds']:g} s; "
+        + "; ".join(map(_words, kinds)),
     )
     return Findings([claim], {"kinds": kinds})
 
@@ -122,7 +150,9 @@ def _median(kind: dict[str, Any]) -> float:
 
 def name_of(train: Cell) -> str:
     """A train in words."""
-    return str(train["preset"]) + ("" if train["drag"] is None else f" with drag {train['drag']:g} N s/rad")
+    return str(train["preset"]) + (
+        "" if train["drag"] is None else f" with drag {train['drag']:g} N s/rad"
+    )
 
 
 def _words(kind: dict[str, Any]) -> str:
@@ -130,4 +160,7 @@ def _words(kind: dict[str, Any]) -> str:
         " ".join(str(count) for count in kind["reversals"]),
         ", ".join(f"{count} {how}" for how, count in kind["ended"].items()),
     )
-    return f"{name_of(kind)}, {'bouncy' if kind['bouncy'] else 'dead'} walls: {counts} reversals, in the end {ended}"
+    return (
+        f"{name_of(kind)}, {'bouncy' if kind['bouncy'] else 'dead'} walls: {counts} reversals, in"
+        f" the end {ended}"
+    )

@@ -1,7 +1,10 @@
-"""The wiggling of a fast train on a flat floor: how far each joint yaws, how often, and how much later than the one before it.
+"""The wiggling of a fast train on a flat floor.
 
-Beside it what the authors' program of 2019 did. A train that begins quite straight wiggles late, and meanwhile gets faster than it can
-stay; so its highest speed is shown against how much its joints were bent at the start.
+How far each joint yaws, how often, and how much later than the one before it.
+
+Beside it what the authors' program of 2019 did. A train that begins quite straight wiggles late,
+and meanwhile gets faster than it can stay; so its highest speed is shown against how much its
+joints were bent at the start.
 """
 
 from __future__ import annotations
@@ -17,9 +20,10 @@ from sim_motor.bodies.presets import preset
 
 Array = NDArray[np.float64]
 
-# What the authors' program of 2019 does in 60 s, by its wheels' drag (N s/rad): standard deviations of the yaw joints (degrees), their
-# frequency (Hz), and of the wheels the highest and the late speed (rad/s). Run for this project; of the drag 0.01 the speed that is
-# exceeded in a tenth of the time only, in place of the highest.
+# What the authors' program of 2019 does in 60 s, by its wheels' drag (N s/rad): standard deviations
+# of the yaw joints (degrees), their frequency (Hz), and of the wheels the highest and the late
+# speed (rad/s). Run for this project; of the drag 0.01 the speed that is exceeded in a tenth of the
+# time only, in place of the highest.
 AUTHORS: dict[float, dict[str, Any]] = {
     0.002: {"std_deg": [6.9, 10.7, 16.3, 19.8], "hz": 3.80, "peak_rad_s": 49.2, "late_rad_s": 34.8},
     0.005: {"std_deg": [4.9, 7.4, 11.9, 15.0], "hz": 3.95, "peak_rad_s": 52.7, "late_rad_s": 38.4},
@@ -27,9 +31,12 @@ AUTHORS: dict[float, dict[str, Any]] = {
 }
 # Their joints' lag, from one to the next (degrees).
 AUTHORS_LAG_DEG = (-150.0, -110.0)
-TRAINS: tuple[Cell, ...] = (*({"preset": "snake2019", "drag": drag} for drag in AUTHORS), {"preset": "paper", "drag": 0.1})
-# Between what the authors' engine holds along an axis of its box of friction, the same area as a circle, the mean of all directions, and
-# the box's corners: the late speed depends on it.
+TRAINS: tuple[Cell, ...] = (
+    *({"preset": "snake2019", "drag": drag} for drag in AUTHORS),
+    {"preset": "paper", "drag": 0.1},
+)
+# Between what the authors' engine holds along an axis of its box of friction, the same area as a
+# circle, the mean of all directions, and the box's corners: the late speed depends on it.
 FRICTIONS = (0.64, 0.722, 0.815, 0.905)
 BENTS = (0.0, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
 SHOWN_S, EVERY_S = 1.5, 0.01
@@ -38,14 +45,23 @@ STILL_DEG = 0.1
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """Trains that begin a little bent, for the wiggling; and one with tyres that hold more and less, and more and less bent."""
+    """Trains that begin a little bent, for the wiggling.
+
+    And one with tyres that hold more and less, and more and less bent.
+    """
     wiggling: list[Cell] = [{"part": "wiggle", **train, "bent": BENT} for train in TRAINS]
-    held: list[Cell] = [{"part": "friction", **TRAINS[0], "bent": BENT, "friction": friction} for friction in FRICTIONS]
+    held: list[Cell] = [
+        {"part": "friction", **TRAINS[0], "bent": BENT, "friction": friction}
+        for friction in FRICTIONS
+    ]
     return wiggling + held + [{"part": "bent", **TRAINS[0], "bent": bent} for bent in BENTS]
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """The wheels' highest and late mean speed (late: the second half), the wiggling of each joint in it, and the joints in its end."""
+    """The wheels' highest and late mean speed (late.
+
+    The second half), the wiggling of each joint in it, and the joints in its end.
+    """
     own = preset(cell["preset"]).with_drag(cell["drag"])
     own = own._replace(friction=cell.get("friction", own.friction))
     did = ran(pushed_off(own, seed=setting.seed, bent=cell["bent"]), setting.options["seconds"])
@@ -70,7 +86,8 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 def wiggling(yaws: Array, dt_s: float) -> list[Row]:
     """Of each joint: its standard deviation, its frequency, and its phase less that of the joint before (degrees; below 0 is later).
 
-    yaws: (times, joints), in degrees. The frequency is where the spectrum of the last joint, which swings the most, has its peak.
+    yaws: (times, joints), in degrees. The frequency is where the spectrum of the last joint, which
+    swings the most, has its peak.
     """
     std = yaws.std(axis=0)
     window = np.hanning(len(yaws))[:, None]
@@ -94,8 +111,15 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     """By drag, beside what the authors' program did; no claim of the paper."""
     trains = []
     for train in TRAINS:
-        own = [row for row in rows if row["part"] == "wiggle" and all(row[name] == value for name, value in train.items())]
-        joints, (speeds,) = [row for row in own if "std_deg" in row], [row for row in own if "peak_rad_s" in row]
+        own = [
+            row
+            for row in rows
+            if row["part"] == "wiggle" and all(row[name] == value for name, value in train.items())
+        ]
+        joints, (speeds,) = (
+            [row for row in own if "std_deg" in row],
+            [row for row in own if "peak_rad_s" in row],
+        )
         theirs = AUTHORS.get(train["drag"]) if train["preset"] == "snake2019" else None
         trains.append(
             {
@@ -111,7 +135,27 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     held = []
     for friction in FRICTIONS:
         own = [row for row in rows if row.get("friction") == friction]
-        (speeds,), joints = [row for row in own if "peak_rad_s" in row], [row for row in own if "std_deg" in row]
-        held.append({"friction": friction, "late_rad_s": speeds["late_rad_s"], "hz": joints[-1]["hz"], "std_deg": joints[-1]["std_deg"]})
-    bent = [[row["bent"], row["peak_rad_s"], row["late_rad_s"]] for row in rows if row["part"] == "bent"]
-    return Findings([], {"trains": trains, "authors_lag_deg": list(AUTHORS_LAG_DEG), "bent_rad_peak_late_rad_s": bent, "by_friction": held})
+        (speeds,), joints = (
+            [row for row in own if "peak_rad_s" in row],
+            [row for row in own if "std_deg" in row],
+        )
+        held.append(
+            {
+                "friction": friction,
+                "late_rad_s": speeds["late_rad_s"],
+                "hz": joints[-1]["hz"],
+                "std_deg": joints[-1]["std_deg"],
+            }
+        )
+    bent = [
+        [row["bent"], row["peak_rad_s"], row["late_rad_s"]] for row in rows if row["part"] == "bent"
+    ]
+    return Findings(
+        [],
+        {
+            "trains": trains,
+            "authors_lag_deg": list(AUTHORS_LAG_DEG),
+            "bent_rad_peak_late_rad_s": bent,
+            "by_friction": held,
+        },
+    )

@@ -1,6 +1,7 @@
 """Where the basin lies: success of a kick against its length and the wheel's phase when it comes, for each direction (R9 and R10).
 
-The paper shifts and inverts blindly, whatever the phase; the map tells at which lengths this does not matter, and when to kick else.
+The paper shifts and inverts blindly, whatever the phase; the map tells at which lengths this does
+not matter, and when to kick else.
 """
 
 from __future__ import annotations
@@ -23,17 +24,27 @@ from host.util.intervals import fraction, wilson
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
 from robot.params import Params
 
-# Kicks that are computed in a go: some seconds, and memory that any machine has. A million kicks make 28,000 for a length, and
-# 390 for a direction and a phase: where all of these reverse, at least 99 % do (95 % confidence); a rate of half is known to 5 %.
+# Kicks that are computed in a go: some seconds, and memory that any machine has. A million kicks
+# make 28,000 for a length, and 390 for a direction and a phase: where all of these reverse, at
+# least 99 % do (95 % confidence); a rate of half is known to 5 %.
 CHUNK = 20000
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A cell is a chunk of kicks of one kind and length, or a single one on a robot; there they go round after round."""
-    kicks: list[Cell] = [{"mode": mode, "sign": sign, "ticks": ticks} for mode, sign in KINDS for ticks in LENGTHS]
+    """A cell is a chunk of kicks of one kind and length, or a single one on a robot.
+
+    There they go round after round.
+    """
+    kicks: list[Cell] = [
+        {"mode": mode, "sign": sign, "ticks": ticks} for mode, sign in KINDS for ticks in LENGTHS
+    ]
     each = ceil(options["kicks"] / len(kicks))
     if batch:
-        return [{**kick, "chunk": begin // CHUNK, "kicks": min(CHUNK, each - begin)} for kick in kicks for begin in range(0, each, CHUNK)]
+        return [
+            {**kick, "chunk": begin // CHUNK, "kicks": min(CHUNK, each - begin)}
+            for kick in kicks
+            for begin in range(0, each, CHUNK)
+        ]
     return [{**kick, "trial": trial} for trial in range(each) for kick in kicks]
 
 
@@ -45,7 +56,13 @@ def world(cell: Cell) -> dict[str, str]:
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
     """Counts by direction and phase."""
     kick = cell["mode"], cell["sign"], cell["ticks"], cell["kicks"]
-    return tally(*kick, setting.seed_of(cell), params=Params(), motor=setting.motor, battery_v=setting.battery_v)
+    return tally(
+        *kick,
+        setting.seed_of(cell),
+        params=Params(),
+        motor=setting.motor,
+        battery_v=setting.battery_v,
+    )
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
@@ -66,7 +83,9 @@ def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
 
 def of_kind(rows: list[Row], mode: str, sign: int, before: int) -> list[Row]:
     """The rows of a kind of kick on wheels of a direction."""
-    return [row for row in rows if (row["mode"], row["sign"], row["before"]) == (mode, sign, before)]
+    return [
+        row for row in rows if (row["mode"], row["sign"], row["before"]) == (mode, sign, before)
+    ]
 
 
 def counts(rows: list[Row]) -> NDArray[np.float64]:
@@ -80,42 +99,72 @@ def counts(rows: list[Row]) -> NDArray[np.float64]:
 def share(totals: NDArray[np.float64]) -> NDArray[np.float64]:
     """The rates of such counts; NaN where nothing was tried."""
     done, tried = totals
-    rates: NDArray[np.float64] = np.divide(done, tried, out=np.full_like(done, np.nan), where=tried > 0)
+    rates: NDArray[np.float64] = np.divide(
+        done, tried, out=np.full_like(done, np.nan), where=tried > 0
+    )
     return rates
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """R9 and R10 at the worst phase; and for each kind and direction the best length and moment, beside blind kicks."""
-    best = [_best(of_kind(rows, mode, sign, before), mode, sign, before) for mode, sign in KINDS for before in (1, -1)]
+    """R9 and R10 at the worst phase.
+
+    And for each kind and direction the best length and moment, beside blind kicks.
+    """
+    best = [
+        _best(of_kind(rows, mode, sign, before), mode, sign, before)
+        for mode, sign in KINDS
+        for before in (1, -1)
+    ]
     position = [of_kind(rows, POSITION, 0, before) for before in (1, -1)]
     named = [of_kind(rows, PHASE, before, before) for before in (1, -1)]
     claims = [
         _whatever_the_phase("R9", "inverted positions", position),
         _whatever_the_phase("R10", "a phase shift of the named sign", named),
     ]
-    return Findings(claims, {"kicks": count(rows)[1], "lengths": list(LENGTHS), "phase_bins": PHASE_BINS, "maps": best})
+    return Findings(
+        claims,
+        {"kicks": count(rows)[1], "lengths": list(LENGTHS), "phase_bins": PHASE_BINS, "maps": best},
+    )
 
 
 def _best(rows: list[Row], mode: str, sign: int, before: int) -> dict[str, Any]:
-    """The best kick of a kind, beside blind ones: the paper's and each length's, whatever the phase, and at the worst phase."""
+    """The best kick of a kind, beside blind ones.
+
+    The paper's and each length's, whatever the phase, and at the worst phase.
+    """
     plan = choose(rows, before)
     totals = counts(rows)
     blind = [
-        {"ticks": ticks, **_rate(*of.sum(axis=1)), "at_the_worst_phase": _rate(*_least_sure(of))["rate"]}
+        {
+            "ticks": ticks,
+            **_rate(*of.sum(axis=1)),
+            "at_the_worst_phase": _rate(*_least_sure(of))["rate"],
+        }
         for ticks, of in zip(LENGTHS, totals.transpose(1, 0, 2), strict=True)
     ]
     return {
         "mode": mode,
         "sign": sign,
         "before": before,
-        "best": plan and {"ticks": plan.ticks, "window_deg": plan.window_deg(), **_rate(plan.reversed, plan.tried)},
+        "best": (
+            plan
+            and {
+                "ticks": plan.ticks,
+                "window_deg": plan.window_deg(),
+                **_rate(plan.reversed, plan.tried),
+            }
+        ),
         "blind_as_in_the_paper": blind[LENGTHS.index(DEFAULT_TICKS[mode])],
         "blind": blind,
     }
 
 
 def _rate(done: float, tried: float) -> dict[str, Any]:
-    return {"rate": float(done / tried) if tried else None, "interval": list(wilson(int(done), int(tried))), "tried": int(tried)}
+    return {
+        "rate": float(done / tried) if tried else None,
+        "interval": list(wilson(int(done), int(tried))),
+        "tried": int(tried),
+    }
 
 
 def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> Claim:

@@ -1,8 +1,11 @@
-"""The motion primitives (R1 to R4, R7): all transitions between them, the motion from random starts, and where the robot can rest.
+"""The motion primitives (R1 to R4, R7).
 
-A round goes through every transition once, each from where the one before ended. From locomotion into locomotion, kicks alone do it,
-and k stays as it is; into rest a pulse of k to zero, after which k may have to be lower for the robot to stay. Where that pulse alone
-is enough is tried at one k after another: there rest coexists with locomotion, if the robot ran at this k before the pulse.
+All transitions between them, the motion from random starts, and where the robot can rest.
+
+A round goes through every transition once, each from where the one before ended. From locomotion
+into locomotion, kicks alone do it, and k stays as it is; into rest a pulse of k to zero, after
+which k may have to be lower for the robot to stay. Where that pulse alone is enough is tried at one
+k after another: there rest coexists with locomotion, if the robot ran at this k before the pulse.
 """
 
 from __future__ import annotations
@@ -53,7 +56,11 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
     trials = range(options["trials"])
     rounds: list[Cell] = [{"part": "round", "trial": trial} for trial in trials]
     begins: list[Cell] = [{"part": "start", "trial": trial} for trial in trials]
-    return [*rounds, *begins, *({"part": "rest", "k": k, "trial": trial} for trial in trials for k in KS)]
+    return [
+        *rounds,
+        *begins,
+        *({"part": "rest", "k": k, "trial": trial} for trial in trials for k in KS),
+    ]
 
 
 def world(cell: Cell) -> dict[str, str]:
@@ -100,7 +107,11 @@ def _round(robot: Robot, log: Log) -> list[Row]:
 def _shown(log: Log) -> list[Row]:
     """The speeds of the wheels, and k, over the round."""
     t, speeds = log.column("t_s"), {side: log.omega(side) / (2 * pi) for side in WHEELS}
-    changes = [(place, event["set"]["k"]) for event, place in zip(log.events, log.places, strict=True) if "k" in event.get("set", {})]
+    changes = [
+        (place, event["set"]["k"])
+        for event, place in zip(log.events, log.places, strict=True)
+        if "k" in event.get("set", {})
+    ]
     k = np.full(len(log), K)
     for place, value in changes:
         k[place:] = value
@@ -120,7 +131,10 @@ def _start(robot: Robot, log: Log) -> list[Row]:
     """Steady motion of each wheel after a start from random potentials."""
     (span,) = starts(robot, log, 1)
     require_running(robot)
-    return [{"kind": "start", "side": side, **wheel._asdict()} for side, wheel in zip(WHEELS, steady(log, span), strict=True)]
+    return [
+        {"kind": "start", "side": side, **wheel._asdict()}
+        for side, wheel in zip(WHEELS, steady(log, span), strict=True)
+    ]
 
 
 def _rest(robot: Robot, log: Log, k: float) -> Row:
@@ -139,7 +153,11 @@ def _rest(robot: Robot, log: Log, k: float) -> Row:
 
 def transitions(rows: list[Row], begin: str, end: str) -> list[Row]:
     """The tries of one transition."""
-    return [row for row in rows if row["kind"] == "transition" and (row["begin"], row["end"]) == (begin, end)]
+    return [
+        row
+        for row in rows
+        if row["kind"] == "transition" and (row["begin"], row["end"]) == (begin, end)
+    ]
 
 
 def rests(rows: list[Row], k: float, name: str) -> tuple[int, int]:
@@ -150,27 +168,53 @@ def rests(rows: list[Row], k: float, name: str) -> tuple[int, int]:
 
 def report(rows: list[Row], setting: Setting) -> Findings:
     """R1 to R4 and R7."""
-    begun = [Steady(*(row[name] for name in Steady._fields)) for row in rows if row["kind"] == "start"]
-    table = {f"{begin} to {end}": _score(transitions(rows, begin, end)) for begin in STATES for end in STATES if begin != end}
+    begun = [
+        Steady(*(row[name] for name in Steady._fields)) for row in rows if row["kind"] == "start"
+    ]
+    table = {
+        f"{begin} to {end}": _score(transitions(rows, begin, end))
+        for begin in STATES
+        for end in STATES
+        if begin != end
+    }
     rest = {str(k): {name: [*rests(rows, k, name)] for name in ("runs", "stays")} for k in KS}
-    return Findings([coexistence(begun), *locomotion(begun), _primitives(rows)], {"transitions": table, "rest_after_a_pulse_of_k": rest})
+    return Findings(
+        [coexistence(begun), *locomotion(begun), _primitives(rows)],
+        {"transitions": table, "rest_after_a_pulse_of_k": rest},
+    )
 
 
 def _score(tries: list[Row]) -> dict[str, Any]:
     seconds = [row["seconds"] for row in tries if row["reached"]]
     rate = wilson(len(seconds), len(tries))
-    return {"reached": len(seconds), "of": len(tries), "rate": rate, "median_s": float(np.median(seconds)) if seconds else None}
+    return {
+        "reached": len(seconds),
+        "of": len(tries),
+        "rate": rate,
+        "median_s": float(np.median(seconds)) if seconds else None,
+    }
 
 
 def _primitives(rows: list[Row]) -> Claim:
     tries = [row for row in rows if row["kind"] == "transition"]
     kicked = [row for row in tries if row["begin"] in MOVING and row["end"] in MOVING]
-    alone = [row for row in kicked if row["reached"] and row["kicks"] and row["k"] == row["k_before"]]
+    alone = [
+        row for row in kicked if row["reached"] and row["kicks"] and row["k"] == row["k_before"]
+    ]
     stops = [row for row in tries if "stopped" in (row["begin"], row["end"])]
     stopped = sum(row["reached"] for row in stops)
     shared = [k for k in KS if rests(rows, k, "runs")[0] and rests(rows, k, "stays")[0]]
-    sure = [k for k in shared if all(done >= RELIABLE * of for done, of in (rests(rows, k, name) for name in ("runs", "stays")))]
-    complete = all(transitions(rows, begin, end) for begin in STATES for end in STATES if begin != end)
+    sure = [
+        k
+        for k in shared
+        if all(
+            done >= RELIABLE * of
+            for done, of in (rests(rows, k, name) for name in ("runs", "stays"))
+        )
+    ]
+    complete = all(
+        transitions(rows, begin, end) for begin in STATES for end in STATES if begin != end
+    )
     return Claim(
         "R7",
         "forward, backward and both spins from each other by kicks alone; stopped and back",
@@ -178,9 +222,13 @@ def _primitives(rows: list[Row]) -> Claim:
         len(alone) / max(1, len(kicked)),
         "1",
         wilson(len(alone), len(kicked)),
-        complete and len(alone) >= RELIABLE * len(kicked) and stopped >= RELIABLE * len(stops) and bool(sure),
-        f"{len(alone)} of {len(kicked)} by kicks alone; to stopped and back {stopped} of {len(stops)}; after a pulse of k to 0 the robot "
-        f"always rests, and always runs without it, at k = {_range(sure)}; sometimes so at k = {_range(shared)}",
+        complete
+        and len(alone) >= RELIABLE * len(kicked)
+        and stopped >= RELIABLE * len(stops)
+        and bool(sure),
+        f"{len(alone)} of {len(kicked)} by kicks alone; to stopped and back {stopped} of"
+        f" {len(stops)}; after a pulse of k to 0 the robot always rests, and always runs without"
+        f" it, at k = {_range(sure)}; sometimes so at k = {_range(shared)}",
     )
 
 

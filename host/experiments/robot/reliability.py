@@ -1,7 +1,10 @@
-"""How surely a kick reverses a wheel, against its length: position and phase kicks of both signs, membrane beside them (R8 to R10).
+"""How surely a kick reverses a wheel, against its length.
 
-A trial is one wheel that has settled, at whatever phase the kick meets it. Phase kicks of both signs are given to wheels of both
-directions: of the sign that the paper names for a direction, and of the other one, of which it says nothing.
+Position and phase kicks of both signs, membrane beside them (R8 to R10).
+
+A trial is one wheel that has settled, at whatever phase the kick meets it. Phase kicks of both
+signs are given to wheels of both directions: of the sign that the paper names for a direction, and
+of the other one, of which it says nothing.
 """
 
 from __future__ import annotations
@@ -32,11 +35,20 @@ _SETTLE_TICKS, _WATCH_TICKS = 170, 130
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A cell is a kick for all trials of the batch, or for one trial on a robot; there they go round after round, as its battery fades."""
+    """A cell is a kick for all trials of the batch, or for one trial on a robot.
+
+    There they go round after round, as its battery fades.
+    """
     kicks: list[Cell] = [{"mode": MEMBRANE, "ticks": 1, "sign": 0}]
     kicks += [{"mode": POSITION, "ticks": ticks, "sign": 0} for ticks in LENGTHS]
-    kicks += [{"mode": PHASE, "ticks": ticks, "sign": sign} for sign in (1, -1) for ticks in LENGTHS]
-    return kicks if batch else [{**kick, "trial": trial} for trial in range(options["trials"]) for kick in kicks]
+    kicks += [
+        {"mode": PHASE, "ticks": ticks, "sign": sign} for sign in (1, -1) for ticks in LENGTHS
+    ]
+    return (
+        kicks
+        if batch
+        else [{**kick, "trial": trial} for trial in range(options["trials"]) for kick in kicks]
+    )
 
 
 def world(cell: Cell) -> dict[str, str]:
@@ -55,17 +67,32 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     while min(map(len, rows.values())) < trials:
         if batches >= PATIENT_BATCHES and not all(rows.values()):
             raise NotDone(
-                f"of {3 * trials * batches} simulated wheels {len(rows[1])} rolled forward and {len(rows[-1])} backward,"
-                " and nothing else can be kicked around",
+                f"of {3 * trials * batches} simulated wheels {len(rows[1])} rolled forward and"
+                f" {len(rows[-1])} backward, and nothing else can be kicked around",
                 "is the battery too weak for this motor?",
             )
         batches += 1
         motors = published.specimens(3 * trials, rng)
         ticks = _SETTLE_TICKS + kick.ticks + _WATCH_TICKS
-        result = run(len(motors), ticks, int(rng.integers(2**32)), kick=kick, motors=motors, battery_v=setting.battery_v)
-        for before, reverses, settled in zip(result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True):
+        result = run(
+            len(motors),
+            ticks,
+            int(rng.integers(2**32)),
+            kick=kick,
+            motors=motors,
+            battery_v=setting.battery_v,
+        )
+        for before, reverses, settled in zip(
+            result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True
+        ):
             if before:
-                rows[before].append({"before": before, "reversed": reverses, "settling_s": None if isnan(settled) else settled})
+                rows[before].append(
+                    {
+                        "before": before,
+                        "reversed": reverses,
+                        "settling_s": None if isnan(settled) else settled,
+                    }
+                )
     return rows[1][:trials] + rows[-1][:trials]
 
 
@@ -73,7 +100,9 @@ def kick_settled(cell: Cell, robot: Robot, log: Log, setting: Setting) -> Outcom
     """Give a robot that has settled the cell's kick, at a random phase."""
     wait_settled(robot)
     robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
-    return kick_and_watch(robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"])))
+    return kick_and_watch(
+        robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
+    )
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
@@ -96,9 +125,15 @@ def rate(rows: list[Row]) -> tuple[int, int]:
 
 
 def points(rows: list[Row], mode: str, ticks: int, named: bool | None = None) -> list[Row]:
-    """The trials of a point. named: only phase kicks of the sign that the paper names for the wheel's direction, or only the others."""
+    """The trials of a point. named.
+
+    Only phase kicks of the sign that the paper names for the wheel's direction, or only the others.
+    """
     return [
-        row for row in rows if (row["mode"], row["ticks"]) == (mode, ticks) and (named is None or (row["sign"] == row["before"]) is named)
+        row
+        for row in rows
+        if (row["mode"], row["ticks"]) == (mode, ticks)
+        and (named is None or (row["sign"] == row["before"]) is named)
     ]
 
 
@@ -111,7 +146,11 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     ]
     rates = {
         name: [[*rate(points(rows, mode, ticks, named))] for ticks in LENGTHS]
-        for name, mode, named in (("position", POSITION, None), ("phase", PHASE, True), ("phase, other sign", PHASE, False))
+        for name, mode, named in (
+            ("position", POSITION, None),
+            ("phase", PHASE, True),
+            ("phase, other sign", PHASE, False),
+        )
     }
     return Findings(claims, {"lengths": list(LENGTHS), "reversals_of_trials": rates})
 
@@ -119,14 +158,20 @@ def report(rows: list[Row], setting: Setting) -> Findings:
 def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
     """Reliable in the worse direction, failing in both."""
     directions = {
-        ticks: [rate([row for row in points(rows, mode, ticks, named) if row["before"] == before]) for before in (1, -1)]
+        ticks: [
+            rate([row for row in points(rows, mode, ticks, named) if row["before"] == before])
+            for before in (1, -1)
+        ]
         for ticks in LENGTHS
     }
     return quenched(
         number,
         f"{what} reliable for 3 to 5 ticks",
         "in the worse direction",
-        {ticks: min(both, key=lambda counts: fraction(*counts)) for ticks, both in directions.items()},
+        {
+            ticks: min(both, key=lambda counts: fraction(*counts))
+            for ticks, both in directions.items()
+        },
         {ticks: max(fraction(*counts) for counts in both) for ticks, both in directions.items()},
         min(tried for both in directions.values() for _, tried in both),
         "trials in a direction decide nothing: give more --trials",

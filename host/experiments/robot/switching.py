@@ -1,4 +1,6 @@
-"""Wheels that may switch between forward and backward by themselves: running simulated ones under conditions, and telling what they do.
+"""Wheels that may switch between forward and backward by themselves.
+
+Running simulated ones under conditions, and telling what they do.
 
 A wheel switches when its direction changes, by the robot's own rule.
 """
@@ -26,7 +28,8 @@ from sim_motor.motor import SUBSTEP_S, Constants, load
 Array = NDArray[np.float64]
 
 SWITCHES, ROLLS, RESTS = "switches", "rolls", "rests"
-# A wheel that has not switched for so long has stopped, for the time being: of 100 intervals between switches at most one is longer.
+# A wheel that has not switched for so long has stopped, for the time being: of 100 intervals
+# between switches at most one is longer.
 QUIET_S = 30.0
 # One run of the batch keeps the records of at most so many ticks.
 _MOST_TICKS = 2_000_000
@@ -35,7 +38,10 @@ _DEFAULT = Params()
 
 @dataclass(frozen=True)
 class Condition:
-    """How a simulated brick differs from the one that was asked for; None is as there. inertia: factor on the motor's own."""
+    """How a simulated brick differs from the one that was asked for; None is as there. inertia.
+
+    Factor on the motor's own.
+    """
 
     max_duty_pct: float = _DEFAULT.max_duty_pct
     tick_s: float = _DEFAULT.tick_s
@@ -48,7 +54,9 @@ class Condition:
         """Motor and wheel."""
         published = load(self.motor or setting.motor)
         latency_s = published.latency_s if self.latency_s is None else self.latency_s
-        return replace(published, latency_s=latency_s, motor_inertia=self.inertia * published.motor_inertia)
+        return replace(
+            published, latency_s=latency_s, motor_inertia=self.inertia * published.motor_inertia
+        )
 
     def supply_v(self, setting: Setting) -> float:
         """The battery's open-circuit voltage."""
@@ -57,7 +65,9 @@ class Condition:
     def params(self, **changes: float) -> Params:
         """Parameters of the loop."""
         params = Params()
-        params.apply(params.check({"max_duty_pct": self.max_duty_pct, "tick_s": self.tick_s, **changes}))
+        params.apply(
+            params.check({"max_duty_pct": self.max_duty_pct, "tick_s": self.tick_s, **changes})
+        )
         return params
 
 
@@ -78,18 +88,29 @@ CONDITIONS = {
     "duty up to 100 %": Condition(max_duty_pct=100.0),
     "100 %, 9 V": Condition(max_duty_pct=100.0, battery_v=_AA_V),
     "100 %, 9 V, 40 ms": Condition(max_duty_pct=100.0, battery_v=_AA_V, tick_s=0.04),
-    "100 %, 9 V, nxt_unroller": Condition(max_duty_pct=100.0, battery_v=_AA_V, motor="nxt_unroller"),
+    "100 %, 9 V, nxt_unroller": Condition(
+        max_duty_pct=100.0, battery_v=_AA_V, motor="nxt_unroller"
+    ),
     "100 %, 10 V": Condition(max_duty_pct=100.0, battery_v=HIGHEST_BATTERY_V),
     DELAYED: Condition(latency_s=0.07),
 }
 
 
 def wheels_run(
-    condition: Condition, setting: Setting, wheels: int, seconds: float, seed: int, jump: Jump | None = None, **changes: float
+    condition: Condition,
+    setting: Setting,
+    wheels: int,
+    seconds: float,
+    seed: int,
+    jump: Jump | None = None,
+    **changes: float,
 ) -> Iterator[Array]:
-    """Records of wheels from random starts, a few wheels at a time: (wheels, ticks, CHANNELS of sim_motor.batch).
+    """Records of wheels from random starts, a few wheels at a time.
 
-    changes: parameters of the loop. The same seed gives the same starts, motors and ticks, whatever the jump.
+    (wheels, ticks, CHANNELS of sim_motor.batch).
+
+    changes: parameters of the loop. The same seed gives the same starts, motors and ticks, whatever
+    the jump.
     """
     params = condition.params(**changes)
     ticks = round(seconds / params.tick_s)
@@ -104,7 +125,16 @@ def wheels_run(
         if batched:
             kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
             supply_v = condition.supply_v(setting)
-            yield run(len(some), ticks, one_seed, params=params, kick=kick, motors=some, battery_v=supply_v, record=len(some)).records
+            yield run(
+                len(some),
+                ticks,
+                one_seed,
+                params=params,
+                kick=kick,
+                motors=some,
+                battery_v=supply_v,
+                record=len(some),
+            ).records
         else:
             yield _loop_run(some, condition.supply_v(setting), params, ticks, one_seed, jump)
 
@@ -113,13 +143,28 @@ def _request(jump: Jump) -> dict[str, object]:
     return {"id": "jump", "mode": JUMP, "variable": "x1", "delta": jump.size}
 
 
-def _loop_run(constants: tuple[Constants, ...], supply_v: float, params: Params, ticks: int, seed: int, jump: Jump | None) -> Array:
+def _loop_run(
+    constants: tuple[Constants, ...],
+    supply_v: float,
+    params: Params,
+    ticks: int,
+    seed: int,
+    jump: Jump | None,
+) -> Array:
     """One robot, through its whole loop."""
     rng = np.random.default_rng(seed)
     clock = VirtualClock(seed)
     pair = (constants * 2)[:2]
     motors = [
-        SimMotor(side, clock, one, supply_v, 1, float(rng.uniform(0, 2 * pi)), float(rng.uniform(-0.5, 0.5) * one.backlash))
+        SimMotor(
+            side,
+            clock,
+            one,
+            supply_v,
+            1,
+            float(rng.uniform(0, 2 * pi)),
+            float(rng.uniform(-0.5, 0.5) * one.backlash),
+        )
         for side, one in zip(("left", "right"), pair, strict=True)
     ]
     loop = Loop(motors, None, clock, seed)
@@ -130,7 +175,11 @@ def _loop_run(constants: tuple[Constants, ...], supply_v: float, params: Params,
         loop.kick(_request(jump))
         records += unattended.run(loop, ticks - jump.tick)
     wheels = [record[-2 * len(CHANNELS) :] for record in records]
-    return np.array(wheels, dtype=float).reshape(ticks, 2, len(CHANNELS)).swapaxes(0, 1)[: len(constants)]
+    return (
+        np.array(wheels, dtype=float)
+        .reshape(ticks, 2, len(CHANNELS))
+        .swapaxes(0, 1)[: len(constants)]
+    )
 
 
 def switches(phi: Array) -> NDArray[np.int64]:

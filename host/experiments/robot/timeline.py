@@ -1,8 +1,11 @@
-"""The three kicks one after the other, each there and back, as in the paper's timeline: settling, and the slip between the wheels.
+"""The three kicks one after the other, each there and back, as in the paper's timeline.
 
-The wheels' relative phase is the left one's angle less the right one's, as a mean over WINDOW_S, so that the encoder's counts do not
-show. Its slip is how much it changes from before a kick until after both wheels have settled; beside it stands the drift, which is how
-much it changed in a time as long before the kick, measured in the same way.
+Settling, and the slip between the wheels.
+
+The wheels' relative phase is the left one's angle less the right one's, as a mean over WINDOW_S, so
+that the encoder's counts do not show. Its slip is how much it changes from before a kick until
+after both wheels have settled; beside it stands the drift, which is how much it changed in a time
+as long before the kick, measured in the same way.
 """
 
 from __future__ import annotations
@@ -30,7 +33,8 @@ TURNS = (1, 2)  # there and back
 STEADY_S, TURN_S, WINDOW_S = 3.0, 0.5, 0.5
 # A slip is told from the drift by how many exceed what all but so much of the drift stays below.
 USUAL = 0.95
-# What the first round keeps of each tick for the figure, from before the first of two kicks until after the second.
+# What the first round keeps of each tick for the figure, from before the first of two kicks until
+# after the second.
 SHOWN = [f"{side}_{name}" for side in WHEELS for name in ("x1", "x2", "torque")]
 SHOWN_BEFORE_S, SHOWN_AFTER_S = 1.0, 2.0
 
@@ -46,7 +50,10 @@ def world(cell: Cell) -> dict[str, str]:
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """One round: each kick takes the robot from forward to backward, and back. Rows of `kind` kick, and of kind tick in the first one."""
+    """One round: each kick takes the robot from forward to backward, and back.
+
+    Rows of `kind` kick, and of kind tick in the first one.
+    """
     rng = np.random.default_rng(setting.seed_of(cell))
     rows: list[Row] = []
     robot.wait(STEADY_S, until=lambda: len(log) > DIRECTION_TICKS)
@@ -83,7 +90,10 @@ def _relative(log: Log) -> NDArray[np.float64]:
 
 
 def _slip(log: Log, tick: int) -> Row:
-    """When the wheels settled after the kick that began in this tick, and their relative phase. None for what did not settle."""
+    """When the wheels settled after the kick that began in this tick, and their relative phase.
+
+    None for what did not settle.
+    """
     t, relative = log.column("t_s"), _relative(log)
     begin_s = float(t[_row_of(log, tick)])
     times = [settling_s(log, side, tick) for side in WHEELS]
@@ -113,7 +123,9 @@ def wrapped(angle: float) -> float:
 def _ticks(log: Log, mode: str, kicked: list[int]) -> list[Row]:
     """What was around the kicks that begin in these rows of the log; times count from the first."""
     t, acts = log.column("t_s"), log.column("kick") > 0
-    shown = np.flatnonzero((t >= t[kicked[0]] - SHOWN_BEFORE_S) & (t <= t[kicked[-1]] + SHOWN_AFTER_S))
+    shown = np.flatnonzero(
+        (t >= t[kicked[0]] - SHOWN_BEFORE_S) & (t <= t[kicked[-1]] + SHOWN_AFTER_S)
+    )
     columns = {name: log.column(name) for name in SHOWN}
     relative = _relative(log)
     return [
@@ -131,7 +143,11 @@ def _ticks(log: Log, mode: str, kicked: list[int]) -> list[Row]:
 
 def kicks(rows: list[Row], mode: str | None = None) -> list[Row]:
     """The kicks that reversed the robot and after which both wheels settled."""
-    done = [row for row in rows if row["kind"] == "kick" and row["reversed"] and row["slip_rad"] is not None]
+    done = [
+        row
+        for row in rows
+        if row["kind"] == "kick" and row["reversed"] and row["slip_rad"] is not None
+    ]
     return [row for row in done if mode in (None, row["mode"])]
 
 
@@ -174,7 +190,8 @@ def _settling(done: list[Row]) -> Claim:
         "s",
         spread(times, np.median),
         slow > 0 and all(time > row["kick_s"] for time, row in zip(times, done, strict=True)),
-        f"median of {len(times)} reversals, the slower wheel; 5 to 95 %: {low:.2f} to {high:.2f} s; {slow} took half a second or more",
+        f"median of {len(times)} reversals, the slower wheel; 5 to 95 %: {low:.2f} to {high:.2f} s;"
+        f" {slow} took half a second or more",
     )
 
 
@@ -191,6 +208,7 @@ def _slips(done: list[Row]) -> Claim:
         "rad",
         spread(slips, np.median),
         wilson(beyond, len(slips))[0] > 1 - USUAL,
-        f"median |slip| of {len(slips)} reversals; 5 to 95 %: {low:.3f} to {high:.3f} rad, at most {max(slips, default=0.0):.2f}; "
-        f"without a kick {USUAL:.0%} stay below {usual:.3f} in that time, which {beyond} slips exceed",
+        f"median |slip| of {len(slips)} reversals; 5 to 95 %: {low:.3f} to {high:.3f} rad, at most"
+        f" {max(slips, default=0.0):.2f}; without a kick {USUAL:.0%} stay below {usual:.3f} in that"
+        f" time, which {beyond} slips exceed",
     )

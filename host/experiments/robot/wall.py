@@ -1,11 +1,15 @@
-"""A robot at k = 2 runs against a wall and turns back by itself, or does not (R13). No sensor and no kick tells it of the wall.
+"""A robot at k = 2 runs against a wall and turns back by itself, or does not (R13).
 
-A trial sets both wheels going forward at once and watches them. What came of it is read from the log alone: the wall is where the
-wheels slow down, and a bounce is where the torque M of both wheels has changed its sign, and both run the other way, for good.
+No sensor and no kick tells it of the wall.
 
-A floor without grip cannot stop the wheels: they turn on. A wheel that is stopped obeys the rods alone, which draw it to the next of
-four angles: forward or backward, as its phase wills. If it is drawn forward, it presses against the wall until the wall's spring, or
-the other wheel, throws it over that point; or it rests there. If one wheel goes before the other, the robot turns on the spot.
+A trial sets both wheels going forward at once and watches them. What came of it is read from the
+log alone: the wall is where the wheels slow down, and a bounce is where the torque M of both wheels
+has changed its sign, and both run the other way, for good.
+
+A floor without grip cannot stop the wheels: they turn on. A wheel that is stopped obeys the rods
+alone, which draw it to the next of four angles: forward or backward, as its phase wills. If it is
+drawn forward, it presses against the wall until the wall's spring, or the other wheel, throws it
+over that point; or it rests there. If one wheel goes before the other, the robot turns on the spot.
 """
 
 from __future__ import annotations
@@ -38,15 +42,26 @@ Array = NDArray[Any]
 ROBOT = {name: float(entry[0]) for name, entry in data()["robot"].items()}
 CARPET, SMOOTH = ROBOT["grip_on_carpet"], ROBOT["grip"]
 WIDE_M, SPRINGY = 0.4, 1000.0
-# The paper's: on a rough surface, with wheels in phase, as the start of the robot's program leaves them.
-PAPER: Cell = {"k": 2.0, "grip": CARPET, "stiffness": ROBOT["wall_stiffness"], "bumper": ROBOT["body_width"], "apart": 0.0}
-ON_SMOOTH, WITH_BUMPER = {**PAPER, "grip": SMOOTH}, {**PAPER, "bumper": WIDE_M, "stiffness": SPRINGY}
+# The paper's: on a rough surface, with wheels in phase, as the start of the robot's program leaves
+# them.
+PAPER: Cell = {
+    "k": 2.0,
+    "grip": CARPET,
+    "stiffness": ROBOT["wall_stiffness"],
+    "bumper": ROBOT["body_width"],
+    "apart": 0.0,
+}
+ON_SMOOTH, WITH_BUMPER = (
+    {**PAPER, "grip": SMOOTH},
+    {**PAPER, "bumper": WIDE_M, "stiffness": SPRINGY},
+)
 KS, GRIPS = (1.5, 2.0, 2.5, 3.0, 4.0), (0.7, 1.0, 1.34, 1.7, 2.0, 2.5)
 STIFFNESSES, BUMPERS = (500.0, 1000.0, 2000.0, 20000.0, 100000.0), (0.1, 0.16, 0.2, 0.3, 0.4)
 APARTS = (0.0, 0.2, 0.4, 0.8, 1.6, 2.4, 3.14)
 MAP_HITS = 12
 
-# So far apart at least are the walls; and a turn of the wheels farther, that all phases come to them.
+# So far apart at least are the walls; and a turn of the wheels farther, that all phases come to
+# them.
 NEAREST_M, TURN_M = 1.2, 2 * pi * WHEEL_RADIUS_M
 REST_S, SETTLE_S, WATCH_S, LOOK_S, SERIES_S = 1.5, 0.5, 8.0, 0.6, 40.0
 MEAN_S, LASTS_S = 0.5, 0.6
@@ -54,7 +69,13 @@ SLOWED = 0.85
 TARGET = 0.95
 
 BOUNCED, NO_WALL = "bounced", "met no wall"
-SPUN, TURNED, ROUNDED, RESTED, UNSURE = "tyres spin", "turns on the spot", "turns around one wheel", "rests at the wall", "undecided"
+SPUN, TURNED, ROUNDED, RESTED, UNSURE = (
+    "tyres spin",
+    "turns on the spot",
+    "turns around one wheel",
+    "rests at the wall",
+    "undecided",
+)
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
@@ -64,9 +85,15 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
         return [{"k": PAPER["k"], "hit": hit} for hit in range(hits)]
     claimed = [PAPER, ON_SMOOTH, WITH_BUMPER]
     mapped = [{**PAPER, "grip": grip, "k": k} for grip in GRIPS for k in KS]
-    mapped += [{**PAPER, "stiffness": stiffness, "bumper": bumper} for stiffness in STIFFNESSES for bumper in BUMPERS]
+    mapped += [
+        {**PAPER, "stiffness": stiffness, "bumper": bumper}
+        for stiffness in STIFFNESSES
+        for bumper in BUMPERS
+    ]
     mapped += [{**PAPER, "apart": apart} for apart in APARTS]
-    once = {tuple(condition.values()): condition for condition in mapped if condition not in claimed}
+    once = {
+        tuple(condition.values()): condition for condition in mapped if condition not in claimed
+    }
     shown: list[Cell] = [{"part": "series", **condition} for condition in (PAPER, WITH_BUMPER)]
     return (
         [{"part": "claim", **condition, "hits": hits} for condition in claimed]
@@ -76,9 +103,16 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
 
 
 def world(cell: Cell) -> dict[str, str]:
-    """Walls, farther apart for each hit. To a real robot: a wall ahead that it meets squarely, half a metre away or more."""
+    """Walls, farther apart for each hit. To a real robot.
+
+    A wall ahead that it meets squarely, half a metre away or more.
+    """
     walls = NEAREST_M + 2 * TURN_M * cell.get("hit", 0) / cell.get("hits", 1)
-    scene = {str(name): str(cell[name]) for name in ("grip", "stiffness", "bumper", "apart") if name in cell}
+    scene = {
+        str(name): str(cell[name])
+        for name in ("grip", "stiffness", "bumper", "apart")
+        if name in cell
+    }
     return {"walls": f"{walls:.4f}", **scene}
 
 
@@ -91,7 +125,10 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 
 
 def _run_into_wall(cell: Cell, setting: Setting, *, stop: bool = True) -> Log:
-    """The log of a simulated robot that is sent off, until it has bounced; or, if it is not to stop there, of SERIES_S."""
+    """The log of a simulated robot that is sent off, until it has bounced.
+
+    Or, if it is not to stop there, of SERIES_S.
+    """
     seed = setting.seed_of(cell)
     scene = Scene(**{name: float(value) for name, value in world(cell).items()})
     brick = SimBrick(seed, motor=setting.motor, battery_v=setting.battery_v, scene=scene)
@@ -120,24 +157,34 @@ def _series(t: Array, phi: Array, torque: Array) -> list[Row]:
     turned = set(bounces(t, phi, torque))
     rows = zip((t - t[0]).tolist(), torque.tolist(), strict=True)
     return [
-        {"t_s": t_s, "left_torque": left, "right_torque": right, "bounce": tick in turned} for tick, (t_s, (left, right)) in enumerate(rows)
+        {"t_s": t_s, "left_torque": left, "right_torque": right, "bounce": tick in turned}
+        for tick, (t_s, (left, right)) in enumerate(rows)
     ]
 
 
 def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """One hit of a robot that is there. It is let rest for REST_S first, in which its user may face it to the wall."""
+    """One hit of a robot that is there.
+
+    It is let rest for REST_S first, in which its user may face it to the wall.
+    """
     robot.set(k=0.0)
     robot.wait(REST_S)
     robot.set(k=cell["k"])
     begin = robot.kick(PHASE, shift=SHIFT_TOWARD[FORWARD])
-    robot.wait(WATCH_S, until=lambda: len(log) % DIRECTION_TICKS == 0 and bool(bounces(*_watched(log, begin))))
+    robot.wait(
+        WATCH_S,
+        until=lambda: len(log) % DIRECTION_TICKS == 0 and bool(bounces(*_watched(log, begin))),
+    )
     return [told(*_watched(log, begin))]
 
 
 def _watched(log: Log, begin: int = 0) -> tuple[Array, Array, Array]:
     """Times, and angles and torques of both wheels, (ticks, 2), since a tick."""
     rows = log.column("tick") >= begin
-    angles, torques = (np.stack([log.column(f"{side}_{name}") for side in WHEELS], axis=1) for name in ("phi_rad", "torque"))
+    angles, torques = (
+        np.stack([log.column(f"{side}_{name}") for side in WHEELS], axis=1)
+        for name in ("phi_rad", "torque")
+    )
     return log.column("t_s")[rows], angles[rows], torques[rows]
 
 
@@ -146,7 +193,11 @@ def _lasting(t: Array, phi: Array, torque: Array) -> list[tuple[int, int]]:
     both = np.concatenate([directions(phi), np.sign(torque)], axis=1)
     way = np.where((both == both[:, :1]).all(axis=1), both[:, 0], 0).astype(int)
     edges = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), len(way)]
-    return [(first, int(way[first])) for first, end in pairwise(edges) if way[first:end].any() and t[end - 1] - t[first] >= LASTS_S]
+    return [
+        (first, int(way[first]))
+        for first, end in pairwise(edges)
+        if way[first:end].any() and t[end - 1] - t[first] >= LASTS_S
+    ]
 
 
 def bounces(t: Array, phi: Array, torque: Array) -> list[int]:
@@ -161,12 +212,20 @@ def bounces(t: Array, phi: Array, torque: Array) -> list[int]:
 def told(t: Array, phi: Array, torque: Array) -> Row:
     """What these ticks (as for `bounces`) tell of one hit.
 
-    ended: BOUNCED, or how else; before, after: mean M of both wheels in the last MEAN_S before the wall and in the end; took_s: from
-    the wall to the bounce; apart_rad: how far the right wheel's phase was ahead at the wall. What there was not is None.
+    ended: BOUNCED, or how else; before, after: mean M of both wheels in the last MEAN_S before the
+    wall and in the end; took_s: from the wall to the bounce; apart_rad: how far the right wheel's
+    phase was ahead at the wall. What there was not is None.
     """
     stretches, turned = _lasting(t, phi, torque), bounces(t, phi, torque)
     wall = _wall(t, phi, stretches[0][0]) if stretches else None
-    row: Row = {"ended": NO_WALL, "reversed": False, "before": None, "after": None, "took_s": None, "apart_rad": None}
+    row: Row = {
+        "ended": NO_WALL,
+        "reversed": False,
+        "before": None,
+        "after": None,
+        "took_s": None,
+        "apart_rad": None,
+    }
     if wall is None:
         return row
     apart = float(phi[wall, 1] - phi[wall, 0])
@@ -184,7 +243,11 @@ def _wall(t: Array, phi: Array, first: int) -> int | None:
     """The last tick before a wheel, settled since tick `first`, is slowed down."""
     speed = np.abs(travels(phi))
     cruising = (t >= t[first] + SETTLE_S) & (t < t[first] + 2 * SETTLE_S)
-    slowed = (speed < SLOWED * np.median(speed[cruising], axis=0)).any(axis=1) if cruising.any() else np.zeros(len(t), dtype=bool)
+    slowed = (
+        (speed < SLOWED * np.median(speed[cruising], axis=0)).any(axis=1)
+        if cruising.any()
+        else np.zeros(len(t), dtype=bool)
+    )
     late = np.flatnonzero(slowed & (t >= t[first] + SETTLE_S))
     return int(late[0]) - 1 if len(late) else None
 
@@ -200,7 +263,11 @@ def _stuck(ways: list[int]) -> str:
 def of(rows: list[Row], condition: Cell) -> list[Row]:
     """The hits under a condition; a real robot's, which do not say theirs, count as the paper's."""
     hits = [row for row in rows if "hit" in row]
-    return [row for row in hits if all(row.get(name, PAPER[name]) == value for name, value in condition.items())]
+    return [
+        row
+        for row in hits
+        if all(row.get(name, PAPER[name]) == value for name, value in condition.items())
+    ]
 
 
 def rate(rows: list[Row]) -> tuple[int, int]:
@@ -231,13 +298,24 @@ def _note(rows: list[Row], hits: list[Row]) -> str:
     failed = Counter(row["ended"] for row in hits if not row["reversed"])
     notes = ["{} of {}".format(*rate(hits))]
     if failed:
-        notes.append("the others: " + ", ".join(f"{how} ({count})" for how, count in failed.most_common()))
+        notes.append(
+            "the others: " + ", ".join(f"{how} ({count})" for how, count in failed.most_common())
+        )
     most = SMOOTH * ROBOT["mass"] / 2 * GRAVITY * ROBOT["wheel_radius"]
     for condition, words in (
-        (WITH_BUMPER, f"with a bumper {WIDE_M:g} m wide that gives way by {1000 / SPRINGY:g} mm to 1 N at each end:"),
+        (
+            WITH_BUMPER,
+            (
+                f"with a bumper {WIDE_M:g} m wide that gives way by {1000 / SPRINGY:g} mm to 1 N at"
+                " each end:"
+            ),
+        ),
         (
             ON_SMOOTH,
-            f"on a smooth floor of grip {SMOOTH:g}, which holds a wheel with {most:.2f} N m only, so that it turns on at the wall:",
+            (
+                f"on a smooth floor of grip {SMOOTH:g}, which holds a wheel with {most:.2f} N m"
+                " only, so that it turns on at the wall:"
+            ),
         ),
     ):
         done, tried = rate(of(rows, condition))
@@ -253,9 +331,16 @@ def _numbers(rows: list[Row], hits: list[Row]) -> dict[str, Any]:
         return float(np.median([row[name] for row in bounced])) if bounced else None
 
     grid = {
-        "grip_and_k": [[[grip, k], *rate(of(rows, {**PAPER, "grip": grip, "k": k}))] for grip in GRIPS for k in KS],
+        "grip_and_k": [
+            [[grip, k], *rate(of(rows, {**PAPER, "grip": grip, "k": k}))]
+            for grip in GRIPS
+            for k in KS
+        ],
         "stiffness_and_bumper": [
-            [[stiffness, bumper], *rate(of(rows, {**PAPER, "stiffness": stiffness, "bumper": bumper}))]
+            [
+                [stiffness, bumper],
+                *rate(of(rows, {**PAPER, "stiffness": stiffness, "bumper": bumper})),
+            ]
             for stiffness in STIFFNESSES
             for bumper in BUMPERS
         ],

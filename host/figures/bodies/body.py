@@ -1,4 +1,7 @@
-"""The course of a simulated body: its path from above, its wheels' speeds, and their order parameter."""
+"""The course of a simulated body.
+
+Its path from above, its wheels' speeds, and their order parameter.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,16 @@ from host.figures.style import COLOURS, SIZE, styled
 from sim_motor.bodies.measures import Array, course, order
 
 
-def draw(columns: tuple[str, ...], rows: Array, summary: dict[str, Any], kicked_s: list[float]) -> Figure:
+def draw(
+    columns: tuple[str, ...], rows: Array, summary: dict[str, Any], kicked_s: list[float]
+) -> Figure:
     """The figure of a body's rows. kicked_s: when it was kicked."""
     moved = course(columns, rows)
     with styled():
         figure = Figure(**SIZE)
-        axes: Any = figure.subplot_mosaic([["path", "speed"], ["path", "order"]], width_ratios=(1.0, 1.25))
+        axes: Any = figure.subplot_mosaic(
+            [["path", "speed"], ["path", "order"]], width_ratios=(1.0, 1.25)
+        )
         _draw_path(axes["path"], moved.centre_m, columns, rows)
         axes["speed"].plot(moved.t_s, moved.omega, color=COLOURS[0], linewidth=0.6, alpha=0.5)
         axes["speed"].plot(moved.t_s, moved.omega.mean(axis=1), color="black", linewidth=1.5)
@@ -29,16 +36,33 @@ def draw(columns: tuple[str, ...], rows: Array, summary: dict[str, Any], kicked_
             axes["speed"].axvline(time_s, color=COLOURS[1], linewidth=1.0, linestyle=":")
         for time_s in kicked_s:
             axes["speed"].axvline(time_s, color=COLOURS[3], linewidth=1.5)
-        figure.legend(handles=_legend(bool(summary["reversals"]), bool(kicked_s)), loc="outside lower center", ncols=4, fontsize=11)
+        figure.legend(
+            handles=_legend(bool(summary["reversals"]), bool(kicked_s)),
+            loc="outside lower center",
+            ncols=4,
+            fontsize=11,
+        )
         figure.suptitle(_title(summary), fontsize=15)
     return figure
 
 
 def _draw_path(axes: Any, centre: Array, columns: tuple[str, ...], rows: Array) -> None:
-    head, tail = (rows[:, [columns.index(f"{car}_{axis}_m") for axis in "xy"]] for car in ("car0", _last(columns)))
+    head, tail = (
+        rows[:, [columns.index(f"{car}_{axis}_m") for axis in "xy"]]
+        for car in ("car0", _last(columns))
+    )
     axes.plot(*centre[:, :2].T, color=COLOURS[0])
-    axes.plot(*centre[0, :2], marker="o", markersize=9, markerfacecolor="white", markeredgecolor="black", linestyle="none")
-    axes.plot(*np.array([head[-1], tail[-1]]).T, color=COLOURS[4], linewidth=5, solid_capstyle="round")
+    axes.plot(
+        *centre[0, :2],
+        marker="o",
+        markersize=9,
+        markerfacecolor="white",
+        markeredgecolor="black",
+        linestyle="none",
+    )
+    axes.plot(
+        *np.array([head[-1], tail[-1]]).T, color=COLOURS[4], linewidth=5, solid_capstyle="round"
+    )
     axes.plot(*head[-1], marker="o", markersize=9, color=COLOURS[4])
     axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", adjustable="datalim")
 
@@ -51,7 +75,15 @@ def _legend(reversed_: bool, kicked: bool) -> list[Line2D]:
     handles = [
         Line2D([], [], color=COLOURS[0], label="path of the centre, wheels"),
         Line2D([], [], color="black", label="mean of all wheels"),
-        Line2D([], [], marker="o", color="black", markerfacecolor="white", linestyle="none", label="start"),
+        Line2D(
+            [],
+            [],
+            marker="o",
+            color="black",
+            markerfacecolor="white",
+            linestyle="none",
+            label="start",
+        ),
         Line2D([], [], marker="o", color=COLOURS[4], linewidth=5, label="end, with its head"),
     ]
     if reversed_:
@@ -65,5 +97,12 @@ def _title(summary: dict[str, Any]) -> str:
     cars = "a car" if summary["cars"] == 1 else f"a train of {summary['cars']} cars"
     count = len(summary["reversals"])
     words = f"{cars} ({summary['preset']}, {summary['scene']}): {summary['mean_speed']:.2f} m/s, "
-    words += f"{count} reversal{'' if count == 1 else 's'} in {summary['time_s']:.0f} s, order {summary['order_parameter']:.2f}"
-    return words[0].upper() + words[1:] + "".join(f", {what}" for what in ("stuck", "flipped") if summary[what])
+    words += (
+        f"{count} reversal{'' if count == 1 else 's'} in {summary['time_s']:.0f} s, order"
+        f" {summary['order_parameter']:.2f}"
+    )
+    return (
+        words[0].upper()
+        + words[1:]
+        + "".join(f", {what}" for what in ("stuck", "flipped") if summary[what])
+    )

@@ -1,4 +1,7 @@
-"""The route to locomotion of the car: what its starts come to over k, and how fast it rolls beside the formula."""
+"""The route to locomotion of the car.
+
+What its starts come to over k, and how fast it rolls beside the formula.
+"""
 
 from __future__ import annotations
 
@@ -29,16 +32,23 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         grid[0, 0].set_ylabel("starts (%)")
         grid[1, 0].set_ylabel(r"$|\omega|$ of the wheels (rad/s)")
         style: Any = {"loc": "outside lower center", "ncols": 3, "fontsize": 11}
-        handles = [*zip(*grid[0, 0].get_legend_handles_labels(), strict=True), *zip(*grid[1, 0].get_legend_handles_labels(), strict=True)]
+        handles = [
+            *zip(*grid[0, 0].get_legend_handles_labels(), strict=True),
+            *zip(*grid[1, 0].get_legend_handles_labels(), strict=True),
+        ]
         figure.legend(*zip(*handles, strict=True), **style)
-        figure.suptitle("A car with one rod for each wheel: rest, forth and back, rolling", fontsize=16)
+        figure.suptitle(
+            "A car with one rod for each wheel: rest, forth and back, rolling", fontsize=16
+        )
     return figure
 
 
 def _draw_shares(axes: Axes, route: list[dict[str, Any]]) -> None:
     ks, below = np.array([one["k"] for one in route]), np.zeros(len(route))
     for kind in KINDS:
-        shares = np.array([100 * one["kinds"].get(kind, 0) / sum(one["kinds"].values()) for one in route])
+        shares = np.array(
+            [100 * one["kinds"].get(kind, 0) / sum(one["kinds"].values()) for one in route]
+        )
         axes.bar(ks, shares, bottom=below, color=_SHADES[kind], label=kind, width=0.26 * ks)
         below += shares
 
@@ -46,9 +56,20 @@ def _draw_shares(axes: Axes, route: list[dict[str, Any]]) -> None:
 def _draw_speeds(axes: Axes, route: list[dict[str, Any]], a: float, tau: float) -> None:
     ks = np.geomspace(KS[0], KS[-1], 400)
     speeds = [rolling_rad_s(car({"a": a, "tau": tau, "k": float(k)})) for k in ks]
-    axes.plot(ks, [np.nan if speed is None else speed for speed in speeds], color="black", label=r"formula for $\omega^*$")
+    axes.plot(
+        ks,
+        [np.nan if speed is None else speed for speed in speeds],
+        color="black",
+        label=r"formula for $\omega^*$",
+    )
     measured = [(one["k"], speed) for one in route for speed in one["rolling_rad_s"]]
-    axes.plot([k for k, _ in measured], [speed for _, speed in measured], "o", color=COLOURS[0], label=r"$|\omega|$ of cars that roll")
+    axes.plot(
+        [k for k, _ in measured],
+        [speed for _, speed in measured],
+        "o",
+        color=COLOURS[0],
+        label=r"$|\omega|$ of cars that roll",
+    )
     axes.set_xscale("log")
     axes.set_xticks(_TICKS, [f"{k:g}" for k in _TICKS])
     axes.set_ylim(bottom=0)

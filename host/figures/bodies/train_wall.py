@@ -15,7 +15,11 @@ _WALL_M = 4.35
 _LINES: tuple[tuple[str, dict[str, bool], dict[str, Any]], ...] = (
     ("dead walls", {"controller": True, "bouncy": False}, {"color": COLOURS[0]}),
     ("bouncy walls", {"controller": True, "bouncy": True}, {"color": COLOURS[1]}),
-    ("constant torque, dead walls", {"controller": False, "bouncy": False}, {"color": "black", "linestyle": "--"}),
+    (
+        "constant torque, dead walls",
+        {"controller": False, "bouncy": False},
+        {"color": "black", "linestyle": "--"},
+    ),
 )
 
 
@@ -26,10 +30,21 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         grid = figure.subplots(len(TRAINS), 2, width_ratios=(3.2, 1), sharex="col")
         for (way, counts), train in zip(grid, TRAINS, strict=True):
             _draw_way(way, rows, train)
-            _draw_counts(counts, [kind for kind in findings.numbers["kinds"] if all(kind[name] == train[name] for name in train)])
+            _draw_counts(
+                counts,
+                [
+                    kind
+                    for kind in findings.numbers["kinds"]
+                    if all(kind[name] == train[name] for name in train)
+                ],
+            )
         grid[-1][0].set_xlabel("time (s)")
         style: Any = {"loc": "outside lower center", "ncols": len(_LINES), "fontsize": 12}
-        figure.suptitle("A train between two walls 8.7 m apart (grey): first run of each, and all runs' reversals", fontsize=15)
+        figure.suptitle(
+            "A train between two walls 8.7 m apart (grey): first run of each, and all runs'"
+            " reversals",
+            fontsize=15,
+        )
         figure.legend(*grid[0][0].get_legend_handles_labels(), **style)
     return figure
 
@@ -39,7 +54,11 @@ def _draw_way(axes: Axes, rows: list[Row], train: Cell) -> None:
         axes.axhline(wall, color="grey", linewidth=5, alpha=0.5)
     for name, kind, style in _LINES:
         fields = {**train, **kind}
-        own = [row for row in rows if "t_s" in row and all(row[field] == value for field, value in fields.items())]
+        own = [
+            row
+            for row in rows
+            if "t_s" in row and all(row[field] == value for field, value in fields.items())
+        ]
         axes.plot([row["t_s"] for row in own], [row["x_m"] for row in own], label=name, **style)
     axes.set_title(name_of(train), loc="left", fontsize=13)
     axes.set(ylabel="middle, $x$ (m)", ylim=(-5, 5))

@@ -1,4 +1,7 @@
-"""The robot that was measured against the model that was fitted to it: speeds, angles that are left over, and the table of constants."""
+"""The robot that was measured against the model that was fitted to it.
+
+Speeds, angles that are left over, and the table of constants.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +49,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     )
     with styled():
         figure = Figure(**SIZE)
-        places = figure.subplot_mosaic([["speeds 0", "speeds 1"], ["errors 0", "errors 1"], ["table", "table"]], height_ratios=(4, 2, 4))
+        places = figure.subplot_mosaic(
+            [["speeds 0", "speeds 1"], ["errors 0", "errors 1"], ["table", "table"]],
+            height_ratios=(4, 2, 4),
+        )
         for row, label in (("speeds", "speed (rad/s)"), ("errors", "model less\nrobot (°)")):
             places[row + " 0"].set_ylabel(label)
             places[row + " 1"].sharey(places[row + " 0"])
@@ -66,11 +72,16 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
 
 
 def _constants(findings: Findings, side: str) -> Any:
-    return constants_of(Traits(**findings.numbers["traits"][side]), load(BASE), findings.numbers["battery_v"])
+    return constants_of(
+        Traits(**findings.numbers["traits"][side]), load(BASE), findings.numbers["battery_v"]
+    )
 
 
 def _speed(angles: Array, times: Array) -> Array:
-    return np.asarray((angles[2 * _REACH :] - angles[: -2 * _REACH]) / (times[2 * _REACH :] - times[: -2 * _REACH]))
+    return np.asarray(
+        (angles[2 * _REACH :] - angles[: -2 * _REACH])
+        / (times[2 * _REACH :] - times[: -2 * _REACH])
+    )
 
 
 def _pieces(drive: Drive, chosen: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
@@ -79,24 +90,48 @@ def _pieces(drive: Drive, chosen: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
     return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
 
 
-def _draw_speeds(axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]) -> None:
+def _draw_speeds(
+    axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]
+) -> None:
     for index, side in enumerate(WHEELS):
         drive = drives[side]
         for number, piece in enumerate(_pieces(drive, chosen)):
             when = drive.times[piece][_REACH:-_REACH]
             label: Any = {} if number else {"label": f"{side}: robot"}
             measured = _speed(drive.angles[piece], drive.times[piece])
-            axes.plot(when, measured, "o", color=COLOURS[index], markersize=_SIZES[index], alpha=0.6, markeredgewidth=0, **label)
+            axes.plot(
+                when,
+                measured,
+                "o",
+                color=COLOURS[index],
+                markersize=_SIZES[index],
+                alpha=0.6,
+                markeredgewidth=0,
+                **label,
+            )
             label = {} if number else {"label": f"{side}: model"}
-            axes.plot(when, _speed(models[side][piece], drive.times[piece]), color=COLOURS[index], linewidth=1.3, **label)
+            axes.plot(
+                when,
+                _speed(models[side][piece], drive.times[piece]),
+                color=COLOURS[index],
+                linewidth=1.3,
+                **label,
+            )
 
 
-def _draw_errors(axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]) -> None:
+def _draw_errors(
+    axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]
+) -> None:
     axes.axhspan(-0.5, 0.5, color="lightgrey", alpha=0.7, linewidth=0)
     for index, side in enumerate(WHEELS):
         drive = drives[side]
         for piece in _pieces(drive, chosen):
-            axes.plot(drive.times[piece], np.degrees(models[side] - drive.angles)[piece], color=COLOURS[index], linewidth=1.0)
+            axes.plot(
+                drive.times[piece],
+                np.degrees(models[side] - drive.angles)[piece],
+                color=COLOURS[index],
+                linewidth=1.0,
+            )
 
 
 def _draw_table(axes: Axes, findings: Findings) -> None:
@@ -106,7 +141,12 @@ def _draw_table(axes: Axes, findings: Findings) -> None:
         cells.append([label, unit, *(_value(findings, side, name, factor) for side in WHEELS)])
     titles = ["constant (95 % interval)", "unit", *WHEELS]
     table = axes.table(
-        cells, colLabels=titles, cellLoc="left", colLoc="left", colWidths=(0.34, 0.1, 0.28, 0.28), bbox=Bbox.from_bounds(0, -0.05, 1, 1.05)
+        cells,
+        colLabels=titles,
+        cellLoc="left",
+        colLoc="left",
+        colWidths=(0.34, 0.1, 0.28, 0.28),
+        bbox=Bbox.from_bounds(0, -0.05, 1, 1.05),
     )
     table.auto_set_font_size(False)
     table.set_fontsize(11)
@@ -121,6 +161,12 @@ def _value(findings: Findings, side: str, name: str, factor: float) -> str:
     """To as many decimals as the intervals are worth."""
     value = findings.numbers["traits"][side][name] * factor
     low, high = (bound * factor for bound in findings.numbers["intervals"][side][name])
-    widest = max(end - begin for begin, end in (each[name] for each in findings.numbers["intervals"].values())) * factor
+    widest = (
+        max(
+            end - begin
+            for begin, end in (each[name] for each in findings.numbers["intervals"].values())
+        )
+        * factor
+    )
     decimals = max(0, 1 - floor(log10(widest)))
     return f"{value:.{decimals}f}  ({low:.{decimals}f} to {high:.{decimals}f})"

@@ -9,7 +9,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.robot.chaos import SEEN, TAU_S, TWIN_S, UNSEEN, by_part, chosen, column, intervals_s, is_chaotic
+from host.experiments.robot.chaos import (
+    SEEN,
+    TAU_S,
+    TWIN_S,
+    UNSEEN,
+    by_part,
+    chosen,
+    column,
+    intervals_s,
+    is_chaotic,
+)
 from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES, switches
 from host.figures.robot.kick import STALL_TORQUE
 from host.figures.style import COLOURS, SIZE, styled
@@ -18,27 +28,54 @@ from sim_motor.settling import COUNT_RAD
 
 STRETCH_S = 20.0
 _BEGINS_S = {ORDINARY: 0.0, DELAYED: 60.0}
-_TWINS = ((DELAYED, SEEN, DELAYED, (2.0, 0.8)), (ORDINARY, SEEN, ORDINARY, (8.5, 2e-3)), (DELAYED, UNSEEN, "below the steps", (2.4, 1e-7)))
+_TWINS = (
+    (DELAYED, SEEN, DELAYED, (2.0, 0.8)),
+    (ORDINARY, SEEN, ORDINARY, (8.5, 2e-3)),
+    (DELAYED, UNSEEN, "below the steps", (2.4, 1e-7)),
+)
 _SMALL = 11
-_ABOVE: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "fontsize": _SMALL, "borderaxespad": 0.2, "columnspacing": 1.2}
+_ABOVE: Any = {
+    "loc": "lower left",
+    "bbox_to_anchor": (0.0, 1.0),
+    "fontsize": _SMALL,
+    "borderaxespad": 0.2,
+    "columnspacing": 1.2,
+}
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
-    """The figure of the experiment's rows: of a robot its two wheels, of a simulated one also the conditions, the twins and the map."""
+    """The figure of the experiment's rows.
+
+    Of a robot its two wheels, of a simulated one also the conditions, the twins and the map.
+    """
     parts = by_part(rows)
     explained = bool(parts["map"])
     wheels = list(dict.fromkeys((row["condition"], row["side"]) for row in parts["series"]))
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 16.0 if explained else 9.0)})
-        grid = figure.add_gridspec(5 if explained else 3, 2, height_ratios=(2, 2, 4, 4, 3) if explained else (2, 2, 4))
+        grid = figure.add_gridspec(
+            5 if explained else 3, 2, height_ratios=(2, 2, 4, 4, 3) if explained else (2, 2, 4)
+        )
         for place, (condition, side) in enumerate(wheels):
             series = chosen(parts["series"], condition=condition, side=side)
-            _draw_torque(figure.add_subplot(grid[place, :]), series, condition if explained else f"{side} wheel", _BEGINS_S[condition])
-        shown = [chosen(parts["series"], condition=condition, side=side) for condition, side in (wheels[1:] if explained else wheels)]
+            _draw_torque(
+                figure.add_subplot(grid[place, :]),
+                series,
+                condition if explained else f"{side} wheel",
+                _BEGINS_S[condition],
+            )
+        shown = [
+            chosen(parts["series"], condition=condition, side=side)
+            for condition, side in (wheels[1:] if explained else wheels)
+        ]
         _draw_return_map(figure.add_subplot(grid[2, 0]), shown)
         if explained:
             _draw_twins(figure.add_subplot(grid[2, 1]), parts["twins"])
-            _draw_lives(figure.add_subplot(grid[3, :]), parts["lives"], max(row["t_s"] for row in parts["series"]))
+            _draw_lives(
+                figure.add_subplot(grid[3, :]),
+                parts["lives"],
+                max(row["t_s"] for row in parts["series"]),
+            )
             _draw_map(figure.add_subplot(grid[4, :]), parts["map"])
         else:
             _draw_intervals(figure.add_subplot(grid[2, 1]), shown)
@@ -70,14 +107,21 @@ def _draw_return_map(axes: Axes, shown: list[list[Row]]) -> None:
     axes.set_ylabel("angle of the next (deg)")
     axes.set_xticks((0, 30, 60, 90))
     axes.set_yticks((0, 30, 60, 90))
-    axes.set_title("return map" + (", " + DELAYED if len(shown) == 1 else ""), fontsize=13, loc="left")
+    axes.set_title(
+        "return map" + (", " + DELAYED if len(shown) == 1 else ""), fontsize=13, loc="left"
+    )
 
 
 def _draw_intervals(axes: Axes, shown: list[list[Row]]) -> None:
     """How long the wheels went one way."""
     for series, colour in zip(shown, COLOURS, strict=False):
         axes.hist(
-            intervals_s(series), bins=np.arange(0.0, 4.0, 0.1).tolist(), histtype="step", color=colour, linewidth=2, label=series[0]["side"]
+            intervals_s(series),
+            bins=np.arange(0.0, 4.0, 0.1).tolist(),
+            histtype="step",
+            color=colour,
+            linewidth=2,
+            label=series[0]["side"],
         )
     axes.set_xlabel("time between switches (s)")
     axes.set_ylabel("count")
@@ -132,8 +176,18 @@ def _draw_twins(axes: Axes, rows: list[Row]) -> None:
 def _draw_map(axes: Axes, rows: list[Row]) -> None:
     """The share of wheels that are chaotic."""
     latencies, inertias = (sorted({row[name] for row in rows}) for name in ("latency_s", "inertia"))
-    shares = np.array([[np.mean([is_chaotic(row) for row in chosen(rows, latency_s=x, inertia=y)]) for x in latencies] for y in inertias])
-    image = axes.imshow(100 * shares, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=100)
+    shares = np.array(
+        [
+            [
+                np.mean([is_chaotic(row) for row in chosen(rows, latency_s=x, inertia=y)])
+                for x in latencies
+            ]
+            for y in inertias
+        ]
+    )
+    image = axes.imshow(
+        100 * shares, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=100
+    )
     axes.set_xticks(range(len(latencies)), [f"{1000 * latency:g}" for latency in latencies])
     axes.set_yticks(range(len(inertias)), [f"{inertia:g}" for inertia in inertias])
     axes.set_xlabel("latency of the motors (ms)")
@@ -141,4 +195,6 @@ def _draw_map(axes: Axes, rows: list[Row]) -> None:
     own = latencies.index(min(latencies)), inertias.index(1.0)
     axes.plot(*own, marker="*", color="white", markersize=14)
     axes.figure.colorbar(image, ax=axes, label="chaotic wheels (%)", fraction=0.06, pad=0.02)
-    axes.set_title("where it is chaotic ($\\bigstar$: published constants)", fontsize=13, loc="left")
+    axes.set_title(
+        "where it is chaotic ($\\bigstar$: published constants)", fontsize=13, loc="left"
+    )

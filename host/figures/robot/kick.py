@@ -1,4 +1,7 @@
-"""The paper's timeline of a kick (fig. kick_control_timeline): potentials and torque of both wheels, and below how fast they turn."""
+"""The paper's timeline of a kick (fig. kick_control_timeline).
+
+Potentials and torque of both wheels, and below how fast they turn.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,8 @@ from host.logs.log import Log
 from host.logs.tap import Event
 from robot.kicks import WHEELS
 
-# What to show of one kick: two turns of the wheels before it, and long enough after it for them to settle.
+# What to show of one kick: two turns of the wheels before it, and long enough after it for them to
+# settle.
 KICK_WINDOW_S = (-1.0, 2.0)
 STALL_TORQUE = 0.1  # friction holds a wheel at torques below this one (paper, section 'Robot')
 
@@ -41,7 +45,11 @@ def spans(log: Log, begin: int = 0) -> list[Span]:
     found = []
     for row, kick in log.kicks():
         after = row
-        while after < len(log) and log.records[after].kick and log.records[after].tick < kick["begin"] + kick["ticks"]:
+        while (
+            after < len(log)
+            and log.records[after].kick
+            and log.records[after].tick < kick["begin"] + kick["ticks"]
+        ):
             after += 1
         if begin <= row < after:
             last = log.records[after - 1]
@@ -56,12 +64,19 @@ def _label(kick: Event) -> str:
     return f"{kick['mode']} kick, {ticks}{wheel}"
 
 
-def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | None = None, zero_tick: int | None = None) -> Path:
+def draw(
+    log: Log,
+    path: str | Path,
+    title: str,
+    window: tuple[float, float] | None = None,
+    zero_tick: int | None = None,
+) -> Path:
     """Draw a PNG, 1600 pixels wide, at `path`, over whatever the file held.
 
-    window: the stretch (s) to show as far as there is data, in the figure's own time, which is 0 at the begin of zero_tick; all of
-    the log by default. zero_tick: by default that of the log's first kick, or of the log if it has none. Of a robot that began anew
-    only what came after is shown. ValueError if there are no ticks, or not that one.
+    window: the stretch (s) to show as far as there is data, in the figure's own time, which is 0 at
+    the begin of zero_tick; all of the log by default. zero_tick: by default that of the log's first
+    kick, or of the log if it has none. Of a robot that began anew only what came after is shown.
+    ValueError if there are no ticks, or not that one.
     """
     begin = max([0, *log.restarts()])
     if begin >= len(log):
@@ -69,7 +84,9 @@ def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | N
     kicks = spans(log, begin)
     zero_s = kicks[0].begin_s if kicks else log.records[begin].t_s
     if zero_tick is not None:
-        zero_s = next((record.t_s for record in log.records[begin:] if record.tick == zero_tick), nan)
+        zero_s = next(
+            (record.t_s for record in log.records[begin:] if record.tick == zero_tick), nan
+        )
         if isnan(zero_s):
             raise ValueError(f"tick {zero_tick} is not in the log")
     first_s, last_s = log.records[begin].t_s - zero_s, log.records[-1].t_s - zero_s
@@ -95,7 +112,9 @@ def draw(log: Log, path: str | Path, title: str, window: tuple[float, float] | N
     return Path(path)
 
 
-def _line(axes: Axes, log: Log, begin: int, zero_s: float, values: NDArray[Any], **style: Any) -> None:
+def _line(
+    axes: Axes, log: Log, begin: int, zero_s: float, values: NDArray[Any], **style: Any
+) -> None:
     """A curve over time, broken where ticks are missing."""
     breaks = np.flatnonzero(np.diff(log.column("tick")[begin:]) != 1) + 1
     t = log.column("t_s")[begin:] - zero_s
@@ -103,12 +122,32 @@ def _line(axes: Axes, log: Log, begin: int, zero_s: float, values: NDArray[Any],
 
 
 def _draw_neurons(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
-    axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", alpha=0.6, linewidth=0, label=f"$|M| < {STALL_TORQUE:g}$: stall")
+    axes.axhspan(
+        -STALL_TORQUE,
+        STALL_TORQUE,
+        color="lightgrey",
+        alpha=0.6,
+        linewidth=0,
+        label=f"$|M| < {STALL_TORQUE:g}$: stall",
+    )
     for side in WHEELS:
         for number, color in enumerate(_POTENTIALS[side], 1):
-            _line(axes, log, begin, zero_s, log.column(f"{side}_x{number}"), color=color, label=f"$x_{number}$ {side}")
+            _line(
+                axes,
+                log,
+                begin,
+                zero_s,
+                log.column(f"{side}_x{number}"),
+                color=color,
+                label=f"$x_{number}$ {side}",
+            )
     for side in WHEELS:
-        style: Any = {"color": _WHEEL[side], "linewidth": _WIDTH[side], "drawstyle": "steps-post", "label": f"$M$ {side}"}
+        style: Any = {
+            "color": _WHEEL[side],
+            "linewidth": _WIDTH[side],
+            "drawstyle": "steps-post",
+            "label": f"$M$ {side}",
+        }
         _line(axes, log, begin, zero_s, log.column(side + "_torque"), **style)
     axes.set_ylabel("potentials $x$, torque $M$")
     axes.set_yticks((-1, -0.5, 0, 0.5, 1))
@@ -117,7 +156,16 @@ def _draw_neurons(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
 def _draw_speeds(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
     axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
     for side in WHEELS:
-        _line(axes, log, begin, zero_s, log.omega(side) / (2 * np.pi), color=_WHEEL[side], linewidth=_WIDTH[side], label=side)
+        _line(
+            axes,
+            log,
+            begin,
+            zero_s,
+            log.omega(side) / (2 * np.pi),
+            color=_WHEEL[side],
+            linewidth=_WIDTH[side],
+            label=side,
+        )
     axes.legend(ncols=2, handlelength=1.4)
     axes.set_ylabel(r"$\omega/2\pi$ (Hz)")
 
@@ -130,10 +178,29 @@ def _name(axes: Axes, kicks: list[Span], first_s: float, last_s: float) -> None:
         width_s = character_s * len(span.label)
         fits = span.begin_s + width_s <= last_s
         left_s = span.begin_s if fits else span.begin_s - width_s
-        level = next((level for level, end_s in enumerate(line_ends) if end_s <= left_s), len(line_ends))
+        level = next(
+            (level for level, end_s in enumerate(line_ends) if end_s <= left_s), len(line_ends)
+        )
         line_ends[level : level + 1] = [left_s + width_s]
-        place: Any = {"ha": "left", "xytext": (5, 0)} if fits else {"ha": "right", "xytext": (-5, 0)}
+        place: Any = (
+            {"ha": "left", "xytext": (5, 0)} if fits else {"ha": "right", "xytext": (-5, 0)}
+        )
         spot = (span.end_s if fits else span.begin_s, 1.22 + 0.2 * level)
-        axes.annotate(span.label, spot, textcoords="offset points", va="center", color=_KICK, bbox=_PLATE, **place)
+        axes.annotate(
+            span.label,
+            spot,
+            textcoords="offset points",
+            va="center",
+            color=_KICK,
+            bbox=_PLATE,
+            **place,
+        )
     axes.set_ylim(-1.15, 1.15 + 0.2 * len(line_ends))
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=7, columnspacing=1.2, handlelength=1.4, handletextpad=0.5)
+    axes.legend(
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=7,
+        columnspacing=1.2,
+        handlelength=1.4,
+        handletextpad=0.5,
+    )

@@ -28,7 +28,9 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         for index, (label, mode, named) in enumerate(_CURVES):
             _draw_rate(rates, rows, index, label, mode, named)
         done, tried = rate(points(rows, MEMBRANE, 1))
-        rates.axhline(100 * done / tried, color="black", linestyle=":", label="membrane inverted (one tick)")
+        rates.axhline(
+            100 * done / tried, color="black", linestyle=":", label="membrane inverted (one tick)"
+        )
         rates.set_ylabel("reversed (%)")
         rates.set_ylim(-4, 104)
         rates.legend(loc="center", fontsize=11)
@@ -38,25 +40,47 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         times.set_xlabel("length of the kick (ticks)")
         times.set_xticks(LENGTHS)
         times.set_ylim(bottom=0)
-        trials = max(len(points(rows, mode, ticks, named)) for _, mode, named in _CURVES for ticks in LENGTHS)
-        figure.suptitle(f"Which kicks reverse a wheel: {trials} trials a point, with 95 % intervals", fontsize=16)
+        trials = max(
+            len(points(rows, mode, ticks, named)) for _, mode, named in _CURVES for ticks in LENGTHS
+        )
+        figure.suptitle(
+            f"Which kicks reverse a wheel: {trials} trials a point, with 95 % intervals",
+            fontsize=16,
+        )
     return figure
 
 
-def _draw_rate(axes: Axes, rows: list[Row], index: int, label: str, mode: str, named: bool | None) -> None:
+def _draw_rate(
+    axes: Axes, rows: list[Row], index: int, label: str, mode: str, named: bool | None
+) -> None:
     counts = [rate(points(rows, mode, ticks, named)) for ticks in LENGTHS]
     shares = np.array([100 * done / tried if tried else np.nan for done, tried in counts])
-    low, high = (np.array(bounds) * 100 for bounds in zip(*(wilson(*count) for count in counts), strict=True))
+    low, high = (
+        np.array(bounds) * 100 for bounds in zip(*(wilson(*count) for count in counts), strict=True)
+    )
     errors = np.abs([shares - low, high - shares])
     place = np.array(LENGTHS) + 0.08 * (index - 1)
-    axes.errorbar(place, shares, errors, color=COLOURS[index], marker=_MARKERS[index], capsize=4, label=label)
+    axes.errorbar(
+        place, shares, errors, color=COLOURS[index], marker=_MARKERS[index], capsize=4, label=label
+    )
 
 
 def _draw_times(axes: Axes, rows: list[Row], index: int, mode: str, named: bool | None) -> None:
     """Median and quartiles."""
     for ticks in LENGTHS:
-        times = [row["settling_s"] for row in points(rows, mode, ticks, named) if row["reversed"] and row["settling_s"] is not None]
+        times = [
+            row["settling_s"]
+            for row in points(rows, mode, ticks, named)
+            if row["reversed"] and row["settling_s"] is not None
+        ]
         if times:
             low, median, high = np.quantile(times, (0.25, 0.5, 0.75))
             bars = [[median - low], [high - median]]
-            axes.errorbar(ticks + 0.08 * (index - 1), median, bars, color=COLOURS[index], marker=_MARKERS[index], capsize=4)
+            axes.errorbar(
+                ticks + 0.08 * (index - 1),
+                median,
+                bars,
+                color=COLOURS[index],
+                marker=_MARKERS[index],
+                capsize=4,
+            )

@@ -1,4 +1,7 @@
-"""The rods of a wheel at work, drawn as in the paper's fig. sketch_robot: a film's pictures, with potentials and torque beside them."""
+"""The rods of a wheel at work, drawn as in the paper's fig. sketch_robot.
+
+A film's pictures, with potentials and torque beside them.
+"""
 
 from __future__ import annotations
 
@@ -28,12 +31,20 @@ _COILS = 7
 
 
 def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
-    """A picture for each time of the course, (height, width, 3). slower: than life, as the film says."""
+    """A picture for each time of the course, (height, width, 3). slower.
+
+    Than life, as the film says.
+    """
     with styled():
         figure = Figure(figsize=(SIZE[0] / _DPI, SIZE[1] / _DPI), dpi=_DPI)
         canvas: Any = FigureCanvasAgg(figure)
         wheel, neurons, torque = (
-            figure.add_axes(place) for place in ((0.0, 0.0, 0.5, 1.0), (0.585, 0.52, 0.395, 0.36), (0.585, 0.13, 0.395, 0.29))
+            figure.add_axes(place)
+            for place in (
+                (0.0, 0.0, 0.5, 1.0),
+                (0.585, 0.52, 0.395, 0.36),
+                (0.585, 0.13, 0.395, 0.29),
+            )
         )
         machine = _Machine(wheel)
         turning = np.gradient(course.phi)
@@ -51,7 +62,13 @@ def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
                 line.set_data(course.t_s[: number + 1], values[: number + 1])
                 dot.set_data([now_s], [values[number]])
             acts = 0.0 <= now_s < course.kick_s
-            way.set_text(f"{course.kick} kick" if acts else "forward" if turning[number] > 0.0 else "backward")
+            way.set_text(
+                f"{course.kick} kick"
+                if acts
+                else "forward"
+                if turning[number] > 0.0
+                else "backward"
+            )
             way.set_color(_KICK if acts else "black")
             canvas.restore_region(still)
             for artist in moving:
@@ -59,10 +76,15 @@ def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
             yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
-def _curves(neurons: Axes, torque: Axes, course: Course) -> list[tuple[Line2D, Line2D, NDArray[np.float64]]]:
+def _curves(
+    neurons: Axes, torque: Axes, course: Course
+) -> list[tuple[Line2D, Line2D, NDArray[np.float64]]]:
     """Empty curves (line, its newest point, values), in axes that hold all of the course."""
     found = []
-    rows = [(neurons, course.potentials[number], _POTENTIALS[number], f"$x_{number + 1}$") for number in range(2)]
+    rows = [
+        (neurons, course.potentials[number], _POTENTIALS[number], f"$x_{number + 1}$")
+        for number in range(2)
+    ]
     for axes, values, colour, name in (*rows, (torque, course.torque, "black", "$M$")):
         (line,) = axes.plot([], [], color=colour, label=name, drawstyle="steps-post")
         (dot,) = axes.plot([], [], "o", color=colour, markersize=6)
@@ -74,7 +96,14 @@ def _curves(neurons: Axes, torque: Axes, course: Course) -> list[tuple[Line2D, L
         axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
         axes.axvspan(0.0, course.kick_s, color=_KICK, alpha=0.25, linewidth=0)
     neurons.set_ylabel("potentials")
-    neurons.legend(loc="lower right", bbox_to_anchor=(1.0, 0.94), ncols=2, handlelength=1.2, fontsize=12, borderpad=0.1)
+    neurons.legend(
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.94),
+        ncols=2,
+        handlelength=1.2,
+        fontsize=12,
+        borderpad=0.1,
+    )
     neurons.tick_params(labelbottom=False)
     torque.set_ylabel("torque $M$")
     torque.set_xlabel("time since the kick (s)", labelpad=2)
@@ -101,15 +130,29 @@ class _Machine:
         (self._pin,) = axes.plot([], [], "o", color=_ACTUAL, markersize=11, markeredgecolor="black")
         (self._seen,) = axes.plot([], [], "o", markersize=15, **_RING)
         # From the backmost to the foremost.
-        self.moving = (self._spoke, *self._rods, *self._springs, *self._targets, *self._heads, self._pin, self._seen)
+        self.moving = (
+            self._spoke,
+            *self._rods,
+            *self._springs,
+            *self._targets,
+            *self._heads,
+            self._pin,
+            self._seen,
+        )
         for number, at in enumerate((-1.0, 0.0, 1.0)):
             for rod in range(2):
-                axes.plot(*_place(rod, [at, at], [2 * _ASIDE + 0.05, 2 * _ASIDE + 0.17]), color="grey", linewidth=1.2)
+                axes.plot(
+                    *_place(rod, [at, at], [2 * _ASIDE + 0.05, 2 * _ASIDE + 0.17]),
+                    color="grey",
+                    linewidth=1.2,
+                )
                 text: Any = {"ha": "center", "va": "center", "fontsize": 11, "color": "dimgrey"}
                 (x,), (y,) = _place(rod, [at], [2 * _ASIDE + 0.36])
                 axes.text(float(x), float(y), f"{number - 1}", **text)
         for rod in range(2):
-            axes.plot(*_place(rod, [-1.0, 1.0], [2 * _ASIDE + 0.05] * 2), color="grey", linewidth=1.2)
+            axes.plot(
+                *_place(rod, [-1.0, 1.0], [2 * _ASIDE + 0.05] * 2), color="grey", linewidth=1.2
+            )
         _explain(axes)
 
     def show(self, course: Course, number: int) -> None:
@@ -124,12 +167,17 @@ class _Machine:
             head = _place(rod, [actual], [0.0])
             self._rods[rod].set_data([pin[0], head[0][0]], [pin[1], head[1][0]])
             self._heads[rod].set_data(*_place(rod, [actual, actual], [0.0, 1.45 * _ASIDE]))
-            self._targets[rod].set_data(*_place(rod, [target, target], [0.55 * _ASIDE, 1.9 * _ASIDE]))
+            self._targets[rod].set_data(
+                *_place(rod, [target, target], [0.55 * _ASIDE, 1.9 * _ASIDE])
+            )
             self._springs[rod].set_data(*_place(rod, *_spring(actual, target)))
 
 
 def _place(rod: int, along: Any, aside: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points of a rod's head's rail in the picture: the first rod's rail is right of the wheel, the second's below it."""
+    """Points of a rod's head's rail in the picture.
+
+    The first rod's rail is right of the wheel, the second's below it.
+    """
     on, off = np.asarray(along, dtype=float), np.asarray(aside, dtype=float)
     return (_LONG + on, -off) if rod == 0 else (off, on - _LONG)
 
@@ -148,8 +196,20 @@ def _explain(axes: Axes) -> None:
         (Line2D([], [], color=_ROD, linewidth=5), "transmission rod"),
         (Line2D([], [], color=_ACTUAL, linewidth=5), r"actual position $x_i^{(\mathrm{a})}$"),
         (Line2D([], [], color=_TARGET, linewidth=5), r"target position $x_i^{(\mathrm{t})}$"),
-        (Line2D([], [], color="black", linewidth=1.2), r"spring, $F_i = k\,(x_i^{(\mathrm{t})} - x_i^{(\mathrm{a})})$"),
-        (Line2D([], [], marker="o", linestyle="", markersize=12, **_RING), "what the kick shows\nthe neurons"),
+        (
+            Line2D([], [], color="black", linewidth=1.2),
+            r"spring, $F_i = k\,(x_i^{(\mathrm{t})} - x_i^{(\mathrm{a})})$",
+        ),
+        (
+            Line2D([], [], marker="o", linestyle="", markersize=12, **_RING),
+            "what the kick shows\nthe neurons",
+        ),
     )
-    style: Any = {"loc": "center", "bbox_to_anchor": (0.74, 0.24), "fontsize": 12, "handlelength": 1.4, "labelspacing": 0.7}
+    style: Any = {
+        "loc": "center",
+        "bbox_to_anchor": (0.74, 0.24),
+        "fontsize": 12,
+        "handlelength": 1.4,
+        "labelspacing": 0.7,
+    }
     axes.legend(*zip(*lines, strict=True), **style)

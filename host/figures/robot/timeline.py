@@ -1,4 +1,7 @@
-"""One round of the three kicks as in the paper's timeline; beside it how far the wheels slipped and how long they took to settle."""
+"""One round of the three kicks as in the paper's timeline.
+
+Beside it how far the wheels slipped and how long they took to settle.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,9 @@ _LINES = {
     "right_torque": ("grey", 2.0, "$M$ right"),
 }
 _KICK = "crimson"
-_MODES = dict(zip(KICKS, zip((COLOURS[0], COLOURS[1], COLOURS[2]), "os^", strict=True), strict=True))
+_MODES = dict(
+    zip(KICKS, zip((COLOURS[0], COLOURS[1], COLOURS[2]), "os^", strict=True), strict=True)
+)
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -34,18 +39,39 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         left = halves[0].subgridspec(3, 1)
         panels = [figure.add_subplot(left[index]) for index in range(len(KICKS))]
         for axes, mode in zip(panels, KICKS, strict=True):
-            _draw_series(axes, [row for row in rows if row["kind"] == "tick" and row["mode"] == mode])
-            ticks = next((row["ticks"] for row in rows if row["kind"] == "kick" and row["mode"] == mode), 1)
-            axes.set_title(f"{mode} kicks, {ticks} tick{'s' if ticks > 1 else ''}", loc="left", fontsize=12, pad=3)
+            _draw_series(
+                axes, [row for row in rows if row["kind"] == "tick" and row["mode"] == mode]
+            )
+            ticks = next(
+                (row["ticks"] for row in rows if row["kind"] == "kick" and row["mode"] == mode), 1
+            )
+            axes.set_title(
+                f"{mode} kicks, {ticks} tick{'s' if ticks > 1 else ''}",
+                loc="left",
+                fontsize=12,
+                pad=3,
+            )
         panels[1].set_ylabel("potentials $x$, torque $M$")
         panels[-1].set_xlabel("time since the first kick (s)")
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower left", ncols=7, fontsize=11, columnspacing=1.1, handlelength=1.3)
+        figure.legend(
+            handles,
+            labels,
+            loc="outside lower left",
+            ncols=7,
+            fontsize=11,
+            columnspacing=1.1,
+            handlelength=1.3,
+        )
         right = halves[1].subgridspec(2, 1)
         chances = [figure.add_subplot(right[index]) for index in range(2)]
         _draw_slips(chances[0], rows)
         _draw_settling(chances[1], rows)
-        figure.suptitle(f"Three kicks, there and back: one of {len({row['trial'] for row in rows})} rounds, and all of them", fontsize=16)
+        figure.suptitle(
+            f"Three kicks, there and back: one of {len({row['trial'] for row in rows})} rounds, and"
+            " all of them",
+            fontsize=16,
+        )
     return figure
 
 
@@ -56,7 +82,14 @@ def _draw_series(axes: Axes, ticks: list[Row]) -> None:
     labelled = False
     for row, after in pairwise(ticks):
         if row["kicked"]:
-            axes.axvspan(row["t_s"], after["t_s"], color=_KICK, alpha=0.45, linewidth=0, label="" if labelled else "kick")
+            axes.axvspan(
+                row["t_s"],
+                after["t_s"],
+                color=_KICK,
+                alpha=0.45,
+                linewidth=0,
+                label="" if labelled else "kick",
+            )
             labelled = True
     axes.set_ylim(-1.1, 1.1)
     axes.margins(x=0)
@@ -82,6 +115,17 @@ def _draw_settling(axes: Axes, rows: list[Row]) -> None:
     rng = np.random.default_rng(0)
     for place, (mode, (colour, marker)) in enumerate(_MODES.items()):
         times = settling(kicks(rows, mode))
-        axes.plot(place + rng.uniform(-0.2, 0.2, len(times)), times, marker, color=colour, markersize=5, alpha=0.8)
+        axes.plot(
+            place + rng.uniform(-0.2, 0.2, len(times)),
+            times,
+            marker,
+            color=colour,
+            markersize=5,
+            alpha=0.8,
+        )
     axes.set_xticks(range(len(_MODES)), list(_MODES), fontsize=12)
-    axes.set(ylabel="settling time (s)", ylim=(0, 1.1 * max([*settling(kicks(rows)), 0.1])), xlim=(-0.5, len(_MODES) - 0.5))
+    axes.set(
+        ylabel="settling time (s)",
+        ylim=(0, 1.1 * max([*settling(kicks(rows)), 0.1])),
+        xlim=(-0.5, len(_MODES) - 0.5),
+    )

@@ -16,15 +16,30 @@ from matplotlib.patches import Patch
 from host.figures.style import COLOURS, styled
 from host.runs.contract import Findings, Row
 from host.theory.analysis.fates import BACK, BACKWARD, FORWARD, REST
-from host.theory.studies.basins import CONTINUOUS, LENGTHS_S, MODELS, SAMPLED, of_kick, part_of, reversals
+from host.theory.studies.basins import (
+    CONTINUOUS,
+    LENGTHS_S,
+    MODELS,
+    SAMPLED,
+    of_kick,
+    part_of,
+    reversals,
+)
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
-_KINDS = {(POSITION, 0): "positions inverted", (PHASE, 1): r"phase shifted $+3\pi/4$", (PHASE, -1): r"phase shifted $-3\pi/4$"}
+_KINDS = {
+    (POSITION, 0): "positions inverted",
+    (PHASE, 1): r"phase shifted $+3\pi/4$",
+    (PHASE, -1): r"phase shifted $-3\pi/4$",
+}
 # Wells, by their angle within the turn; then directions; then what is neither.
 _WELLS = ("#009e73", "#f0e442", "#cc79a7", "#e5e5e5")
 _SHADES = (*_WELLS, COLOURS[0], COLOURS[1], "#555555", COLOURS[5])
 _FORWARD, _BACKWARD, _OTHER, _BOUND = range(4, 8)
-_CURVES: dict[str, Any] = {CONTINUOUS: {"color": "black"}, SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 6}}
+_CURVES: dict[str, Any] = {
+    CONTINUOUS: {"color": "black"},
+    SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 6},
+}
 _MAP = ListedColormap(_SHADES)
 
 
@@ -36,7 +51,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             panels: Any = figure.subplots(1, 2, sharey=True)
             used = _draw_basins(panels, rows, findings)
             figure.legend(handles=_patches(used), loc="outside lower center", ncols=4)
-            figure.suptitle("Which start leads where; at these constants no wheel rolls that could be kicked", fontsize=17)
+            figure.suptitle(
+                "Which start leads where; at these constants no wheel rolls that could be kicked",
+                fontsize=17,
+            )
             return figure
         panels = figure.subplots(3, 4, width_ratios=(1.7, 1, 1, 1))
         used = _draw_basins(panels[:2, 0], rows, findings)
@@ -44,19 +62,26 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             for axes, kind in zip(line[1:], _KINDS, strict=True):
                 used |= _draw_kicks(axes, of_kick(rows, model, *kind), model)
             line[1].set_ylabel(f"length of the kick (ms)\n{model}")
-        for (top, middle, bottom), (kind, name) in zip(panels[:, 1:].T, _KINDS.items(), strict=True):
+        for (top, middle, bottom), (kind, name) in zip(
+            panels[:, 1:].T, _KINDS.items(), strict=True
+        ):
             top.set_title(name, fontsize=12)
             middle.set_xlabel("phase of rolling (°)")
             _draw_shares(bottom, rows, kind)
         panels[2, 1].set_ylabel("reversed (%)")
         _explain(panels[2, 0], used, rows)
-        figure.suptitle("Which start, and which kick of a wheel that rolls forward, leads where", fontsize=17)
+        figure.suptitle(
+            "Which start, and which kick of a wheel that rolls forward, leads where", fontsize=17
+        )
     return figure
 
 
 def _draw_basins(panels: Any, rows: list[Row], findings: Findings) -> set[int]:
     """The starts of both models; returns the shades that were used."""
-    titles = {CONTINUOUS: "starts, continuous model", SAMPLED: f"starts, sampled every {1000 * findings.numbers['tick_s']:g} ms"}
+    titles = {
+        CONTINUOUS: "starts, continuous model",
+        SAMPLED: f"starts, sampled every {1000 * findings.numbers['tick_s']:g} ms",
+    }
     used: set[int] = set()
     for axes, (model, title) in zip(panels, titles.items(), strict=True):
         used |= _draw_starts(axes, part_of(rows, "starts", model))
@@ -68,7 +93,9 @@ def _draw_basins(panels: Any, rows: list[Row], findings: Findings) -> set[int]:
 def _shade(row: Row) -> int:
     if row["outcome"] in (REST, BACK) and row.get("quarters") is not None:
         return int(row["quarters"] % 4)
-    return {FORWARD: _FORWARD, BACKWARD: _BACKWARD, REST: _BOUND, BACK: _BOUND}.get(row["outcome"], _OTHER)
+    return {FORWARD: _FORWARD, BACKWARD: _BACKWARD, REST: _BOUND, BACK: _BOUND}.get(
+        row["outcome"], _OTHER
+    )
 
 
 def _draw_starts(axes: Axes, starts: list[Row]) -> set[int]:
@@ -76,7 +103,9 @@ def _draw_starts(axes: Axes, starts: list[Row]) -> set[int]:
     shades = np.array([_shade(row) for row in starts]).reshape(points, points)
     greatest = abs(starts[0]["omega"]) * points / (points - 1) / (2 * pi)
     axes.imshow(shades, extent=(-pi, pi, -greatest, greatest), vmin=-0.5, vmax=7.5, **_image())
-    axes.set_xticks([-pi, -pi / 2, 0, pi / 2, pi], ["$-\\pi$", "$-\\pi/2$", "0", "$\\pi/2$", "$\\pi$"])
+    axes.set_xticks(
+        [-pi, -pi / 2, 0, pi / 2, pi], ["$-\\pi$", "$-\\pi/2$", "0", "$\\pi/2$", "$\\pi$"]
+    )
     return set(shades.ravel().tolist())
 
 
@@ -95,30 +124,61 @@ def _draw_kicks(axes: Axes, kicks: list[Row], model: str) -> set[int]:
     shades = np.array([_shade(row) for row in kicks]).reshape(len(lengths_ms), -1)
     half = (lengths_ms[1] - lengths_ms[0]) / 2
     sides = np.concatenate([[0.0], (phases[1:] + phases[:-1]) / 2, [90.0]])
-    axes.pcolormesh(sides, np.append(lengths_ms - half, lengths_ms[-1] + half), shades, cmap=_MAP, vmin=-0.5, vmax=7.5, rasterized=True)
+    axes.pcolormesh(
+        sides,
+        np.append(lengths_ms - half, lengths_ms[-1] + half),
+        shades,
+        cmap=_MAP,
+        vmin=-0.5,
+        vmax=7.5,
+        rasterized=True,
+    )
     return set(shades.ravel().tolist())
 
 
 def _draw_shares(axes: Axes, rows: list[Row], kind: tuple[str, int]) -> None:
     for model, style in _CURVES.items():
         shares = reversals(of_kick(rows, model, *kind))
-        axes.plot([1000 * length_s for length_s in shares], [100 * share for share in shares.values()], **style)
+        axes.plot(
+            [1000 * length_s for length_s in shares],
+            [100 * share for share in shares.values()],
+            **style,
+        )
     axes.set(xlabel="length of the kick (ms)", xlim=(0, 400), ylim=(-3, 103))
 
 
 def _patches(used: set[int]) -> list[Artist]:
     """What the shades mean."""
     names = [f"bound to $\\varphi$ = {name}" for name in ("0", "$\\pi/2$", "$\\pi$", "$-\\pi/2$")]
-    names += ["rolls forward", "rolls backward", "irregular, or not settled", "rests, or goes forth and back"]
+    names += [
+        "rolls forward",
+        "rolls backward",
+        "irregular, or not settled",
+        "rests, or goes forth and back",
+    ]
     return [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
 
 
 def _explain(axes: Axes, used: set[int], rows: list[Row]) -> None:
     """What the shades and the curves mean, and what the kick without a length does."""
-    handles = [*_patches(used), *(Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items())]
+    handles = [
+        *_patches(used),
+        *(Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items()),
+    ]
     shares = {model: reversals(of_kick(rows, model, MEMBRANE, 0)).values() for model in MODELS}
-    lines = [f"{model}: at {100 * share:.0f} % of phases" for model, of_model in shares.items() for share in of_model]
+    lines = [
+        f"{model}: at {100 * share:.0f} % of phases"
+        for model, of_model in shares.items()
+        for share in of_model
+    ]
     title = "\n".join(["Inverted potentials reverse a wheel", *lines, ""])
     axes.set_axis_off()
-    legend = axes.legend(handles=handles, loc="upper left", title=title, fontsize=12, title_fontsize=12, alignment="left")
+    legend = axes.legend(
+        handles=handles,
+        loc="upper left",
+        title=title,
+        fontsize=12,
+        title_fontsize=12,
+        alignment="left",
+    )
     legend.set_in_layout(False)

@@ -1,4 +1,7 @@
-"""Left, the force of the rods on a resting wheel, with its eight zeros; right, the eigenvalues of the two kinds of fixpoints."""
+"""Left, the force of the rods on a resting wheel, with its eight zeros.
+
+Right, the eigenvalues of the two kinds of fixpoints.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +26,23 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         for name, odd, colour, marker in _KINDS:
             row = one[odd]
             parts = np.array([[row[f"re_{i}"], row[f"im_{i}"]] for i in range(4)])
-            right.plot(*parts.T, marker, color=colour, markersize=9, fillstyle="none", markeredgewidth=2, label=f"{name}: {row['kind']}")
+            right.plot(
+                *parts.T,
+                marker,
+                color=colour,
+                markersize=9,
+                fillstyle="none",
+                markeredgewidth=2,
+                label=f"{name}: {row['kind']}",
+            )
         right.axvline(0.0, color="dimgrey", linewidth=1.2)
         right.set(xlabel="real part (1/s): growth", ylabel="imaginary part (rad/s): turning")
         right.margins(0.12)
         right.locator_params(axis="x", nbins=6)
         figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=2)
-        figure.suptitle("A wheel can rest at eight angles; at odd multiples of 45° never for long", fontsize=16)
+        figure.suptitle(
+            "A wheel can rest at eight angles; at odd multiples of 45° never for long", fontsize=16
+        )
     return figure
 
 

@@ -17,7 +17,12 @@ from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL
 from host.theory.analysis.transients import ENTRY_S, FEWEST
 
 SHOWN_S = 40.0
-_COLOUR = {KINDS[REST]: COLOURS[6], KINDS[BACK]: COLOURS[4], KINDS[ROLL]: COLOURS[0], KINDS[CHAOS]: COLOURS[1]}
+_COLOUR = {
+    KINDS[REST]: COLOURS[6],
+    KINDS[BACK]: COLOURS[4],
+    KINDS[ROLL]: COLOURS[0],
+    KINDS[CHAOS]: COLOURS[1],
+}
 _MARKER = {KINDS[REST]: "s", KINDS[BACK]: "^", KINDS[ROLL]: "o", KINDS[CHAOS]: "."}
 _SMALL = 11
 _ABOVE: Any = {
@@ -54,7 +59,10 @@ def _title(numbers: dict[str, Any]) -> str:
     constants, point = numbers["constants"], numbers["point"]
     rate, error = numbers["exponents"][0], numbers["standard_errors"][0]
     where = f"$k$ = {constants['k']:g}, $\\tau$ = {constants['tau']:g} s"
-    return f"{where}: {point['kind']}, $\\lambda_1$ = {_rounded(rate)} ± {_rounded(error)} /s, dimension {point['dimension']:.2f}"
+    return (
+        f"{where}: {point['kind']}, $\\lambda_1$ = {_rounded(rate)} ± {_rounded(error)} /s,"
+        f" dimension {point['dimension']:.2f}"
+    )
 
 
 def _rounded(value: float) -> str:
@@ -64,13 +72,16 @@ def _rounded(value: float) -> str:
 
 def _draw_series(axes: Axes, series: list[Row], numbers: dict[str, Any]) -> None:
     shown = [row for row in series if row["t_s"] <= SHOWN_S]
-    axes.plot([row["t_s"] for row in shown], [row["force"] for row in shown], color="black", linewidth=1.3)
+    axes.plot(
+        [row["t_s"] for row in shown], [row["force"] for row in shown], color="black", linewidth=1.3
+    )
     axes.axhline(0.0, color="grey", linewidth=0.8)
     axes.set_xlim(0, SHOWN_S)
     axes.set_xlabel("time (s)")
     axes.set_ylabel(r"torque $F_\mathrm{tan}$")
     spectrum = ", ".join(
-        f"{_rounded(rate)} ± {_rounded(error)}" for rate, error in zip(numbers["exponents"], numbers["standard_errors"], strict=True)
+        f"{_rounded(rate)} ± {_rounded(error)}"
+        for rate, error in zip(numbers["exponents"], numbers["standard_errors"], strict=True)
     )
     axes.set_title(f"spectrum: {spectrum} /s", fontsize=12, loc="left")
 
@@ -79,8 +90,16 @@ def _draw_line(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None:
     """Each wheel's largest exponent."""
     for kind in KINDS:
         own = [row for row in rows if row["kind"] == kind]
-        style: Any = {"color": _COLOUR[kind], "marker": _MARKER[kind], "markersize": 5, "alpha": 0.6, "markeredgewidth": 0}
-        axes.plot([row["k"] for row in own], [row["exponent"] for row in own], linestyle="", **style)
+        style: Any = {
+            "color": _COLOUR[kind],
+            "marker": _MARKER[kind],
+            "markersize": 5,
+            "alpha": 0.6,
+            "markeredgewidth": 0,
+        }
+        axes.plot(
+            [row["k"] for row in own], [row["exponent"] for row in own], linestyle="", **style
+        )
     axes.axhline(0.0, color="grey", linewidth=0.8, zorder=0)
     most_k = max(row["k"] for row in rows)
     axes.set_xlim(0, most_k)
@@ -91,16 +110,44 @@ def _draw_line(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None:
     if begins and ends and begins["k"] < ends["k"]:
         axes.axvspan(begins["k"], ends["k"], color=COLOURS[2], alpha=0.3, linewidth=0)
         words = f"chaos and rolling coexist,\n$k$ = {begins['k']:.2f} to {ends['k']:.2f}"
-        axes.annotate(words, (ends["k"], 1.1 * top), (8, 0), textcoords="offset points", ha="left", va="center", fontsize=_SMALL)
+        axes.annotate(
+            words,
+            (ends["k"], 1.1 * top),
+            (8, 0),
+            textcoords="offset points",
+            ha="left",
+            va="center",
+            fontsize=_SMALL,
+        )
     axes.set_xlabel("spring constant $k$")
     axes.set_ylabel(r"largest exponent $\lambda_1$ (1/s)")
     present = [kind for kind in KINDS if any(row["kind"] == kind for row in rows)]
-    handles = [Line2D([], [], color=_COLOUR[kind], marker=_MARKER[kind], linestyle="", markersize=8, label=kind) for kind in present]
-    axes.legend(handles=handles, ncols=len(handles), loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize=12, borderaxespad=0.1)
+    handles = [
+        Line2D(
+            [],
+            [],
+            color=_COLOUR[kind],
+            marker=_MARKER[kind],
+            linestyle="",
+            markersize=8,
+            label=kind,
+        )
+        for kind in present
+    ]
+    axes.legend(
+        handles=handles,
+        ncols=len(handles),
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        fontsize=12,
+        borderaxespad=0.1,
+    )
     axes.set_title(f"$\\tau$ = {numbers['constants']['tau']:g} s", fontsize=13, loc="right")
 
 
-def _draw_planes(figure: Figure, panels: list[Axes], rows: list[Row], constants: dict[str, Any]) -> None:
+def _draw_planes(
+    figure: Figure, panels: list[Axes], rows: list[Row], constants: dict[str, Any]
+) -> None:
     """The largest exponent over the plane, of either start."""
     titles = {"any": "wheels that start anyhow", "rolls": "wheels that roll at first"}
     most = max(0.2, *(row["exponent"] for row in rows))
@@ -112,8 +159,17 @@ def _draw_planes(figure: Figure, panels: list[Axes], rows: list[Row], constants:
         for row in own:
             values[taus.index(row["tau"]), ks.index(row["k"])] = row["exponent"]
         extent = (0.0, ks[-1] + ks[0], 0.0, taus[-1] + taus[0])
-        image = axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="PuOr_r", norm=norm)
-        axes.plot(constants["k"], constants["tau"], marker="*", color="white", markeredgecolor="black", markersize=15)
+        image = axes.imshow(
+            values, origin="lower", aspect="auto", extent=extent, cmap="PuOr_r", norm=norm
+        )
+        axes.plot(
+            constants["k"],
+            constants["tau"],
+            marker="*",
+            color="white",
+            markeredgecolor="black",
+            markersize=15,
+        )
         axes.set_xlabel("spring constant $k$")
         axes.set_title(titles[start], fontsize=13, loc="left")
     panels[0].set_ylabel(r"time constant $\tau$ (s)")
@@ -132,10 +188,18 @@ def _draw_survival(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None
     for entry, colour in zip(shown, COLOURS, strict=False):
         own = [row for row in rows if row["k"] == entry["k"] and row["life_s"] > ENTRY_S]
         ended = np.sort([row["life_s"] - ENTRY_S for row in own if row["ended"]])
-        axes.step(np.append(0.0, ended), 1 - np.arange(len(ended) + 1) / len(own), where="post", color=colour, label=f"{entry['k']:.3f}")
+        axes.step(
+            np.append(0.0, ended),
+            1 - np.arange(len(ended) + 1) / len(own),
+            where="post",
+            color=colour,
+            label=f"{entry['k']:.3f}",
+        )
         longest = max(longest, float(ended[-1]))
         times = np.linspace(0.0, longest, 100)
-        axes.plot(times, np.exp(-times / entry["mean_s"]), color=colour, linestyle=":", linewidth=1.4)
+        axes.plot(
+            times, np.exp(-times / entry["mean_s"]), color=colour, linestyle=":", linewidth=1.4
+        )
     axes.set_yscale("log")
     axes.set_ylim(4e-3, 1.15)
     axes.set_xlim(0, longest)
@@ -155,16 +219,40 @@ def _draw_lives(axes: Axes, numbers: dict[str, Any]) -> None:
         return
     axes.set_yscale("log")
     errors = [entry["mean_s"] / np.sqrt(entry["ended"]) for entry in own]
-    axes.errorbar([entry["k"] for entry in own], [entry["mean_s"] for entry in own], errors, fmt="o", color="black", markersize=5)
+    axes.errorbar(
+        [entry["k"] for entry in own],
+        [entry["mean_s"] for entry in own],
+        errors,
+        fmt="o",
+        color="black",
+        markersize=5,
+    )
     found = numbers["crisis"]
     if found:
         begin, end = min(entry["k"] for entry in own), found["k"]
         ks = end - (end - begin) * np.logspace(0, -2.5, 200)
-        axes.plot(ks, found["factor"] * (end - ks) ** -found["power"], color=COLOURS[1], label=f"$\\sim (k_c-k)^{{-{found['power']:.2f}}}$")
-        axes.axvline(end, color=COLOURS[1], linestyle="--", linewidth=1.4, label=f"$k_c$ = {end:.3f}")
-        lasting = [entry["k"] for entry in numbers["lives"] if entry["k"] > end and not entry["ended"]]
+        axes.plot(
+            ks,
+            found["factor"] * (end - ks) ** -found["power"],
+            color=COLOURS[1],
+            label=f"$\\sim (k_c-k)^{{-{found['power']:.2f}}}$",
+        )
+        axes.axvline(
+            end, color=COLOURS[1], linestyle="--", linewidth=1.4, label=f"$k_c$ = {end:.3f}"
+        )
+        lasting = [
+            entry["k"] for entry in numbers["lives"] if entry["k"] > end and not entry["ended"]
+        ]
         top = 3 * max(entry["mean_s"] for entry in own)
-        axes.plot(lasting, [top] * len(lasting), marker="^", linestyle="", color="black", markersize=8, label="none ended")
+        axes.plot(
+            lasting,
+            [top] * len(lasting),
+            marker="^",
+            linestyle="",
+            color="black",
+            markersize=8,
+            label="none ended",
+        )
         axes.set_ylim(0.5 * min(entry["mean_s"] for entry in own), 1.8 * top)
         axes.legend(fontsize=_SMALL, loc="upper left")
     axes.set_xlabel("spring constant $k$")
@@ -172,6 +260,13 @@ def _draw_lives(axes: Axes, numbers: dict[str, Any]) -> None:
 
 
 def _say_none(axes: Axes) -> None:
-    axes.text(0.5, 0.5, "no wheel was seen\nto leave chaos along this line", ha="center", va="center", transform=axes.transAxes)
+    axes.text(
+        0.5,
+        0.5,
+        "no wheel was seen\nto leave chaos along this line",
+        ha="center",
+        va="center",
+        transform=axes.transAxes,
+    )
     axes.set_xticks([])
     axes.set_yticks([])

@@ -1,6 +1,7 @@
 """Whole branches of cycles in one constant of the wheel, each from where it begins.
 
-Forth-and-back cycles begin at a Hopf bifurcation, rotations near a merging; both are followed to their ends, through folds.
+Forth-and-back cycles begin at a Hopf bifurcation, rotations near a merging; both are followed to
+their ends, through folds.
 """
 
 from __future__ import annotations
@@ -53,7 +54,9 @@ def hopf_values(wheel: Wheel, field: str, low: float, high: float) -> list[float
     values = np.geomspace(low, high, _GRID).tolist()
     known = [(value, growth(value) > 0.0) for value in values]
     return [
-        float(brentq(growth, below, above, xtol=1e-14, rtol=1e-14)) for (below, first), (above, then) in pairwise(known) if first != then
+        float(brentq(growth, below, above, xtol=1e-14, rtol=1e-14))
+        for (below, first), (above, then) in pairwise(known)
+        if first != then
     ]
 
 
@@ -63,22 +66,48 @@ def swings(wheel: Wheel, field: str, low: float, high: float) -> list[Branch]:
     for value in hopf_values(wheel, field, low, high):
         shooting = Shooting(wheel, FORTH_AND_BACK, field)
         curve = Curve(shooting, _scales(with_constant(wheel, field, value), value))
-        found.append(Branch(shooting, (follow(curve, _first_swing(curve, with_constant(wheel, field, value), value), low, high),)))
+        found.append(
+            Branch(
+                shooting,
+                (
+                    follow(
+                        curve,
+                        _first_swing(curve, with_constant(wheel, field, value), value),
+                        low,
+                        high,
+                    ),
+                ),
+            )
+        )
     return found
 
 
 def rotations(wheel: Wheel, field: str, low: float, high: float) -> list[Branch]:
-    """The branches of rotations forward: one from each merging; without any, one from the wheel itself. Raises NotDone if none rolls."""
+    """The branches of rotations forward: one from each merging.
+
+    Without any, one from the wheel itself. Raises NotDone if none rolls.
+    """
     met = list(mergings(wheel, low, high, field))
     branches: list[Branch] = []
     for found in met:
         value = getattr(found.wheel, field)
-        ends = [way.points[-1].unknowns[4] for branch in branches for way in branch.ways if way.end == MERGING]
+        ends = [
+            way.points[-1].unknowns[4]
+            for branch in branches
+            for way in branch.ways
+            if way.end == MERGING
+        ]
         if not any(abs(value / end - 1) < 1e-3 for end in ends):
-            start = with_constant(wheel, field, value * (1 + _BEYOND if found.passes_above else 1 / (1 + _BEYOND)))
+            start = with_constant(
+                wheel, field, value * (1 + _BEYOND if found.passes_above else 1 / (1 + _BEYOND))
+            )
             branches.append(_both_ways(start, field, course(start)[1][:, -1], low, high))
     if not met:
-        start = wheel if low < getattr(wheel, field) < high else with_constant(wheel, field, 0.999 * high)
+        start = (
+            wheel
+            if low < getattr(wheel, field) < high
+            else with_constant(wheel, field, 0.999 * high)
+        )
         branches.append(_both_ways(start, field, turned(start), low, high))
     return branches
 
@@ -87,17 +116,24 @@ def _both_ways(wheel: Wheel, field: str, state: Array, low: float, high: float) 
     shooting = Shooting(wheel, ROTATION, field)
     curve = Curve(shooting, _scales(wheel, getattr(wheel, field)))
     first = rotation(wheel, state, field)
-    ways = (Point(first.unknowns, sign * curve.tangent(first.unknowns, _ALONG)) for sign in (-1.0, 1.0))
+    ways = (
+        Point(first.unknowns, sign * curve.tangent(first.unknowns, _ALONG)) for sign in (-1.0, 1.0)
+    )
     return Branch(shooting, tuple(follow(curve, way, low, high) for way in ways))
 
 
 def turned(wheel: Wheel) -> Array:
     """The state (4,), at phi = 0, of a wheel that has been turned for long at the paper's speed of locomotion, or at 1/tau."""
-    return turning(np.zeros(1), np.array([constant_velocity(wheel) or 1.0 / wheel.tau_s]), wheel)[:, 0]
+    return turning(np.zeros(1), np.array([constant_velocity(wheel) or 1.0 / wheel.tau_s]), wheel)[
+        :, 0
+    ]
 
 
 def rotation(wheel: Wheel, state: Array, field: str = "k") -> Point:
-    """The rotation of a wheel at its own constants, sought from a state in which it rolls. Raises NotDone."""
+    """The rotation of a wheel at its own constants, sought from a state in which it rolls.
+
+    Raises NotDone.
+    """
     section, seconds = rolling(wheel, state)
     value = getattr(wheel, field)
     guess = np.array([*section[[0, 1, OMEGA]], seconds, value])
@@ -116,4 +152,7 @@ def _first_swing(curve: Curve, wheel: Wheel, value: float) -> Point:
     vector = vector / vector[PHI] * -1j  # phi = 0 and rising
     across = np.append(vector.real[[0, 1, OMEGA]], [0.0, 0.0])
     direction = across / curve.scales
-    return curve.solve(np.array([1.0, 0.0, 0.0, pi / found.omega, value]) + SMALLEST * across, direction / np.linalg.norm(direction))
+    return curve.solve(
+        np.array([1.0, 0.0, 0.0, pi / found.omega, value]) + SMALLEST * across,
+        direction / np.linalg.norm(direction),
+    )

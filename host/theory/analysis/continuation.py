@@ -1,7 +1,9 @@
-"""Curves of solutions followed around folds: pseudo-arclength continuation (Keller), and the points on them where something vanishes.
+"""Curves of solutions followed around folds.
 
-A problem is a function of n + 1 unknowns, the last of which is the followed constant, that gives n residuals and their Jacobian
-(n, n + 1).
+Pseudo-arclength continuation (Keller), and the points on them where something vanishes.
+
+A problem is a function of n + 1 unknowns, the last of which is the followed constant, that gives n
+residuals and their Jacobian (n, n + 1).
 """
 
 from __future__ import annotations
@@ -42,7 +44,10 @@ class Curve(NamedTuple):
         return residual, jacobian * self.scales
 
     def solve(self, guess: Array, direction: Array) -> Point:
-        """The solution on the plane through a guess at right angles to a direction. Raises NotDone if Newton's method finds none."""
+        """The solution on the plane through a guess at right angles to a direction.
+
+        Raises NotDone if Newton's method finds none.
+        """
         unknowns = guess.copy()
         for _ in range(_MOST_ITERATIONS):
             residual, jacobian = self._jacobian(unknowns)
@@ -69,7 +74,9 @@ class Curve(NamedTuple):
         """The point of the curve at this distance along another's tangent. Raises NotDone."""
         return self.solve(point.unknowns + length * self.scales * point.tangent, point.tangent)
 
-    def follow(self, first: Point, shortest: float, longest: float) -> Iterator[tuple[float, Point]]:
+    def follow(
+        self, first: Point, shortest: float, longest: float
+    ) -> Iterator[tuple[float, Point]]:
         """Yields the points of the curve from the first on, each with its distance from the one before. Raises NotDone where it is lost."""
         yield 0.0, first
         point, length = first, 10 * shortest
@@ -78,24 +85,34 @@ class Curve(NamedTuple):
                 following = self.ahead(point, length)
                 turn = float(np.arccos(min(1.0, float(following.tangent @ point.tangent))))
                 aside = following.unknowns - point.unknowns - length * self.scales * point.tangent
-                near = turn < _MOST_TURN and np.linalg.norm(aside / self.scales) < _MOST_TURN * length
+                near = (
+                    turn < _MOST_TURN and np.linalg.norm(aside / self.scales) < _MOST_TURN * length
+                )
             except NotDone:
                 near = False
             if not near:
                 length /= 2
                 if length < shortest:
-                    raise NotDone("the curve could not be followed further", "its solutions change too fast there, or cease to exist")
+                    raise NotDone(
+                        "the curve could not be followed further",
+                        "its solutions change too fast there, or cease to exist",
+                    )
                 continue
             yield length, following
             point = following
             length = min(longest, length * (_GROWTH if turn < _MOST_TURN / 3 else 1.0))
 
     def locate(self, point: Point, length: float, vanishing: Callable[[Point], float]) -> Point:
-        """The point up to this distance from another where a function vanishes. Raises NotDone if it has one sign at both ends."""
+        """The point up to this distance from another where a function vanishes.
+
+        Raises NotDone if it has one sign at both ends.
+        """
 
         def at(distance: float) -> float:
             return vanishing(self.ahead(point, distance) if distance else point)
 
         if at(0.0) * at(length) > 0.0:
-            raise NotDone("a function does not change its sign between two points", "take them further apart")
+            raise NotDone(
+                "a function does not change its sign between two points", "take them further apart"
+            )
         return self.ahead(point, float(brentq(at, 0.0, length, xtol=1e-13, rtol=1e-13)))

@@ -1,7 +1,9 @@
-"""The eight angles at which a wheel can rest (eq. trivial_fixpoints), their eigenvalues, and the resting states of two wheels.
+"""The eight angles at which a wheel can rest (eq.
 
-That there are no others: at rest the rods balance if g(cos phi) = g(sin phi), or if one of the two is 0, where g(u) = x_t(u) / u is even
-and falls with |u|.
+trivial_fixpoints), their eigenvalues, and the resting states of two wheels.
+
+That there are no others: at rest the rods balance if g(cos phi) = g(sin phi), or if one of the two
+is 0, where g(u) = x_t(u) / u is even and falls with |u|.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ from host.theory.model.wheel import Array, Wheel, rates, resting
 NDComplex = NDArray[np.complex128]
 
 ANGLES = tuple(n * pi / 4 for n in range(8))
-# The time course that is held against the eigenvalues begins so near to the fixpoint, and grows or shrinks by this factor.
+# The time course that is held against the eigenvalues begins so near to the fixpoint, and grows or
+# shrinks by this factor.
 NEAR, FACTOR = 1e-6, e
 
 
@@ -39,17 +42,28 @@ class Fixpoint(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """A saddle has one direction in which a disturbance grows without turning; a focus turns about."""
+        """A saddle has one direction in which a disturbance grows without turning.
+
+        A focus turns about.
+        """
         if self.eigenvalues[0].imag == 0.0 and not self.stable:
             return "saddle"
-        return ("stable " if self.stable else "unstable ") + ("focus" if np.any(self.eigenvalues.imag != 0.0) else "node")
+        return ("stable " if self.stable else "unstable ") + (
+            "focus" if np.any(self.eigenvalues.imag != 0.0) else "node"
+        )
 
 
 def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
-    """The fixpoint at one of ANGLES. Raises WrongUse if the rods do not pull, so that a wheel can rest anywhere."""
+    """The fixpoint at one of ANGLES.
+
+    Raises WrongUse if the rods do not pull, so that a wheel can rest anywhere.
+    """
     for name in ("k", "a"):
         if getattr(wheel.checked(), name) == 0.0:
-            raise WrongUse(f"with {name} = 0 the rods do not pull, and a wheel rests at any angle", f"give {name} above 0")
+            raise WrongUse(
+                f"with {name} = 0 the rods do not pull, and a wheel rests at any angle",
+                f"give {name} above 0",
+            )
     state = resting(np.array([phi]))[:, 0]
     values, vectors = np.linalg.eig(jacobian_at(state.tolist(), wheel))
     order = np.argsort(-values.real, kind="stable")
@@ -68,6 +82,13 @@ def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
     seconds = np.log(FACTOR) / abs(leading.real) if leading.real else 1.0 / abs(leading)
     constants = list(wheel)
     start = found.state + NEAR * (vector / np.abs(vector).max()).real
-    run = solve_ivp(lambda _, state: rates(*state, *constants), (0.0, seconds), start, method="LSODA", rtol=1e-11, atol=1e-15)
+    run = solve_ivp(
+        lambda _, state: rates(*state, *constants),
+        (0.0, seconds),
+        start,
+        method="LSODA",
+        rtol=1e-11,
+        atol=1e-15,
+    )
     along = [abs(left @ (state - found.state)) for state in (start, run.y[:, -1])]
     return float(np.log(along[1] / along[0]) / seconds)

@@ -1,7 +1,10 @@
-"""Where a resting wheel begins to swing: the Hopf bifurcation of the even fixpoints, exactly, and what the paper's expansion says of it.
+"""Where a resting wheel begins to swing.
+
+The Hopf bifurcation of the even fixpoints, exactly, and what the paper's expansion says of it.
 
 At phi = 0 the potential x1 decouples; with S = x_t(1) the others have the characteristic polynomial
-I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S), from which `hopf` follows by Routh and Hurwitz.
+I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S), from which `hopf` follows by Routh and
+Hurwitz.
 """
 
 from __future__ import annotations
@@ -25,9 +28,10 @@ from robot.controller import target_position
 class Hopf(NamedTuple):
     """A Hopf bifurcation. k: where; omega: of the swinging (rad/s).
 
-    l1: the first Lyapunov coefficient (1; Kuznetsov, Elements of Applied Bifurcation Theory, section 5.4, with eigenvectors of length
-    1); cycles are born stable, supercritically, if it is negative. Above k, while mu is the real part of the eigenvalues there, they
-    are states z q + its conjugate with |z|^2 = mu / (-l1 omega).
+    l1: the first Lyapunov coefficient (1; Kuznetsov, Elements of Applied Bifurcation Theory,
+    section 5.4, with eigenvectors of length 1); cycles are born stable, supercritically, if it is
+    negative. Above k, while mu is the real part of the eigenvalues there, they are states z q + its
+    conjugate with |z|^2 = mu / (-l1 omega).
     """
 
     k: float
@@ -38,19 +42,34 @@ class Hopf(NamedTuple):
 def hopf(wheel: Wheel) -> Hopf:
     """The Hopf bifurcation of the even fixpoints in k, whatever the wheel's own k.
 
-    Raises WrongUse if there is none: without friction every resting wheel is unstable, and with a = 0 the rods do not pull.
+    Raises WrongUse if there is none: without friction every resting wheel is unstable, and with a =
+    0 the rods do not pull.
     """
     if wheel.checked().friction == 0.0 or wheel.a == 0.0:
-        why = "without friction every k makes a resting wheel swing" if wheel.a else "with a = 0 the rods do not pull"
-        raise WrongUse(f"there is no Hopf bifurcation: {why}", f"give {'f' if wheel.a else 'a'} above 0")
+        why = (
+            "without friction every k makes a resting wheel swing"
+            if wheel.a
+            else "with a = 0 the rods do not pull"
+        )
+        raise WrongUse(
+            f"there is no Hopf bifurcation: {why}", f"give {'f' if wheel.a else 'a'} above 0"
+        )
     k = critical_k(wheel)
-    # omega^2 = (f - k S tau) / (I tau), without the difference, which nearly vanishes for small tau.
-    omega = sqrt(k * (wheel.a / 2 - float(target_position(1.0, wheel.a))) / (wheel.inertia + wheel.friction * wheel.tau_s))
+    # omega^2 = (f - k S tau) / (I tau), without the difference, which nearly vanishes for small
+    # tau.
+    omega = sqrt(
+        k
+        * (wheel.a / 2 - float(target_position(1.0, wheel.a)))
+        / (wheel.inertia + wheel.friction * wheel.tau_s)
+    )
     return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega))
 
 
 def critical_k(wheel: Wheel) -> float:
-    """The k above which rest is unstable, in closed form: 0 without friction, infinite with a = 0."""
+    """The k above which rest is unstable, in closed form.
+
+    0 without friction, infinite with a = 0.
+    """
     tau_s, inertia, friction = wheel.tau_s, wheel.inertia, wheel.friction
     pull = tau_s * (target_position(1.0, wheel.a) * friction * tau_s + inertia * wheel.a / 2)
     return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
@@ -60,7 +79,14 @@ def critical_k(wheel: Wheel) -> float:
 def _derivatives() -> tuple[Floats, Floats]:
     """The functions of the second and of the third derivatives of the rates by the state."""
     second, third = (
-        function([sympy.diff(rate, *variables) for rate in field() for variables in product(STATE, repeat=order)]) for order in (2, 3)
+        function(
+            [
+                sympy.diff(rate, *variables)
+                for rate in field()
+                for variables in product(STATE, repeat=order)
+            ]
+        )
+        for order in (2, 3)
     )
     return second, third
 
@@ -81,7 +107,11 @@ def _lyapunov_coefficient(wheel: Wheel, omega: float) -> float:
 
     mean = np.linalg.solve(matrix, twice(q, q.conj()))
     double = np.linalg.solve(2j * omega * np.eye(4) - matrix, twice(q, q))
-    inner = np.einsum("ijkl,j,k,l", cubic, q, q, q.conj()) - 2 * twice(q, mean) + twice(q.conj(), double)
+    inner = (
+        np.einsum("ijkl,j,k,l", cubic, q, q, q.conj())
+        - 2 * twice(q, mean)
+        + twice(q.conj(), double)
+    )
     return float(np.vdot(p, inner).real / (2 * omega))
 
 
@@ -91,16 +121,28 @@ def estimate(wheel: Wheel) -> float:
 
 
 def adaptive_friction(phi: float, wheel: Wheel) -> float:
-    """gamma(phi), the coefficient of omega in the paper's expansion for slow wheels; a resting wheel swings where it is positive.
+    """gamma(phi), the coefficient of omega in the paper's expansion for slow wheels.
+
+    A resting wheel swings where it is positive.
 
     Eq. friction_gamma, in which 4 y (1 - y) = 1 - x_t^2.
     """
     slopes = [1.0 - target_position(x, wheel.a) ** 2 for x in (cos(phi), sin(phi))]
-    return float(wheel.k * wheel.a * wheel.tau_s / 2 * (slopes[0] * sin(phi) ** 2 + slopes[1] * cos(phi) ** 2) - wheel.friction)
+    return float(
+        wheel.k
+        * wheel.a
+        * wheel.tau_s
+        / 2
+        * (slopes[0] * sin(phi) ** 2 + slopes[1] * cos(phi) ** 2)
+        - wheel.friction
+    )
 
 
 def by_eigenvalues(wheel: Wheel) -> float:
-    """The same k by searching where the eigenvalues of the 4-D Jacobian cross the imaginary axis: a check."""
+    """The same k by searching where the eigenvalues of the 4-D Jacobian cross the imaginary axis.
+
+    A check.
+    """
     k = hopf(wheel).k
 
     def growth(factor: float) -> float:

@@ -1,8 +1,11 @@
-"""The largest Lyapunov exponent: from one measured series as Rosenstein et al. and Kantz (1993, 1994) do, and from twins that part.
+"""The largest Lyapunov exponent: from one measured series as Rosenstein et al.
 
-A wheel's encoder counts whole degrees and its duty cycle whole percents. What is smaller than these steps does not reach the loop, and
-a difference between two wheels dies with the neurons' time constant; what is larger can grow. Exponents are those of differences of
-finite size: larger than the steps, smaller than the motion.
+And Kantz (1993, 1994) do, and from twins that part.
+
+A wheel's encoder counts whole degrees and its duty cycle whole percents. What is smaller than these
+steps does not reach the loop, and a difference between two wheels dies with the neurons' time
+constant; what is larger can grow. Exponents are those of differences of finite size: larger than
+the steps, smaller than the motion.
 """
 
 from __future__ import annotations
@@ -18,9 +21,11 @@ from host.util.intervals import spread
 
 Array = NDArray[np.float64]
 
-# A neighbour is false if the next coordinate takes it this many times farther away (Kennel et al., 1992); few enough of these will do.
+# A neighbour is false if the next coordinate takes it this many times farther away (Kennel et al.,
+# 1992); few enough of these will do.
 FALSE_RATIO, FALSE_SHARE, MOST_DIMENSIONS = 15.0, 0.01, 10
-# Neighbours are followed for so long: first they turn into the fastest direction, in the end they are as far apart as any two moments.
+# Neighbours are followed for so long: first they turn into the fastest direction, in the end they
+# are as far apart as any two moments.
 FIT_S = (0.5, 1.5)
 BLOCKS = 5
 
@@ -72,7 +77,9 @@ def embedding(values: Array, apart: int) -> Embedding:
     deviation = values - values.mean()
     fallen = float(deviation @ deviation) * exp(-1)
     longest = len(values) // (4 * MOST_DIMENSIONS)
-    lag = next((lag for lag in range(1, longest) if deviation[:-lag] @ deviation[lag:] < fallen), longest)
+    lag = next(
+        (lag for lag in range(1, longest) if deviation[:-lag] @ deviation[lag:] < fallen), longest
+    )
     for dimension in range(1, MOST_DIMENSIONS):
         states = _delayed(values, Embedding(lag, dimension + 1))
         rows, others, distances = _neighbours(states[:, :dimension], apart)
@@ -83,7 +90,10 @@ def embedding(values: Array, apart: int) -> Embedding:
 
 
 def divergence(values: Array, embedded: Embedding, apart: int, steps: int) -> Array:
-    """The mean logarithm of how much the values of neighbours differ, 0, 1, ... `steps` samples after the last by which they are near."""
+    """The mean logarithm of how much the values of neighbours differ, 0, 1, ...
+
+    `steps` samples after the last by which they are near.
+    """
     states = _delayed(values, embedded)
     rows, others, _ = _neighbours(states[: len(states) - steps], apart)
     newest = states[:, -1]
@@ -94,11 +104,14 @@ def divergence(values: Array, embedded: Embedding, apart: int, steps: int) -> Ar
     return np.array(curve)
 
 
-def from_series(values: Array, step_s: float, apart_s: float, fit_s: tuple[float, float] = FIT_S) -> tuple[Exponent, Embedding] | None:
+def from_series(
+    values: Array, step_s: float, apart_s: float, fit_s: tuple[float, float] = FIT_S
+) -> tuple[Exponent, Embedding] | None:
     """The exponent of a series sampled every step_s, as the mean over BLOCKS parts of it, and how it was embedded.
 
-    apart_s: as `apart`, about a period of the motion. fit_s: from when to when the mean logarithm of distances is taken as a straight
-    line. None of a series that is too short for that, or of which a part has no motion in it.
+    apart_s: as `apart`, about a period of the motion. fit_s: from when to when the mean logarithm
+    of distances is taken as a straight line. None of a series that is too short for that, or of
+    which a part has no motion in it.
     """
     apart, (first, last) = round(apart_s / step_s), (round(edge / step_s) for edge in fit_s)
     blocks = np.array_split(values, BLOCKS)
@@ -106,7 +119,10 @@ def from_series(values: Array, step_s: float, apart_s: float, fit_s: tuple[float
         return None
     embedded = embedding(blocks[0], apart)
     time_s = np.arange(first, last + 1) * step_s
-    rates = [float(np.polyfit(time_s, divergence(block, embedded, apart, last)[first:], 1)[0]) for block in blocks]
+    rates = [
+        float(np.polyfit(time_s, divergence(block, embedded, apart, last)[first:], 1)[0])
+        for block in blocks
+    ]
     return Exponent(float(np.mean(rates)), spread(rates)), embedded
 
 

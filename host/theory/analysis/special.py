@@ -1,7 +1,10 @@
-"""A curve of cycles followed to its ends, and the bifurcations on it: folds, pitchforks and Neimark-Sacker points.
+"""A curve of cycles followed to its ends, and the bifurcations on it.
 
-A multiplier -1 of the reduced map is +1 for the whole period: there the cycle loses its symmetry in a pitchfork. For the same reason a
-cycle with its symmetry has no period doubling: the period's multipliers are squares at least.
+Folds, pitchforks and Neimark-Sacker points.
+
+A multiplier -1 of the reduced map is +1 for the whole period: there the cycle loses its symmetry in
+a pitchfork. For the same reason a cycle with its symmetry has no period doubling: the period's
+multipliers are squares at least.
 """
 
 from __future__ import annotations
@@ -24,7 +27,8 @@ MERGING, RANGE, HOPF, STICKS, LOST, LONG = "merging", "range", "hopf", "sticks",
 # A reduced map of so many times of the saddle's growth is within about 1e-7 of the merging.
 _LONGEST = 18.0
 _SHORTEST_STEP, _LONGEST_STEP, _MOST_POINTS = 1e-7, 0.2, 1500
-# What vanishes by rounding alone, near a merging, is no bifurcation: a multiplier is as near to where it should be.
+# What vanishes by rounding alone, near a merging, is no bifurcation: a multiplier is as near to
+# where it should be.
 _SURE = 1e-3
 _FINER = 1.5
 
@@ -32,7 +36,8 @@ _FINER = 1.5
 class Special(NamedTuple):
     """A bifurcation: its type, the point, its place, between the points before - 1 and before of its curve, and a check.
 
-    off_by: by how much (relative) the followed constant differs if it is located with shorter steps in time.
+    off_by: by how much (relative) the followed constant differs if it is located with shorter steps
+    in time.
     """
 
     type: str
@@ -64,7 +69,9 @@ def _tests(shooting: Any) -> dict[str, Callable[[Point], float]]:
 
 def _sure(kind: str, multipliers: NDComplex) -> bool:
     if kind == NEIMARK_SACKER:  # two real multipliers of product 1 are none
-        return bool(np.any((np.abs(multipliers.imag) > 0.0) & (np.abs(np.abs(multipliers) - 1) < _SURE)))
+        return bool(
+            np.any((np.abs(multipliers.imag) > 0.0) & (np.abs(np.abs(multipliers) - 1) < _SURE))
+        )
     return bool(np.abs(multipliers - (1 if kind == FOLD else -1)).min() < _SURE)
 
 
@@ -92,11 +99,17 @@ def follow(curve: Curve, first: Point, low: float, high: float) -> Followed:
     shooting = curve.problem
     assert isinstance(shooting, Shooting)
     tests = _tests(shooting)
-    finer = curve._replace(problem=type(shooting)(shooting.wheel, shooting.family, shooting.along, _FINER * shooting.fineness))
+    finer = curve._replace(
+        problem=type(shooting)(
+            shooting.wheel, shooting.family, shooting.along, _FINER * shooting.fineness
+        )
+    )
     points: list[Point] = []
     specials: list[Special] = []
     values: dict[str, float] = {}
-    smallest = 0.0 if shooting.family.turn else abs(first.unknowns[2]) / 2  # smaller cycles have come back to the fixpoint
+    smallest = (
+        0.0 if shooting.family.turn else abs(first.unknowns[2]) / 2
+    )  # smaller cycles have come back to the fixpoint
     try:
         for length, point in curve.follow(first, _SHORTEST_STEP, _LONGEST_STEP):
             now = {kind: test(point) for kind, test in tests.items()}
@@ -105,10 +118,21 @@ def follow(curve: Curve, first: Point, low: float, high: float) -> Followed:
                     there = curve.locate(points[-1], length, tests[kind])
                     if _sure(kind, shooting.multipliers(there.unknowns)):
                         again = finer.locate(points[-1], length, _tests(finer.problem)[kind])
-                        specials.append(Special(kind, there, len(points), abs(float(again.unknowns[4] / there.unknowns[4]) - 1)))
+                        specials.append(
+                            Special(
+                                kind,
+                                there,
+                                len(points),
+                                abs(float(again.unknowns[4] / there.unknowns[4]) - 1),
+                            )
+                        )
             end = _end(shooting, point, low, high, smallest)
             if end == RANGE and points:
-                points.append(curve.locate(points[-1], length, _beyond(low if point.unknowns[4] <= low else high)))
+                points.append(
+                    curve.locate(
+                        points[-1], length, _beyond(low if point.unknowns[4] <= low else high)
+                    )
+                )
             else:
                 points.append(point)
             values = now

@@ -1,7 +1,10 @@
-"""How fast small differences between wheels grow, by two algorithms: the variational equations, and pairs of near wheels.
+"""How fast small differences between wheels grow, by two algorithms.
 
-A wheel and one vector that its Jacobian drives are a column of eight rows, so that as many as one likes are followed at once
-(host.theory.engine.ensemble); for several vectors of a wheel there are several columns of it.
+The variational equations, and pairs of near wheels.
+
+A wheel and one vector that its Jacobian drives are a column of eight rows, so that as many as one
+likes are followed at once (host.theory.engine.ensemble); for several vectors of a wheel there are
+several columns of it.
 """
 
 from __future__ import annotations
@@ -19,16 +22,20 @@ from host.theory.model.symbolic import CONSTANTS, STATE, field, jacobian_at
 from host.theory.model.wheel import Array, Wheel
 from sim_motor.compiled import retold
 
-# Between two orthonormalisations all vectors turn towards the fastest, on average by a factor of e^6 or less, of the 16 digits they
-# have. One vector alone must only stay within what a float can hold.
+# Between two orthonormalisations all vectors turn towards the fastest, on average by a factor of
+# e^6 or less, of the 16 digits they have. One vector alone must only stay within what a float can
+# hold.
 MOST_DECAY, MOST_GROWTH = 6.0, 100.0
 LONGEST_S, LONGEST_ALONE_S = 1.0, 2.0
-# Pairs of wheels begin so far apart: after a second that is still little, and well above the last digit.
+# Pairs of wheels begin so far apart: after a second that is still little, and well above the last
+# digit.
 PAIR_DISTANCE = 1e-7
 
 _vector = sympy.symbols("v1 v2 v3 v4", real=True)
 _driven = sympy.Matrix(field()).jacobian(STATE) * sympy.Matrix(_vector)
-_plain: Any = sympy.lambdify([*STATE, *_vector, *CONSTANTS], (*field(), *_driven), modules="math", cse=True)
+_plain: Any = sympy.lambdify(
+    [*STATE, *_vector, *CONSTANTS], (*field(), *_driven), modules="math", cse=True
+)
 _both: Any = retold(_plain, MATHEMATICS, inlined)
 
 
@@ -59,17 +66,28 @@ def _intervals(parameters: Array, seconds: float, count: int) -> int:
     """How many intervals, each so short that `count` vectors may be left alone."""
     free = parameters.copy()
     free[Wheel._fields.index("k")] = 0.0
-    longest = LONGEST_ALONE_S if count == 1 else min(LONGEST_S, MOST_DECAY / float(rate_per_s(free).max()))
-    return max(1, int(np.ceil(seconds / min(longest, MOST_GROWTH / float(rate_per_s(parameters).max())))))
+    longest = (
+        LONGEST_ALONE_S
+        if count == 1
+        else min(LONGEST_S, MOST_DECAY / float(rate_per_s(free).max()))
+    )
+    return max(
+        1, int(np.ceil(seconds / min(longest, MOST_GROWTH / float(rate_per_s(parameters).max()))))
+    )
 
 
 def growth(
-    states: Array, parameters: Array, seconds: float, count: int = 1, vectors: Array | None = None, fineness: float = FINE
+    states: Array,
+    parameters: Array,
+    seconds: float,
+    count: int = 1,
+    vectors: Array | None = None,
+    fineness: float = FINE,
 ) -> Growth:
     """How `count` vectors grow that are made orthonormal again and again (Benettin et al., Meccanica 15, 1980).
 
-    In the long run their rates are the Lyapunov exponents, the greatest first. vectors: to begin with; else some, always the same.
-    Raises WrongUse as host.theory.engine.ensemble.advance does.
+    In the long run their rates are the Lyapunov exponents, the greatest first. vectors: to begin
+    with; else some, always the same. Raises WrongUse as host.theory.engine.ensemble.advance does.
     """
     wheels, rounds = states.shape[1], _intervals(parameters, seconds, count)
     if vectors is None:
@@ -89,7 +107,8 @@ def growth(
 def pair_growth(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:
     """The rates (1/s) at which pairs of near wheels part, in successive equal intervals, (intervals, wheels); no Jacobian is used.
 
-    After each interval the second wheel is put back to PAIR_DISTANCE from the first, in the direction in which it then is.
+    After each interval the second wheel is put back to PAIR_DISTANCE from the first, in the
+    direction in which it then is.
     """
     wheels, rounds = states.shape[1], max(1, round(seconds / LONGEST_S))
     away = np.random.default_rng(1).normal(size=states.shape)
@@ -111,16 +130,20 @@ def divergence(wheel: Wheel) -> float:
 def smooth_mean(rates: Array) -> Array:
     """The mean over the first axis with a weight that opens and closes smoothly.
 
-    Of regular motion it is free of what depends on where in a period the time begins and ends, and of the vectors' first turns.
+    Of regular motion it is free of what depends on where in a period the time begins and ends, and
+    of the vectors' first turns.
     """
     weights = np.sin(np.pi * (np.arange(len(rates)) + 0.5) / len(rates)) ** 6
     return np.asarray(np.tensordot(weights / weights.sum(), rates, 1))
 
 
 def kaplan_yorke(exponents: Array, least: float = 0.0) -> float:
-    """The Lyapunov dimension of exponents, the greatest first; those nearer to 0 than `least` are taken for 0.
+    """The Lyapunov dimension of exponents, the greatest first.
 
-    Kaplan and Yorke: as many of the first as have no negative sum, and for the rest their sum in parts of the next.
+    Those nearer to 0 than `least` are taken for 0.
+
+    Kaplan and Yorke: as many of the first as have no negative sum, and for the rest their sum in
+    parts of the next.
     """
     own = np.where(np.abs(exponents) < least, 0.0, exponents)
     sums = np.cumsum(own)

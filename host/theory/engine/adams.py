@@ -1,8 +1,9 @@
 """Adams's, Bashforth's and Moulton's multistep method with fixed steps, for a block of systems side by side in memory.
 
-It predicts with the polynomial through the latest ORDER rates, evaluates, corrects with the polynomial through these and the new one,
-and evaluates again (Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, III.1). For ten digits and more it needs half
-as many evaluations as Runge and Kutta's method of order 8; but its steps must be short, or it is not stable.
+It predicts with the polynomial through the latest ORDER rates, evaluates, corrects with the
+polynomial through these and the new one, and evaluates again (Hairer, Norsett, Wanner: Solving
+Ordinary Differential Equations I, III.1). For ten digits and more it needs half as many evaluations
+as Runge and Kutta's method of order 8; but its steps must be short, or it is not stable.
 """
 
 from __future__ import annotations
@@ -29,8 +30,13 @@ def weights(nodes: list[int]) -> tuple[float, ...]:
         for other in nodes:
             if other != own:
                 shifted, same = [Fraction(0), *polynomial], [*polynomial, Fraction(0)]
-                polynomial = [(high - other * low) / (own - other) for high, low in zip(shifted, same, strict=True)]
-        found.append(float(sum(coefficient / (power + 1) for power, coefficient in enumerate(polynomial))))
+                polynomial = [
+                    (high - other * low) / (own - other)
+                    for high, low in zip(shifted, same, strict=True)
+                ]
+        found.append(
+            float(sum(coefficient / (power + 1) for power, coefficient in enumerate(polynomial)))
+        )
     return tuple(found)
 
 
@@ -71,15 +77,23 @@ def _correct(states: Array, lost: Array, step_s: float, new: Array) -> None:
 
 @numba.njit(**OPTIONS)
 def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
-    """Take `count` steps of step_s: states, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
+    """Take `count` steps of step_s.
 
-    The first are of Runge and Kutta's method, for want of earlier rates. What rounding takes from a step is given to the next, as there.
+    States, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
+
+    The first are of Runge and Kutta's method, for want of earlier rates. What rounding takes from a
+    step is given to the next, as there.
     """
-    # The latest rates stand first, from `newest` on; there is room for as many steps more, before they are moved.
+    # The latest rates stand first, from `newest` on; there is room for as many steps more, before
+    # they are moved.
     rates = np.zeros((2 * ORDER, *states.shape))
     at, new, lost = np.empty_like(states), np.empty_like(states), np.zeros(states.size)
     # The same memory without rows, for loops as long as can be.
-    flat_states, flat_at, flat_new = states.reshape(states.size), at.reshape(states.size), new.reshape(states.size)
+    flat_states, flat_at, flat_new = (
+        states.reshape(states.size),
+        at.reshape(states.size),
+        new.reshape(states.size),
+    )
     flat_rates = rates.reshape((2 * ORDER, states.size))
     newest = 2 * ORDER - 1
     rates_of(states, parameters, rates[newest])

@@ -1,7 +1,7 @@
 """sin, cos and exp without branches and without calls, so that the compiler can do several wheels in one instruction.
 
-numba calls the C library for these, one value at a time. Here they are within two units in the last place, for |x| < 1e6 (sin, cos)
-and |x| < 700 (exp).
+numba calls the C library for these, one value at a time. Here they are within two units in the last
+place, for |x| < 1e6 (sin, cos) and |x| < 700 (exp).
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import numba
 import numba.extending
 from numba.core import types
 
-# Contracting a product and a sum to one instruction, or dividing by means of a reciprocal, changes the last bit only.
+# Contracting a product and a sum to one instruction, or dividing by means of a reciprocal, changes
+# the last bit only.
 OPTIONS: Any = {"fastmath": {"contract", "arcp", "nsz"}, "error_model": "numpy"}
 
 # numba gives the functions so made another signature than they are written with.
@@ -22,7 +23,11 @@ _intrinsic: Any = numba.extending.intrinsic
 # Added to a float, it rounds that to a whole number, which then stands in the sum's last bits.
 _ROUNDER = 1.5 * 2.0**52
 # pi/2 and ln 2 in two parts, the first with so few digits that its multiples are exact.
-_QUARTER_HIGH, _QUARTER_LOW, _QUARTERS = 1.5707963267341256, 6.077100506506192e-11, 0.6366197723675814
+_QUARTER_HIGH, _QUARTER_LOW, _QUARTERS = (
+    1.5707963267341256,
+    6.077100506506192e-11,
+    0.6366197723675814,
+)
 _LN2_HIGH, _LN2_LOW, _LOG2_E = 0.6931471803691238, 1.9082149292705877e-10, 1.4426950408889634
 # Taylor's series, from the highest power down.
 _EXP = tuple(1.0 / factorial(power) for power in range(12, -1, -1))
@@ -33,13 +38,17 @@ _COS = tuple((-1.0) ** (power // 2) / factorial(power) for power in range(16, -1
 @_intrinsic
 def _bits(context: Any, value: Any) -> Any:
     """A float's bits as a whole number."""
-    return types.int64(types.float64), lambda own, builder, _, given: builder.bitcast(given[0], own.get_value_type(types.int64))
+    return types.int64(types.float64), lambda own, builder, _, given: builder.bitcast(
+        given[0], own.get_value_type(types.int64)
+    )
 
 
 @_intrinsic
 def _float(context: Any, bits: Any) -> Any:
     """The float with these bits."""
-    return types.float64(types.int64), lambda own, builder, _, given: builder.bitcast(given[0], own.get_value_type(types.float64))
+    return types.float64(types.int64), lambda own, builder, _, given: builder.bitcast(
+        given[0], own.get_value_type(types.float64)
+    )
 
 
 def inlined(function: Any) -> Any:

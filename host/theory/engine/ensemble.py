@@ -1,8 +1,8 @@
 """Many wheels of the analytic model at once, with fixed steps, over all cores and vector units.
 
-The rates are those of host.theory.model.wheel, and so of robot/controller.py, compiled with sin, cos and exp of
-host.theory.engine.elementary.
-Wheels stand side by side in memory, so that the compiler lets one instruction do several of them.
+The rates are those of host.theory.model.wheel, and so of robot/controller.py, compiled with sin,
+cos and exp of host.theory.engine.elementary. Wheels stand side by side in memory, so that the
+compiler lets one instruction do several of them.
 """
 
 from __future__ import annotations
@@ -19,15 +19,17 @@ from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 from sim_motor.compiled import prange, retold
 
-# Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond the fewest takes many more steps than
-# it needs, for the sake of the others.
+# Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
+# the fewest takes many more steps than it needs, for the sake of the others.
 LANES, FEWEST, ALIKE = 64, 16, 0.75
-# Every run of numbers from the sequence of its multiples, without their whole parts, is about as evenly spread as can be.
+# Every run of numbers from the sequence of its multiples, without their whole parts, is about as
+# evenly spread as can be.
 _GOLDEN = 0.6180339887498949
-# Steps per unit of a wheel's rate (see `rate_per_s`): at FINE, averages of regular motion have nine digits.
+# Steps per unit of a wheel's rate (see `rate_per_s`): at FINE, averages of regular motion have nine
+# digits.
 FINE = 1.0
-# Beyond that averages are by Adams's method, which then needs less work for the same error. Its steps are shorter; with less than five
-# for one of Runge and Kutta's it would not be stable.
+# Beyond that averages are by Adams's method, which then needs less work for the same error. Its
+# steps are shorter; with less than five for one of Runge and Kutta's it would not be stable.
 _ADAMS_STEPS = 5
 # A wheel that needs more is stiff: an explicit method is the wrong one.
 MOST_STEPS = 20_000_000
@@ -61,7 +63,8 @@ def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
 def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of all wheels, and the square of omega's difference from the seventh parameter, which makes the standard deviation.
 
-    With omega itself the standard deviation of a wheel that rolls would be the small difference of two large numbers.
+    With omega itself the standard deviation of a wheel that rolls would be the small difference of
+    two large numbers.
     """
     wheel_rates(states, parameters, out)
     for i in range(states.shape[1]):
@@ -69,20 +72,37 @@ def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
 
 
 @numba.njit(parallel=True, error_model="numpy")
-def _advance_all(steps: Any, rates_of: Any, states: Array, parameters: Array, seconds: float, counts: Any, edges: Any, order: Any) -> None:
-    """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each. Each core does a run of `order`."""
+def _advance_all(
+    steps: Any,
+    rates_of: Any,
+    states: Array,
+    parameters: Array,
+    seconds: float,
+    counts: Any,
+    edges: Any,
+    order: Any,
+) -> None:
+    """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each.
+
+    Each core does a run of `order`.
+    """
     for place in prange(len(order)):
         block = order[place]
         first, end = edges[block], edges[block + 1]
         own = states[:, first:end].copy()
-        steps(rates_of, own, parameters[:, first:end].copy(), seconds / counts[block], counts[block])
+        steps(
+            rates_of, own, parameters[:, first:end].copy(), seconds / counts[block], counts[block]
+        )
         states[:, first:end] = own
 
 
 def rate_per_s(parameters: Array) -> Array:
-    """How fast a wheel changes, (wheels,), by which its steps are chosen: the paper's rate of relaxation, and of turning. Eq. F_tan_ana.
+    """How fast a wheel changes, (wheels,), by which its steps are chosen.
 
-    The factors are such that wheels that come to rest and wheels that roll need the same number of steps per unit for the same error.
+    The paper's rate of relaxation, and of turning. Eq. F_tan_ana.
+
+    The factors are such that wheels that come to rest and wheels that roll need the same number of
+    steps per unit for the same error.
     """
     a, tau_s, k, inertia, friction = parameters[:5]
     relaxing = 1.0 / tau_s + friction / inertia + np.sqrt(k * (1.0 + a / 2) / inertia)
@@ -103,22 +123,37 @@ def _edges(needed: Array) -> Whole:
 
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
     """What to raise if so many seconds of a wheel with these constants would take so many steps."""
-    words = ", ".join(f"{name} = {value:g}" for name, value in zip(("a", "tau", "k", "I", "f"), constants.tolist(), strict=False))
-    return WrongUse(f"{seconds:g} s of a wheel with {words} would take {steps:.1e} steps", "choose a larger tau or I, a smaller k")
+    words = ", ".join(
+        f"{name} = {value:g}"
+        for name, value in zip(("a", "tau", "k", "I", "f"), constants.tolist(), strict=False)
+    )
+    return WrongUse(
+        f"{seconds:g} s of a wheel with {words} would take {steps:.1e} steps",
+        "choose a larger tau or I, a smaller k",
+    )
 
 
-def advance(states: Array, parameters: Array, seconds: float, fineness: float = FINE, rates_of: Any = wheel_rates) -> Array:
+def advance(
+    states: Array,
+    parameters: Array,
+    seconds: float,
+    fineness: float = FINE,
+    rates_of: Any = wheel_rates,
+) -> Array:
     """The states of wheels after some time, by Runge and Kutta's method of order 8.
 
-    states: (rows, wheels), of which rates_of gives the rates; parameters: (6 or more, wheels). fineness: steps per unit of `rate_per_s`.
-    The work is done in blocks of wheels that need about the same step, whatever the number of cores, so that the same call gives the
-    same bits; who stands beside a wheel matters to it by the block's step, and in the last digits. Raises WrongUse of a wheel that is
-    too stiff.
+    states: (rows, wheels), of which rates_of gives the rates; parameters: (6 or more, wheels).
+    fineness: steps per unit of `rate_per_s`. The work is done in blocks of wheels that need about
+    the same step, whatever the number of cores, so that the same call gives the same bits; who
+    stands beside a wheel matters to it by the block's step, and in the last digits. Raises WrongUse
+    of a wheel that is too stiff.
     """
     return _advanced(runge_kutta.steps, states, parameters, seconds, fineness, rates_of)
 
 
-def _advanced(steps: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any) -> Array:
+def _advanced(
+    steps: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any
+) -> Array:
     """The same by any method."""
     rate = rate_per_s(parameters)
     order = np.argsort(rate, kind="stable")
@@ -130,7 +165,16 @@ def _advanced(steps: Any, states: Array, parameters: Array, seconds: float, fine
     # Neighbours cost about the same, so a core must not get neighbours only.
     blocks = np.argsort(np.arange(len(counts)) * _GOLDEN % 1.0)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
-    _advance_all(steps, rates_of, found, np.ascontiguousarray(parameters[:, order]), float(seconds), counts, edges, blocks)
+    _advance_all(
+        steps,
+        rates_of,
+        found,
+        np.ascontiguousarray(parameters[:, order]),
+        float(seconds),
+        counts,
+        edges,
+        blocks,
+    )
     return found[:, np.argsort(order)]
 
 
@@ -142,14 +186,19 @@ class Averages(NamedTuple):
     states: Array
 
 
-def averages(states: Array, parameters: Array, transient_s: float, measured_s: float, fineness: float = FINE) -> Averages:
+def averages(
+    states: Array, parameters: Array, transient_s: float, measured_s: float, fineness: float = FINE
+) -> Averages:
     """Mean and standard deviation of omega over measured_s, after transient_s.
 
-    With a fineness beyond FINE they are by another method, so that a finer run checks more than the step.
+    With a fineness beyond FINE they are by another method, so that a finer run checks more than the
+    step.
 
     Raises WrongUse of a wheel that is too stiff, and of one that cannot be followed.
     """
-    steps, fineness = (adams.steps, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta.steps, fineness)
+    steps, fineness = (
+        (adams.steps, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta.steps, fineness)
+    )
 
     def after(seconds: float, begun: Array) -> Array:
         given = np.vstack([begun, np.zeros(begun.shape[1])]), np.vstack([parameters, begun[OMEGA]])
@@ -158,16 +207,26 @@ def averages(states: Array, parameters: Array, transient_s: float, measured_s: f
     begun = np.asarray(states, dtype=np.float64)
     if begun.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != len(Wheel._fields):
         shapes = f"{begun.shape} and {parameters.shape}"
-        raise WrongUse(f"states and parameters cannot be of shapes {shapes}", "give (4, wheels) and (6, wheels), as Wheel.columns does")
+        raise WrongUse(
+            f"states and parameters cannot be of shapes {shapes}",
+            "give (4, wheels) and (6, wheels), as Wheel.columns does",
+        )
     if not np.isfinite(begun).all():
-        raise WrongUse("a wheel begins in a state that is not finite", "give finite potentials, angles and speeds")
+        raise WrongUse(
+            "a wheel begins in a state that is not finite",
+            "give finite potentials, angles and speeds",
+        )
     if transient_s > 0.0:
-        # What is averaged on the way is thrown away: that costs less than to compile the rates without it.
+        # What is averaged on the way is thrown away: that costs less than to compile the rates
+        # without it.
         begun = after(transient_s, begun)[: OMEGA + 1]
     ended = after(measured_s, begun)
     mean = (ended[PHI] - begun[PHI]) / measured_s
     variance = ended[4] / measured_s - (mean - begun[OMEGA]) ** 2
     if not np.isfinite(ended).all():
         lost = int(np.flatnonzero(~np.isfinite(ended).all(axis=0))[0])
-        raise WrongUse(f"the wheel with constants {parameters[:, lost].tolist()} ran away", "choose a larger tau or I, a smaller k")
+        raise WrongUse(
+            f"the wheel with constants {parameters[:, lost].tolist()} ran away",
+            "choose a larger tau or I, a smaller k",
+        )
     return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), ended[: OMEGA + 1])

@@ -1,6 +1,9 @@
-"""One wheel at a time, step by step, with the derivatives of where it gets to: what shooting and bisection need.
+"""One wheel at a time, step by step, with the derivatives of where it gets to.
 
-The method is Runge and Kutta's of order 8 with fixed steps, as in host.theory.engine.ensemble, which is for many wheels.
+What shooting and bisection need.
+
+The method is Runge and Kutta's of order 8 with fixed steps, as in host.theory.engine.ensemble,
+which is for many wheels.
 """
 
 from __future__ import annotations
@@ -18,13 +21,16 @@ from host.theory.model.symbolic import CONSTANTS, field, function, jacobian
 from host.theory.model.wheel import Array, Wheel, rates
 from sim_motor.compiled import assembled, compiled, retold
 
-# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is the step's own.
+# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is
+# the step's own.
 _TABLEAU = np.vstack([DOP853.A, DOP853.B]).astype(np.float64)
 _STAGES = len(DOP853.B)
-# Steps per unit of a wheel's rate (see host.theory.engine.ensemble); at this, the error of a period is of the order of rounding.
+# Steps per unit of a wheel's rate (see host.theory.engine.ensemble); at this, the error of a period
+# is of the order of rounding.
 FINENESS = 3.0
 _LEAST_STEPS = 16
-# A piece of a period that takes more is that of a stiff wheel, for which an explicit method is the wrong one.
+# A piece of a period that takes more is that of a stiff wheel, for which an explicit method is the
+# wrong one.
 MOST_STEPS = 40_000
 
 _rates: Any = compiled(rates)
@@ -32,7 +38,10 @@ _jacobian: Any = retold(jacobian(), {}, numba.njit)
 
 
 def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
-    """How many steps this time takes. Raises WrongUse if they are too many: the wheel is too stiff."""
+    """How many steps this time takes. Raises WrongUse if they are too many.
+
+    The wheel is too stiff.
+    """
     needed = float(np.ceil(seconds * fineness * rate_per_s(np.array(wheel)[:, None])[0]))
     if not needed <= MOST_STEPS:
         raise too_stiff(seconds, np.array(wheel), needed)
@@ -42,9 +51,16 @@ def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
 # Loops over rows and columns instead of slices: these take the compiler ten times as long.
 @assembled
 def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: int) -> Array:
-    """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns). own_rates: `plain` or one of `varied`."""
+    """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns). own_rates.
+
+    `plain` or one of `varied`.
+    """
     columns, step_s = states.shape[1], seconds / count
-    path, stages, at = np.empty((count + 1, 4, columns)), np.empty((_STAGES, 4, columns)), states.copy()
+    path, stages, at = (
+        np.empty((count + 1, 4, columns)),
+        np.empty((_STAGES, 4, columns)),
+        states.copy(),
+    )
     for index in range(count + 1):
         for row in range(4):
             for column in range(columns):
@@ -63,13 +79,17 @@ def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: in
 @assembled
 def plain(states: Array, constants: Any, out: Array) -> None:
     """Rates of a state alone, (4, 1)."""
-    out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(states[0, 0], states[1, 0], states[2, 0], states[3, 0], *constants)
+    out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(
+        states[0, 0], states[1, 0], states[2, 0], states[3, 0], *constants
+    )
 
 
 @cache
 def varied(followed: int) -> Any:
     """The rates of a state, of its derivatives by the initial state, and of that by the constant of this number, (4, 1 + 4 + 1)."""
-    by_constant: Any = retold(function([sympy.diff(rate, CONSTANTS[followed]) for rate in field()]), {}, numba.njit)
+    by_constant: Any = retold(
+        function([sympy.diff(rate, CONSTANTS[followed]) for rate in field()]), {}, numba.njit
+    )
 
     def own_rates(states: Array, constants: Any, out: Array) -> None:
         x1, x2, phi, omega = states[0, 0], states[1, 0], states[2, 0], states[3, 0]

@@ -1,7 +1,7 @@
 """A wheel and its kicks, the same way for the continuous model and for the one that steps once a tick.
 
-A quenched kick alters what the neurons see, and nothing else: the rods pull where the wheel really is. A frozen kick alters the neurons.
-Both are robot/kicks.py's.
+A quenched kick alters what the neurons see, and nothing else: the rods pull where the wheel really
+is. A frozen kick alters the neurons. Both are robot/kicks.py's.
 """
 
 from __future__ import annotations
@@ -18,7 +18,16 @@ from host.theory.engine.ensemble import FINE, Averages
 from host.theory.engine.sampled import Clock, Seen, ticks_in
 from host.theory.model.wheel import OMEGA, Array, Wheel, seen_rates
 from robot.controller import actual_positions
-from robot.kicks import DEFAULT_SHIFT_RAD, MEMBRANE, PHASE, POSITION, invert_membrane, parse, pulsed, seen_positions
+from robot.kicks import (
+    DEFAULT_SHIFT_RAD,
+    MEMBRANE,
+    PHASE,
+    POSITION,
+    invert_membrane,
+    parse,
+    pulsed,
+    seen_positions,
+)
 from robot.params import Params
 from sim_motor.compiled import retold
 
@@ -27,13 +36,19 @@ KICKS = ((MEMBRANE, 0), (POSITION, 0), (PHASE, 1), (PHASE, -1))
 
 
 class Model(Protocol):
-    """Wheels, (rows, wheels), whose rows begin with x1, x2, phi and omega; parameters are (6, wheels)."""
+    """Wheels, (rows, wheels), whose rows begin with x1, x2, phi and omega.
+
+    Parameters are (6, wheels).
+    """
 
     def begun(self, states: Array) -> Array:
         """The model's states from (x1, x2, phi, omega), (4, wheels)."""
 
     def averages(self, states: Array, parameters: Array, seconds: float) -> Averages:
-        """Averages over some seconds, and the states after them. Raises WrongUse of wheels that cannot be followed."""
+        """Averages over some seconds, and the states after them.
+
+        Raises WrongUse of wheels that cannot be followed.
+        """
 
     def kicked(self, states: Array, parameters: Array, seconds: float, seen: Seen) -> Array:
         """The states after some seconds in which the neurons saw what a kick shows them."""
@@ -52,7 +67,9 @@ class Continuous(NamedTuple):
 
     def kicked(self, states: Array, parameters: Array, seconds: float, seen: Seen) -> Array:
         carried = np.vstack([states, np.repeat(np.array(seen)[:, None], states.shape[1], axis=1)])
-        return ensemble.advance(carried, parameters, seconds, self.fineness, _seeing_rates)[: OMEGA + 1]
+        return ensemble.advance(carried, parameters, seconds, self.fineness, _seeing_rates)[
+            : OMEGA + 1
+        ]
 
 
 class Sampled(NamedTuple):
@@ -71,14 +88,25 @@ class Sampled(NamedTuple):
 
 
 def seen_in(mode: str, sign: int) -> Seen:
-    """What a quenched kick of robot/kicks.py does to what the neurons see, at its height. sign: of a phase kick's shift."""
-    kick = parse({"id": mode, "mode": mode} | ({"shift": sign * DEFAULT_SHIFT_RAD} if sign else {}), (0, 0), Params(), 0)
+    """What a quenched kick of robot/kicks.py does to what the neurons see, at its height. sign.
+
+    Of a phase kick's shift.
+    """
+    kick = parse(
+        {"id": mode, "mode": mode} | ({"shift": sign * DEFAULT_SHIFT_RAD} if sign else {}),
+        (0, 0),
+        Params(),
+        0,
+    )
     *_, beta, shift_rad = pulsed(kick.pulse, kick.values[0], 1.0, 0.0, 0.0, 0.0)
     return Seen(beta, shift_rad)
 
 
 def memory_s(wheel: Wheel) -> float:
-    """For how long a wheel remembers: its neurons' time constant and its friction's; for ever, without friction."""
+    """For how long a wheel remembers: its neurons' time constant and its friction's.
+
+    For ever, without friction.
+    """
     return wheel.tau_s + (wheel.inertia / wheel.friction if wheel.friction else inf)
 
 
@@ -87,11 +115,27 @@ def inverted(states: Array) -> Array:
     return np.vstack([*invert_membrane(states[0], states[1]), states[2:]])
 
 
-def _rates(x1: Any, x2: Any, phi: Any, omega: Any, beta: Any, shift_rad: Any, constants: Any) -> Any:
+def _rates(
+    x1: Any, x2: Any, phi: Any, omega: Any, beta: Any, shift_rad: Any, constants: Any
+) -> Any:
     a, tau_s, k, inertia, friction, dry_friction = constants
     actual_1, actual_2 = actual_positions(phi)
     seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
-    return seen_rates(x1, x2, omega, actual_1, actual_2, seen_1, seen_2, a, tau_s, k, inertia, friction, dry_friction)
+    return seen_rates(
+        x1,
+        x2,
+        omega,
+        actual_1,
+        actual_2,
+        seen_1,
+        seen_2,
+        a,
+        tau_s,
+        k,
+        inertia,
+        friction,
+        dry_friction,
+    )
 
 
 _vectorised_rates: Any = retold(_rates, MATHEMATICS, inlined)
@@ -101,8 +145,21 @@ _vectorised_rates: Any = retold(_rates, MATHEMATICS, inlined)
 def _seeing_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of wheels whose rows 4 and 5 are what the kick does to what they see, which stays."""
     for i in range(states.shape[1]):
-        constants = parameters[0, i], parameters[1, i], parameters[2, i], parameters[3, i], parameters[4, i], parameters[5, i]
+        constants = (
+            parameters[0, i],
+            parameters[1, i],
+            parameters[2, i],
+            parameters[3, i],
+            parameters[4, i],
+            parameters[5, i],
+        )
         out[0, i], out[1, i], out[2, i], out[3, i] = _vectorised_rates(
-            states[0, i], states[1, i], states[2, i], states[3, i], states[4, i], states[5, i], constants
+            states[0, i],
+            states[1, i],
+            states[2, i],
+            states[3, i],
+            states[4, i],
+            states[5, i],
+            constants,
         )
         out[4, i] = out[5, i] = 0.0

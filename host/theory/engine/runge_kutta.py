@@ -11,28 +11,47 @@ from scipy.integrate import DOP853
 from host.theory.engine.elementary import OPTIONS
 from host.theory.model.wheel import Array
 
-# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate: its rows, and the weights as the last. Half of it is
-# zeros; of the others, one pass over the memory adds four.
-_ROWS = [[(j, factor) for j, factor in enumerate(row) if factor != 0.0] for row in (*DOP853.A, DOP853.B)]
+# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate: its rows, and the
+# weights as the last. Half of it is zeros; of the others, one pass over the memory adds four.
+_ROWS = [
+    [(j, factor) for j, factor in enumerate(row) if factor != 0.0] for row in (*DOP853.A, DOP853.B)
+]
 _FIRST = np.cumsum([0, *(-(-len(row) // 4) for row in _ROWS)])
 _PASSES = [(row[i : i + 4] + 3 * [(0, 0.0)])[:4] for row in _ROWS for i in range(0, len(row), 4)]
-_WHICH, _FACTORS = (np.array([[term[part] for term in terms] for terms in _PASSES]) for part in range(2))
+_WHICH, _FACTORS = (
+    np.array([[term[part] for term in terms] for terms in _PASSES]) for part in range(2)
+)
 _STAGES = len(DOP853.A)
 
 
 @numba.njit(**OPTIONS)
 def _begin(to: Array, base: Array, step_s: float, turn: int, rates: Array) -> None:
-    """`to` becomes `base` and what a pass adds; they must not be the same, or it would not be done by vector units."""
-    f0, f1, f2, f3 = step_s * _FACTORS[turn, 0], step_s * _FACTORS[turn, 1], step_s * _FACTORS[turn, 2], step_s * _FACTORS[turn, 3]
+    """`to` becomes `base` and what a pass adds.
+
+    They must not be the same, or it would not be done by vector units.
+    """
+    f0, f1, f2, f3 = (
+        step_s * _FACTORS[turn, 0],
+        step_s * _FACTORS[turn, 1],
+        step_s * _FACTORS[turn, 2],
+        step_s * _FACTORS[turn, 3],
+    )
     j0, j1, j2, j3 = _WHICH[turn, 0], _WHICH[turn, 1], _WHICH[turn, 2], _WHICH[turn, 3]
     for i in range(len(to)):
-        to[i] = base[i] + (f0 * rates[j0, i] + f1 * rates[j1, i] + f2 * rates[j2, i] + f3 * rates[j3, i])
+        to[i] = base[i] + (
+            f0 * rates[j0, i] + f1 * rates[j1, i] + f2 * rates[j2, i] + f3 * rates[j3, i]
+        )
 
 
 @numba.njit(**OPTIONS)
 def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
     """The same in place."""
-    f0, f1, f2, f3 = step_s * _FACTORS[turn, 0], step_s * _FACTORS[turn, 1], step_s * _FACTORS[turn, 2], step_s * _FACTORS[turn, 3]
+    f0, f1, f2, f3 = (
+        step_s * _FACTORS[turn, 0],
+        step_s * _FACTORS[turn, 1],
+        step_s * _FACTORS[turn, 2],
+        step_s * _FACTORS[turn, 3],
+    )
     j0, j1, j2, j3 = _WHICH[turn, 0], _WHICH[turn, 1], _WHICH[turn, 2], _WHICH[turn, 3]
     for i in range(len(to)):
         to[i] += f0 * rates[j0, i] + f1 * rates[j1, i] + f2 * rates[j2, i] + f3 * rates[j3, i]
@@ -40,13 +59,24 @@ def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
 
 @numba.njit(**OPTIONS)
 def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
-    """Take `count` steps of step_s: states, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
+    """Take `count` steps of step_s.
 
-    What rounding takes from a step is given to the next one (Kahan's summation), as an angle grows large by small steps.
+    States, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
+
+    What rounding takes from a step is given to the next one (Kahan's summation), as an angle grows
+    large by small steps.
     """
-    rates, at, lost = np.zeros((_STAGES, *states.shape)), np.empty_like(states), np.zeros(states.size)
+    rates, at, lost = (
+        np.zeros((_STAGES, *states.shape)),
+        np.empty_like(states),
+        np.zeros(states.size),
+    )
     # The same memory without rows, for loops as long as can be.
-    flat_rates, flat_at, flat_states = rates.reshape((_STAGES, states.size)), at.reshape(states.size), states.reshape(states.size)
+    flat_rates, flat_at, flat_states = (
+        rates.reshape((_STAGES, states.size)),
+        at.reshape(states.size),
+        states.reshape(states.size),
+    )
     for _ in range(count):
         rates_of(states, parameters, rates[0])
         for stage in range(1, _STAGES):

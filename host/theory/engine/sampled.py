@@ -1,8 +1,11 @@
-"""The wheel as a brick drives it: neurons that step once a tick (robot/controller.py), and a force that is held from tick to tick.
+"""The wheel as a brick drives it.
 
-Between ticks I domega/dt = F - f omega with F constant has an exact solution, so that a tick is a map. Its state is (x1, x2, phi, omega,
-F): that of host.theory.model.wheel, and the force that acts until the next one does. Arrays of states are (5, wheels), of parameters (6,
-wheels), as in host.theory.engine.ensemble; there is no motor here that could saturate or stick.
+Neurons that step once a tick (robot/controller.py), and a force that is held from tick to tick.
+
+Between ticks I domega/dt = F - f omega with F constant has an exact solution, so that a tick is a
+map. Its state is (x1, x2, phi, omega, F): that of host.theory.model.wheel, and the force that acts
+until the next one does. Arrays of states are (5, wheels), of parameters (6, wheels), as in
+host.theory.engine.ensemble; there is no motor here that could saturate or stick.
 """
 
 from __future__ import annotations
@@ -34,7 +37,8 @@ _LARGEST_EXPONENT = 700.0
 class Clock(NamedTuple):
     """When a brick reads and acts: every tick_s, and what it decides acts latency_s later.
 
-    fresh: the force is that of the potentials that this tick has made, as on the robot; if not, of those of the tick before.
+    fresh: the force is that of the potentials that this tick has made, as on the robot; if not, of
+    those of the tick before.
     """
 
     tick_s: float = 0.03
@@ -47,13 +51,18 @@ class Clock(NamedTuple):
             raise WrongUse(f"a tick cannot last {self.tick_s!r} s", "give a finite number above 0")
         if not 0.0 <= self.latency_s <= self.tick_s:
             raise WrongUse(
-                f"a torque cannot act {self.latency_s!r} s after the begin of a tick of {self.tick_s:g} s", "give 0 to a whole tick"
+                f"a torque cannot act {self.latency_s!r} s after the begin of a tick of"
+                f" {self.tick_s:g} s",
+                "give 0 to a whole tick",
             )
         return self
 
 
 class Seen(NamedTuple):
-    """How a kick alters what the neurons see, as robot.kicks.seen_positions takes it: nothing, if both are 0."""
+    """How a kick alters what the neurons see, as robot.kicks.seen_positions takes it.
+
+    Nothing, if both are 0.
+    """
 
     beta: float = 0.0
     shift_rad: float = 0.0
@@ -63,7 +72,10 @@ PLAIN = Seen()
 
 
 class Coast(NamedTuple):
-    """How a wheel under a constant force coasts for some time: phi + ahead omega + pushed F, kept omega + gained F."""
+    """How a wheel under a constant force coasts for some time.
+
+    Phi + ahead omega + pushed F, kept omega + gained F.
+    """
 
     ahead: float
     pushed: float
@@ -83,7 +95,9 @@ def coast(seconds: float, inertia: float, friction: float) -> Coast:
         for power in range(11, 1, -1):
             rest = (1.0 - decay * rest) / power
         reach = 1.0 - decay * rest
-    return Coast(seconds * reach, seconds**2 / inertia * rest, exp(-decay), seconds / inertia * reach)
+    return Coast(
+        seconds * reach, seconds**2 / inertia * rest, exp(-decay), seconds / inertia * reach
+    )
 
 
 def tick(
@@ -104,11 +118,14 @@ def tick(
 ) -> Any:
     """The state (x1, x2, phi, omega, force) a tick later.
 
-    beta, shift_rad: of the kick that acts, 0 if none does. late, then: how the wheel coasts before and after the tick's force acts.
+    beta, shift_rad: of the kick that acts, 0 if none does. late, then: how the wheel coasts before
+    and after the tick's force acts.
     """
     actual_1, actual_2 = actual_positions(phi)
     seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
-    new_1, new_2, force, _ = step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, tick_s, a, tau_s, k, 2)
+    new_1, new_2, force, _ = step_wheel(
+        x1, x2, actual_1, actual_2, seen_1, seen_2, tick_s, a, tau_s, k, 2
+    )
     if not fresh:
         force = step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, 0.0, a, tau_s, k, 2)[2]
     for (ahead, pushed, kept, gained), acting in ((late, held), (then, force)):
@@ -127,28 +144,61 @@ _tick: Any = retold(tick, {**MATHEMATICS, "tanh": _unsaturated}, inlined)
 
 
 @assembled_parallel
-def _run(states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int) -> Array:
-    """Take all wheels `ticks` on, in place; the sums of omega^2 at the begins of these ticks, (wheels,)."""
+def _run(
+    states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int
+) -> Array:
+    """Take all wheels `ticks` on, in place.
+
+    The sums of omega^2 at the begins of these ticks, (wheels,).
+    """
     squares = np.zeros(states.shape[1])
     tick_s, latency_s, fresh = clock
     for i in prange(states.shape[1]):
-        x1, x2, phi, omega, held = states[0, i], states[1, i], states[2, i], states[3, i], states[4, i]
-        a, tau_s, k, inertia, friction = parameters[0, i], parameters[1, i], parameters[2, i], parameters[3, i], parameters[4, i]
-        late, then = _coast(latency_s, inertia, friction), _coast(tick_s - latency_s, inertia, friction)
+        x1, x2, phi, omega, held = (
+            states[0, i],
+            states[1, i],
+            states[2, i],
+            states[3, i],
+            states[4, i],
+        )
+        a, tau_s, k, inertia, friction = (
+            parameters[0, i],
+            parameters[1, i],
+            parameters[2, i],
+            parameters[3, i],
+            parameters[4, i],
+        )
+        late, then = (
+            _coast(latency_s, inertia, friction),
+            _coast(tick_s - latency_s, inertia, friction),
+        )
         square = 0.0
         for _ in range(ticks):
             square += omega * omega
-            x1, x2, phi, omega, held = _tick(x1, x2, phi, omega, held, seen[0], seen[1], a, tau_s, k, tick_s, fresh, late, then)
-        states[0, i], states[1, i], states[2, i], states[3, i], states[4, i] = x1, x2, phi, omega, held
+            x1, x2, phi, omega, held = _tick(
+                x1, x2, phi, omega, held, seen[0], seen[1], a, tau_s, k, tick_s, fresh, late, then
+            )
+        states[0, i], states[1, i], states[2, i], states[3, i], states[4, i] = (
+            x1,
+            x2,
+            phi,
+            omega,
+            held,
+        )
         squares[i] = square
     return squares
 
 
 def ticks_in(seconds: float, clock: Clock) -> int:
-    """How many ticks there are in some seconds, one at least. Raises WrongUse if that is hopeless."""
+    """How many ticks there are in some seconds, one at least.
+
+    Raises WrongUse if that is hopeless.
+    """
     count = round(seconds / clock.tick_s)
     if count > MOST_TICKS:
-        raise WrongUse(f"{seconds:g} s are {count:.1e} ticks of {clock.tick_s:g} s", "choose a longer tick")
+        raise WrongUse(
+            f"{seconds:g} s are {count:.1e} ticks of {clock.tick_s:g} s", "choose a longer tick"
+        )
     return max(1, count)
 
 
@@ -160,26 +210,34 @@ def unforced(states: Array) -> Array:
 def overshoots(a: Any, tau_s: Any, clock: Clock) -> Any:
     """Whether a tick is so long that Euler steps carry the potentials past what they see, and farther from step to step.
 
-    That is at 2 tau. Just below, they stay finite, but grow too large to compute the exponential of a x.
+    That is at 2 tau. Just below, they stay finite, but grow too large to compute the exponential of
+    a x.
     """
     part = clock.tick_s / tau_s
     largest = np.where(part > 1.0, part / np.maximum(2.0 - part, 1e-300), 1.0)
     return a * largest > _LARGEST_EXPONENT
 
 
-def _ran(states: Array, parameters: Array, clock: Clock, ticks: int, seen: Seen) -> tuple[Array, Array]:
+def _ran(
+    states: Array, parameters: Array, clock: Clock, ticks: int, seen: Seen
+) -> tuple[Array, Array]:
     wild = np.flatnonzero(overshoots(parameters[0], parameters[1], clock))
     if len(wild):
         raise WrongUse(
-            f"potentials of tau = {parameters[1, wild[0]]:g} s run away in steps of {clock.tick_s:g} s",
+            f"potentials of tau = {parameters[1, wild[0]]:g} s run away in steps of"
+            f" {clock.tick_s:g} s",
             "give a tau of more than half a tick; the robot asks for three ticks",
         )
     ended = np.array(states, dtype=np.float64)
     return ended, _run(ended, parameters, tuple(seen), tuple(clock), ticks)
 
 
-def advance(states: Array, parameters: Array, clock: Clock, ticks: int, seen: Seen = PLAIN) -> Array:
-    """The states of wheels, (5, wheels), some ticks later; `seen` is what a kick does to them all that time.
+def advance(
+    states: Array, parameters: Array, clock: Clock, ticks: int, seen: Seen = PLAIN
+) -> Array:
+    """The states of wheels, (5, wheels), some ticks later.
+
+    `seen` is what a kick does to them all that time.
 
     Raises WrongUse of wheels whose potentials run away, as does `averages`.
     """
@@ -187,13 +245,18 @@ def advance(states: Array, parameters: Array, clock: Clock, ticks: int, seen: Se
 
 
 def averages(states: Array, parameters: Array, clock: Clock, ticks: int) -> Averages:
-    """Mean and standard deviation of omega over some ticks; the mean of the whole time, the deviation of the begins of ticks."""
+    """Mean and standard deviation of omega over some ticks.
+
+    The mean of the whole time, the deviation of the begins of ticks.
+    """
     ended, squares = _ran(states, parameters, clock, ticks, PLAIN)
     mean = (ended[PHI] - states[PHI]) / (ticks * clock.tick_s)
     return Averages(mean, np.sqrt(np.maximum(squares / ticks - mean**2, 0.0)), ended)
 
 
-def as_robot(state: Sequence[float], wheel: Wheel, clock: Clock, ticks: int, kick: Kick | None = None) -> Array:
+def as_robot(
+    state: Sequence[float], wheel: Wheel, clock: Clock, ticks: int, kick: Kick | None = None
+) -> Array:
     """(phi, omega) at the begin of each tick, (2, ticks), as robot.wheel has it, under a kick of the left wheel: a check of the map.
 
     clock: fresh, as the robot's is.
@@ -206,24 +269,37 @@ def as_robot(state: Sequence[float], wheel: Wheel, clock: Clock, ticks: int, kic
         seen.append((phi, omega))
         held, neurons.phi = neurons.force, phi
         neurons.step(number, clock.tick_s, params, kick)
-        for seconds, force in ((clock.latency_s, held), (clock.tick_s - clock.latency_s, neurons.force)):
+        for seconds, force in (
+            (clock.latency_s, held),
+            (clock.tick_s - clock.latency_s, neurons.force),
+        ):
             ahead, pushed, kept, gained = coast(seconds, wheel.inertia, wheel.friction)
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
     return np.array(seen).T
 
 
-_complex_tick: Any = retold(tick, {"cos": cmath.cos, "sin": cmath.sin, "exp": cmath.exp, "tanh": lambda force: force})
+_complex_tick: Any = retold(
+    tick, {"cos": cmath.cos, "sin": cmath.sin, "exp": cmath.exp, "tanh": lambda force: force}
+)
 _COMPLEX_STEP = 1e-100
 
 
 def jacobian(state: Sequence[float], wheel: Wheel, clock: Clock) -> Array:
-    """The derivatives of a tick by the state before it, (5, 5), exact to rounding: by steps in the imaginary direction."""
-    coasts = [coast(seconds, wheel.inertia, wheel.friction) for seconds in (clock.latency_s, clock.tick_s - clock.latency_s)]
+    """The derivatives of a tick by the state before it, (5, 5), exact to rounding.
+
+    By steps in the imaginary direction.
+    """
+    coasts = [
+        coast(seconds, wheel.inertia, wheel.friction)
+        for seconds in (clock.latency_s, clock.tick_s - clock.latency_s)
+    ]
     columns = []
     for index in range(5):
         aside = [complex(value) for value in state]
         aside[index] += 1j * _COMPLEX_STEP
-        ended = _complex_tick(*aside, *PLAIN, wheel.a, wheel.tau_s, wheel.k, clock.tick_s, clock.fresh, *coasts)
+        ended = _complex_tick(
+            *aside, *PLAIN, wheel.a, wheel.tau_s, wheel.k, clock.tick_s, clock.fresh, *coasts
+        )
         columns.append(np.imag(ended) / _COMPLEX_STEP)
     return np.array(columns).T
 

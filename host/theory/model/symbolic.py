@@ -25,8 +25,13 @@ def field() -> tuple[Any, ...]:
 
 
 def function(expressions: Sequence[Any]) -> Floats:
-    """Expressions as a plain function of STATE and CONSTANTS that returns a tuple; it uses `math` only, so that numba compiles it."""
-    made: Floats = sympy.lambdify([*STATE, *CONSTANTS], tuple(expressions), modules="math", cse=True)
+    """Expressions as a plain function of STATE and CONSTANTS that returns a tuple.
+
+    It uses `math` only, so that numba compiles it.
+    """
+    made: Floats = sympy.lambdify(
+        [*STATE, *CONSTANTS], tuple(expressions), modules="math", cse=True
+    )
     return made
 
 
@@ -48,5 +53,8 @@ def jacobian_by_differences(state: Sequence[float], wheel: Wheel, step: float = 
         ahead, behind = (list(state) for _ in range(2))
         ahead[index] += step
         behind[index] -= step
-        columns.append((np.array(rates(*ahead, *constants)) - np.array(rates(*behind, *constants))) / (2 * step))
+        columns.append(
+            (np.array(rates(*ahead, *constants)) - np.array(rates(*behind, *constants)))
+            / (2 * step)
+        )
     return np.array(columns).T

@@ -1,4 +1,7 @@
-"""A wheel that turns at constant angular velocity: its neurons' potentials (eq. x-t), and the speed at which it goes on (eq. F_tan_ana)."""
+"""A wheel that turns at constant angular velocity: its neurons' potentials (eq.
+
+X-t), and the speed at which it goes on (eq. F_tan_ana).
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,10 @@ _SETTLED = 40.0
 
 
 def potentials(phi: Any, omega: Any, tau_s: float) -> tuple[Any, Any]:
-    """(x1, x2) of neurons that see the wheel turn at omega (rad/s), when it is at phi (rad). Eq. x-t."""
+    """(x1, x2) of neurons that see the wheel turn at omega (rad/s), when it is at phi (rad). Eq.
+
+    X-t.
+    """
     (cosine, sine), lag = numpy_positions(phi), omega * tau_s
     return (cosine + lag * sine) / (1 + lag**2), (sine - lag * cosine) / (1 + lag**2)
 
@@ -27,7 +33,10 @@ def turning(phi: Array, omega: Array, wheel: Wheel) -> Array:
 
 
 def constant_velocity(wheel: Wheel) -> float | None:
-    """The paper's omega (rad/s) of locomotion, for neurons in their linear range; None where it has none. Eq. F_tan_ana."""
+    """The paper's omega (rad/s) of locomotion, for neurons in their linear range.
+
+    None where it has none. Eq. F_tan_ana.
+    """
     drive, brake = wheel.a * wheel.k * wheel.tau_s, 2 * wheel.friction
     return sqrt((drive - brake) / brake) / wheel.tau_s if drive > brake > 0.0 else None
 
@@ -35,11 +44,18 @@ def constant_velocity(wheel: Wheel) -> float | None:
 def begun_rolling(parameters: Array) -> Array:
     """States, at angle 0, of wheels with these constants that turn with the constant velocity, or rest if there is none, (4, wheels)."""
     wheels = [Wheel(*column) for column in parameters[: len(Wheel._fields)].T.tolist()]
-    return np.hstack([turning(np.zeros(1), np.array([constant_velocity(wheel) or 0.0]), wheel) for wheel in wheels])
+    return np.hstack(
+        [
+            turning(np.zeros(1), np.array([constant_velocity(wheel) or 0.0]), wheel)
+            for wheel in wheels
+        ]
+    )
 
 
 def driven(phi: Array, omega: float, tau_s: float) -> Array:
-    """The same potentials, (2, angles), by numbers: the robot's two neurons, fed from rest with the turning wheel's positions.
+    """The same potentials, (2, angles), by numbers.
+
+    The robot's two neurons, fed from rest with the turning wheel's positions.
 
     phi: ascending, from 0 or more.
     """
@@ -50,6 +66,8 @@ def driven(phi: Array, omega: float, tau_s: float) -> Array:
 
     turns = np.ceil(_SETTLED * tau_s * abs(omega) / (2 * np.pi))
     times = (2 * np.pi * turns + phi) / omega
-    solved = solve_ivp(rate, (0.0, times[-1]), [0.0, 0.0], method="DOP853", t_eval=times, rtol=1e-11, atol=1e-13)
+    solved = solve_ivp(
+        rate, (0.0, times[-1]), [0.0, 0.0], method="DOP853", t_eval=times, rtol=1e-11, atol=1e-13
+    )
     found: Array = solved.y
     return found

@@ -1,8 +1,11 @@
-"""The four equations of a wheel (eq. dot_x_phi): the robot's controller, and the mechanics that the paper adds to it.
+"""The four equations of a wheel (eq. dot_x_phi).
 
-A state is (x1, x2, phi, omega): membrane potentials (1), angle (rad), angular velocity (rad/s). Torques are in the units of the
-rods' forces, moments of inertia in these times s^2, friction in these times s. Arrays of states are (4, wheels), of parameters
-(6, wheels), with the rows of `Wheel`.
+The robot's controller, and the mechanics that the paper adds to it.
+
+A state is (x1, x2, phi, omega): membrane potentials (1), angle (rad), angular velocity (rad/s).
+Torques are in the units of the rods' forces, moments of inertia in these times s^2, friction in
+these times s. Arrays of states are (4, wheels), of parameters (6, wheels), with the rows of
+`Wheel`.
 """
 
 from __future__ import annotations
@@ -15,7 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from robot.controller import actual_positions, membrane_rate, rod_force, tangential_force, target_position
+from robot.controller import (
+    actual_positions,
+    membrane_rate,
+    rod_force,
+    tangential_force,
+    target_position,
+)
 from sim_motor.compiled import retold
 
 Array = NDArray[np.float64]
@@ -24,15 +33,39 @@ STEEPEST = 100.0
 
 
 def rates(
-    x1: Any, x2: Any, phi: Any, omega: Any, a: Any, tau_s: Any, k: Any, inertia: Any, friction: Any, dry_friction: Any
+    x1: Any,
+    x2: Any,
+    phi: Any,
+    omega: Any,
+    a: Any,
+    tau_s: Any,
+    k: Any,
+    inertia: Any,
+    friction: Any,
+    dry_friction: Any,
 ) -> tuple[Any, Any, Any, Any]:
     """(dx1/dt, dx2/dt, dphi/dt, domega/dt) of a wheel. Eq. dot_x_phi.
 
-    dry_friction: torque with which a threshold of the motor holds against a wheel that rolls forward; 0 in the paper's equations. The
-    arguments are floats, or whatever the controller's functions are retold for.
+    dry_friction: torque with which a threshold of the motor holds against a wheel that rolls
+    forward; 0 in the paper's equations. The arguments are floats, or whatever the controller's
+    functions are retold for.
     """
     actual_1, actual_2 = actual_positions(phi)
-    return seen_rates(x1, x2, omega, actual_1, actual_2, actual_1, actual_2, a, tau_s, k, inertia, friction, dry_friction)
+    return seen_rates(
+        x1,
+        x2,
+        omega,
+        actual_1,
+        actual_2,
+        actual_1,
+        actual_2,
+        a,
+        tau_s,
+        k,
+        inertia,
+        friction,
+        dry_friction,
+    )
 
 
 def seen_rates(
@@ -64,7 +97,10 @@ def acceleration(force: Any, omega: Any, inertia: Any, friction: Any, dry_fricti
 
 
 class Wheel(NamedTuple):
-    """The constants of a wheel, in the order in which `rates` takes them; the paper's where it gives any."""
+    """The constants of a wheel, in the order in which `rates` takes them.
+
+    The paper's where it gives any.
+    """
 
     a: float = 4.0
     tau_s: float = 0.25
@@ -76,15 +112,25 @@ class Wheel(NamedTuple):
     def checked(self) -> Wheel:
         """The same wheel. Raises WrongUse if these are no constants of one."""
         for name, value in self._asdict().items():
-            if not isfinite(value) or value < 0.0 or (value == 0.0 and name in ("tau_s", "inertia")):
+            if (
+                not isfinite(value)
+                or value < 0.0
+                or (value == 0.0 and name in ("tau_s", "inertia"))
+            ):
                 least = "above 0" if name in ("tau_s", "inertia") else "0 or more"
                 raise WrongUse(f"{name} cannot be {value!r}", f"give a finite number, {least}")
         if self.a > STEEPEST:
-            raise WrongUse(f"a cannot be {self.a!r}", f"give at most {STEEPEST:g}: steeper neurons are switches, and no longer smooth")
+            raise WrongUse(
+                f"a cannot be {self.a!r}",
+                f"give at most {STEEPEST:g}: steeper neurons are switches, and no longer smooth",
+            )
         return self
 
     def columns(self, count: int, **varied: Array) -> Array:
-        """The constants of `count` such wheels, (6, count). varied: those in which the wheels differ, (count,), by name."""
+        """The constants of `count` such wheels, (6, count). varied.
+
+        Those in which the wheels differ, (count,), by name.
+        """
         parameters = np.repeat(np.array(self, dtype=np.float64)[:, None], count, axis=1)
         for name, values in varied.items():
             parameters[self._fields.index(name)] = values
@@ -92,9 +138,14 @@ class Wheel(NamedTuple):
 
 
 def wheel_of(options: Mapping[str, Any]) -> Wheel:
-    """The wheel with the constants that options name by the paper's letters; the others are the paper's. Raises WrongUse."""
+    """The wheel with the constants that options name by the paper's letters.
+
+    The others are the paper's. Raises WrongUse.
+    """
     named = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
-    return Wheel(**{named[letter]: options[letter] for letter in named if options.get(letter) is not None}).checked()
+    return Wheel(
+        **{named[letter]: options[letter] for letter in named if options.get(letter) is not None}
+    ).checked()
 
 
 def resting(phi: Array) -> Array:

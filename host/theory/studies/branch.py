@@ -1,7 +1,8 @@
 """The study `branch`: fixpoints, forth-and-back cycles (FB) and rotations (LLM) in one constant of the wheel (M5, M6, M9).
 
-With dry friction only rotations are followed, while the wheel goes forward all the time: a wheel that stops is held, and no longer
-smooth. Backward rotations are the mirror image of those forward, the other forth-and-back cycles those around phi = 0, turned.
+With dry friction only rotations are followed, while the wheel goes forward all the time: a wheel
+that stops is held, and no longer smooth. Backward rotations are the mirror image of those forward,
+the other forth-and-back cycles those around phi = 0, turned.
 """
 
 from __future__ import annotations
@@ -15,7 +16,16 @@ import numpy as np
 
 from host.errors import NotDone
 from host.runs.contract import Cell, Findings, Row, Setting
-from host.theory.analysis.branches import FIELDS, Branch, hopf_values, rotation, rotations, swings, turned, with_constant
+from host.theory.analysis.branches import (
+    FIELDS,
+    Branch,
+    hopf_values,
+    rotation,
+    rotations,
+    swings,
+    turned,
+    with_constant,
+)
 from host.theory.analysis.cycles import ROTATION, Shooting
 from host.theory.analysis.fixpoints import fixpoint
 from host.theory.analysis.hopf import hopf
@@ -35,7 +45,15 @@ _FIXPOINTS, _TAUS, _ANGLES = 121, 25, 73
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     """A branch each, the global bifurcation, its line over tau, and the turning wheel."""
-    parts = ["fixpoints", "merging", "FB", "LLM", *(["dry"] if options["dry"] > 0.0 else []), "line", "turning"]
+    parts = [
+        "fixpoints",
+        "merging",
+        "FB",
+        "LLM",
+        *(["dry"] if options["dry"] > 0.0 else []),
+        "line",
+        "turning",
+    ]
     return [{"part": part} for part in parts]
 
 
@@ -47,20 +65,30 @@ def span(options: dict[str, Any]) -> tuple[str, float, float]:
 
 
 def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """The rows of a part; `kind` tells them apart: fixpoint, cycle, special (a bifurcation), end, check (by time stepping), and others."""
+    """The rows of a part; `kind` tells them apart.
+
+    Fixpoint, cycle, special (a bifurcation), end, check (by time stepping), and others.
+    """
     options, part = setting.options, cell["part"]
     wheel, along = wheel_of(options), span(options)
     if part == "line":
         return _line(wheel)
     if part == "turning":
-        return [row for k in (SHOWN_K if options["k"] is None else (wheel.k,)) for row in _turning(wheel._replace(k=k))]
+        return [
+            row
+            for k in (SHOWN_K if options["k"] is None else (wheel.k,))
+            for row in _turning(wheel._replace(k=k))
+        ]
     if part == "fixpoints":
         return [*_fixpoints(wheel, *along), *_hopf_rows(wheel, *along)]
     if part == "FB":
         return _cycles(swings, wheel, along)
     if part == "dry":
         wheel = wheel._replace(dry_friction=options["dry"])
-    return [*(_merging_rows(wheel, *along) if part != "LLM" else []), *(_cycles(rotations, wheel, along) if part != "merging" else [])]
+    return [
+        *(_merging_rows(wheel, *along) if part != "LLM" else []),
+        *(_cycles(rotations, wheel, along) if part != "merging" else []),
+    ]
 
 
 def _fixpoints(wheel: Wheel, field: str, low: float, high: float) -> list[Row]:
@@ -69,7 +97,13 @@ def _fixpoints(wheel: Wheel, field: str, low: float, high: float) -> list[Row]:
         there = with_constant(wheel, field, value)
         for phi in (0.0, pi / 4):
             found = fixpoint(phi, there)
-            row = {"kind": "fixpoint", "value": value, "phi": phi, "stable": found.stable, "eigenvalues": pairs(found.eigenvalues)}
+            row = {
+                "kind": "fixpoint",
+                "value": value,
+                "phi": phi,
+                "stable": found.stable,
+                "eigenvalues": pairs(found.eigenvalues),
+            }
             rows.append({**row, "formula": constant_velocity(there)})
     return rows
 
@@ -89,7 +123,9 @@ def _hopf_rows(wheel: Wheel, field: str, low: float, high: float) -> list[Row]:
                 "amplitude": 0.0,
                 "l1": found.l1,
                 # Of the cycles of vanishing amplitude.
-                "multipliers": pairs(np.exp(2 * pi / found.omega * fixpoint(0.0, there).eigenvalues[1:])),
+                "multipliers": pairs(
+                    np.exp(2 * pi / found.omega * fixpoint(0.0, there).eigenvalues[1:])
+                ),
                 "off_by": abs(there.k / found.k - 1),
             }
         )
@@ -101,8 +137,24 @@ def _merging_rows(wheel: Wheel, field: str, low: float, high: float) -> list[Row
     rows = []
     for found in mergings(wheel, low, high, field):
         value = getattr(found.wheel, field)
-        again = next(mergings(wheel, 0.999 * value, 1.001 * value, field, points=2, near=10 * NEAR, fineness=1.5 * FINENESS), None)
-        rows.append({**_merging_row(found, value), "off_by": again and abs(getattr(again.wheel, field) / value - 1)})
+        again = next(
+            mergings(
+                wheel,
+                0.999 * value,
+                1.001 * value,
+                field,
+                points=2,
+                near=10 * NEAR,
+                fineness=1.5 * FINENESS,
+            ),
+            None,
+        )
+        rows.append(
+            {
+                **_merging_row(found, value),
+                "off_by": again and abs(getattr(again.wheel, field) / value - 1),
+            }
+        )
     return rows
 
 
@@ -119,7 +171,9 @@ def _merging_row(found: Merging, value: float) -> Row:
     }
 
 
-def _cycles(find: Callable[..., list[Branch]], wheel: Wheel, along: tuple[str, float, float]) -> list[Row]:
+def _cycles(
+    find: Callable[..., list[Branch]], wheel: Wheel, along: tuple[str, float, float]
+) -> list[Row]:
     try:
         branches = find(wheel, *along)
     except NotDone as lost:
@@ -127,7 +181,9 @@ def _cycles(find: Callable[..., list[Branch]], wheel: Wheel, along: tuple[str, f
     return [
         {"way": name, **row}
         for branch in branches
-        for name, way in zip(("down", "up") if len(branch.ways) == 2 else (None,), branch.ways, strict=True)
+        for name, way in zip(
+            ("down", "up") if len(branch.ways) == 2 else (None,), branch.ways, strict=True
+        )
         for row in (*branch_rows(way, branch.shooting), *checks(way, branch.shooting))
     ]
 
@@ -135,10 +191,20 @@ def _cycles(find: Callable[..., list[Branch]], wheel: Wheel, along: tuple[str, f
 def _line(wheel: Wheel) -> list[Row]:
     """The merging over tau, and where its saddle quantity vanishes."""
     rows: list[Row] = [
-        {"kind": "line", "tau": tau_s, "k": found.k, "k_hopf": hopf(found.wheel).k, "saddle_quantity": found.saddle_quantity}
+        {
+            "kind": "line",
+            "tau": tau_s,
+            "k": found.k,
+            "k_hopf": hopf(found.wheel).k,
+            "saddle_quantity": found.saddle_quantity,
+        }
         for tau_s, found in merging_line(wheel, wheel.tau_s * np.geomspace(0.1, 10.0, _TAUS))
     ]
-    changes = [(row["tau"], then["tau"]) for row, then in pairwise(rows) if (row["saddle_quantity"] < 0) != (then["saddle_quantity"] < 0)]
+    changes = [
+        (row["tau"], then["tau"])
+        for row, then in pairwise(rows)
+        if (row["saddle_quantity"] < 0) != (then["saddle_quantity"] < 0)
+    ]
     return [*rows, *({"kind": "neutral", "tau": neutral_tau_s(wheel, *ends)} for ends in changes)]
 
 
@@ -153,9 +219,17 @@ def _turning(wheel: Wheel) -> list[Row]:
     else:
         quarter = Shooting(wheel, ROTATION).path(own)[:-1, :, 0]
         forward = ROTATION.back.T[:2, :2]
-        rolled = np.hstack([np.linalg.matrix_power(forward, n) @ quarter[:, :2].T for n in range(4)])
-        angles, omega = np.concatenate([quarter[:, PHI] + n * pi / 2 for n in range(4)]), pi / 2 / float(own[3])
-    exact, numeric = np.array(potentials(angles, omega, wheel.tau_s)), driven(angles, omega, wheel.tau_s)
+        rolled = np.hstack(
+            [np.linalg.matrix_power(forward, n) @ quarter[:, :2].T for n in range(4)]
+        )
+        angles, omega = (
+            np.concatenate([quarter[:, PHI] + n * pi / 2 for n in range(4)]),
+            pi / 2 / float(own[3]),
+        )
+    exact, numeric = (
+        np.array(potentials(angles, omega, wheel.tau_s)),
+        driven(angles, omega, wheel.tau_s),
+    )
     rows = []
     for i, phi in enumerate(angles.tolist()):
         row = {"kind": "turning", "k": wheel.k, "omega_mean": omega, "phi": phi}

@@ -58,28 +58,56 @@ def branch_rows(followed: Followed, shooting: Shooting) -> list[Row]:
     """The cycles in their order, each bifurcation between its neighbours, and the end."""
     before: dict[int, list[Row]] = {special.before: [] for special in followed.specials}
     for special in followed.specials:
-        found = {"kind": "special", "type": special.type, **cycle_row(shooting, special.point), "off_by": special.off_by}
+        found = {
+            "kind": "special",
+            "type": special.type,
+            **cycle_row(shooting, special.point),
+            "off_by": special.off_by,
+        }
         before[special.before].append(found)
     rows = []
     for index, point in enumerate(followed.points):
         rows += before.get(index, [])
         rows.append({"kind": "cycle", **cycle_row(shooting, point)})
-    return [*rows, {"kind": "end", "type": followed.end, "value": rows[-1]["value"], "period": rows[-1]["period"]}]
+    return [
+        *rows,
+        {
+            "kind": "end",
+            "type": followed.end,
+            "value": rows[-1]["value"],
+            "period": rows[-1]["period"],
+        },
+    ]
 
 
 def checks(followed: Followed, shooting: Shooting) -> list[Row]:
-    """Stable cycles against time stepping: a wheel that begins 5 % off, after the disturbance has died out."""
+    """Stable cycles against time stepping.
+
+    A wheel that begins 5 % off, after the disturbance has died out.
+    """
     rows = [cycle_row(shooting, point) for point in followed.points]
-    stable = [index for index, row in enumerate(rows) if row["stable"] and 0.01 < abs(complex(*row["multipliers"][0])) < 0.9]
+    stable = [
+        index
+        for index, row in enumerate(rows)
+        if row["stable"] and 0.01 < abs(complex(*row["multipliers"][0])) < 0.9
+    ]
     found = []
-    for index in [stable[i] for i in np.linspace(0, len(stable) - 1, _CHECKED + 1).astype(int)[1:]] if stable else []:
+    for index in (
+        [stable[i] for i in np.linspace(0, len(stable) - 1, _CHECKED + 1).astype(int)[1:]]
+        if stable
+        else []
+    ):
         row = rows[index]
         start = np.array([row["x1"], row["x2"], 0.0, row["omega"]]) * 1.05
         periods = np.ceil(np.log(_DIED) / np.log(abs(complex(*row["multipliers"][0]))))
         wheel = shooting.wheel_at(followed.points[index].unknowns)
-        stepped = averages(start[:, None], wheel.columns(1), periods * row["period"], 10 * row["period"])
+        stepped = averages(
+            start[:, None], wheel.columns(1), periods * row["period"], 10 * row["period"]
+        )
         kept = {name: row[name] for name in ("value", "period", "omega_mean", "omega_std")}
         mean, std = float(stepped.omega_mean[0]), float(stepped.omega_std[0])
         off_by = max(abs(mean - row["omega_mean"]), abs(std - row["omega_std"]))
-        found.append({"kind": "check", **kept, "stepped_mean": mean, "stepped_std": std, "off_by": off_by})
+        found.append(
+            {"kind": "check", **kept, "stepped_mean": mean, "stepped_std": std, "off_by": off_by}
+        )
     return found

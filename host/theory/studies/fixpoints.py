@@ -25,11 +25,21 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     wheel = wheel_of(setting.options)
     found = fixpoints(wheel)
     if cell["part"] == "two wheels":
-        return [{"phi": left.phi, "right_phi": right.phi, "stable": left.stable and right.stable} for left, right in product(found, found)]
+        return [
+            {"phi": left.phi, "right_phi": right.phi, "stable": left.stable and right.stable}
+            for left, right in product(found, found)
+        ]
     rows = []
     for n, point in enumerate(found):
-        values = {f"{name}_{i}": part for i, z in enumerate(point.eigenvalues) for name, part in (("re", z.real), ("im", z.imag))}
-        difference = np.abs(jacobian_at(point.state.tolist(), wheel) - jacobian_by_differences(point.state.tolist(), wheel)).max()
+        values = {
+            f"{name}_{i}": part
+            for i, z in enumerate(point.eigenvalues)
+            for name, part in (("re", z.real), ("im", z.imag))
+        }
+        difference = np.abs(
+            jacobian_at(point.state.tolist(), wheel)
+            - jacobian_by_differences(point.state.tolist(), wheel)
+        ).max()
         course = growth_by_time_course(point, wheel)
         rows.append(
             {
@@ -47,7 +57,9 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
 
 def report(rows: list[Row], setting: Setting) -> Findings:
     """M1 and M2."""
-    one, two = ([row for row in rows if row["part"] == part] for part in ("one wheel", "two wheels"))
+    one, two = (
+        [row for row in rows if row["part"] == part] for part in ("one wheel", "two wheels")
+    )
     wheel = wheel_of(setting.options)
     numbers = [
         {
@@ -56,7 +68,10 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             "kind": row["kind"],
             "stable": row["stable"],
             "eigenvalues": [[row[f"re_{i}"], row[f"im_{i}"]] for i in range(4)],
-            "accuracy": {"jacobian_against_differences": row["jacobian_off_by"], "growth_against_time_course": row["growth_off_by"]},
+            "accuracy": {
+                "jacobian_against_differences": row["jacobian_off_by"],
+                "growth_against_time_course": row["growth_off_by"],
+            },
         }
         for row in one
     ]
@@ -75,8 +90,9 @@ def report(rows: list[Row], setting: Setting) -> Findings:
                 "fixpoints",
                 None,
                 odd_unstable and len(set(even)) == 1,
-                f"odd n are saddles, even n {'stable' if even[0] else 'unstable'} at a k tau / (2 f) = {ratio}; growth rates agree with "
-                f"time courses within {max(row['growth_off_by'] for row in one):.0e}/s",
+                f"odd n are saddles, even n {'stable' if even[0] else 'unstable'} at a k tau / (2"
+                f" f) = {ratio}; growth rates agree with time courses within"
+                f" {max(row['growth_off_by'] for row in one):.0e}/s",
             ),
             Claim(
                 "M2",
@@ -86,7 +102,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
                 "stable states",
                 None,
                 stable_pairs == (16 if all(even) else 0),
-                f"of 64 pairs of fixpoints; below the Hopf line 16 are stable, above it none: here {'below' if all(even) else 'above'}",
+                "of 64 pairs of fixpoints; below the Hopf line 16 are stable, above it none: here"
+                f" {'below' if all(even) else 'above'}",
             ),
         ],
         numbers,

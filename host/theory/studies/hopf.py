@@ -1,4 +1,7 @@
-"""Where a resting wheel begins to swing: the exact line in (k, tau), and the paper's estimate beside it."""
+"""Where a resting wheel begins to swing.
+
+The exact line in (k, tau), and the paper's estimate beside it.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,10 @@ LIMIT = 0.01
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
-    """The point, the line through it, and the limit for which the estimate is made. Raises WrongUse as `hopf` does."""
+    """The point, the line through it, and the limit for which the estimate is made.
+
+    Raises WrongUse as `hopf` does.
+    """
     hopf(wheel_of(options))
     return [{"part": "point"}, {"part": "line"}, {"part": "limit"}]
 
@@ -37,7 +43,15 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     rows = []
     for tau_s, found in line(wheel, taus_s):
         here = wheel._replace(tau_s=tau_s)
-        rows.append({"tau": tau_s, "k_hopf": found.k, "omega_hopf": found.omega, "l1": found.l1, "k_estimate": estimate(here)})
+        rows.append(
+            {
+                "tau": tau_s,
+                "k_hopf": found.k,
+                "omega_hopf": found.omega,
+                "l1": found.l1,
+                "k_estimate": estimate(here),
+            }
+        )
         if cell["part"] == "point":
             rows[-1]["k_by_eigenvalues"] = by_eigenvalues(here)
     return rows
@@ -51,7 +65,9 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     ratio = point["k_estimate"] / point["k_hopf"]
     slow = wheel.friction * wheel.tau_s / wheel.inertia
     small = next(row for row in rows if row["part"] == "limit")
-    changes = [row["tau"] for row, after in pairwise(through) if (row["l1"] < 0) != (after["l1"] < 0)]
+    changes = [
+        row["tau"] for row, after in pairwise(through) if (row["l1"] < 0) != (after["l1"] < 0)
+    ]
     off = abs(point["k_by_eigenvalues"] / point["k_hopf"] - 1)
     numbers = {
         "k_hopf": point["k_hopf"],
@@ -60,7 +76,10 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         "k_estimate": point["k_estimate"],
         "supercritical": point["l1"] < 0,
         "l1_changes_sign_at_tau": changes,
-        "gamma_at_hopf": {f"{angle:.4f}": adaptive_friction(angle, wheel._replace(k=point["k_hopf"])) for angle in ANGLES[:2]},
+        "gamma_at_hopf": {
+            f"{angle:.4f}": adaptive_friction(angle, wheel._replace(k=point["k_hopf"]))
+            for angle in ANGLES[:2]
+        },
         "accuracy": {"closed_form_against_eigenvalues": off},
     }
     claim = Claim(
@@ -71,8 +90,9 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         "k_c / exact",
         None,
         abs(small["k_estimate"] / small["k_hopf"] - 1) < 2 * LIMIT,
-        f"at tau = {wheel.tau_s:g} s the exact k is {point['k_hopf']:.4f}, the estimate {point['k_estimate']:.4f}: it is the limit of "
-        f"f tau << I, and f tau / I is {slow:.2g} here; at f tau / I = {LIMIT:g} the ratio is "
-        f"{small['k_estimate'] / small['k_hopf']:.3f}; cycles are born {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
+        f"at tau = {wheel.tau_s:g} s the exact k is {point['k_hopf']:.4f}, the estimate"
+        f" {point['k_estimate']:.4f}: it is the limit of f tau << I, and f tau / I is {slow:.2g}"
+        f" here; at f tau / I = {LIMIT:g} the ratio is {small['k_estimate'] / small['k_hopf']:.3f};"
+        f" cycles are born {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
     )
     return Findings([claim], numbers)

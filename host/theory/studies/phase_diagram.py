@@ -1,6 +1,7 @@
 """The phase diagram: standard deviation and mean of omega over (k, tau), with k swept up from rest and down from rolling.
 
-The phases, by what a wheel does in the end: S it rests, FB it rolls forth and back, LLM it rolls one way, C chaos.
+The phases, by what a wheel does in the end: S it rests, FB it rolls forth and back, LLM it rolls
+one way, C chaos.
 """
 
 from __future__ import annotations
@@ -18,11 +19,13 @@ from host.theory.model.wheel import PHI, Array, Wheel, resting, wheel_of
 
 # The paper's inset.
 INSET_K, INSET_TAU = 5.0, 0.5
-# Time constants that one cell does together: with both ways enough for both cores, and little to lose.
+# Time constants that one cell does together: with both ways enough for both cores, and little to
+# lose.
 BAND = 128
 # Each wheel is pushed so far (rad), or one that begins exactly at rest would stay there for ever.
 PUSH = 1e-3
-# Slower and steadier than this (rad/s), a wheel rests; the mean of one that rolls one way is larger, its deviation a part of its mean.
+# Slower and steadier than this (rad/s), a wheel rests; the mean of one that rolls one way is
+# larger, its deviation a part of its mean.
 STILL, ROLLING_MEAN, ROLLING_SPREAD = 0.02, 0.1, 0.6
 # Cycles around a resting angle end below this multiple of the k at which they are born.
 NEAR_HOPF = 2.0
@@ -76,7 +79,10 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
         way = options["start"]
         parameters = _parameters(options, np.tile(taus, len(ks)), np.repeat(ks, count))
         result = _averages(begin[way](parameters), parameters, options)
-        split = [Averages(*(values[..., i * count : (i + 1) * count] for values in result)) for i in range(len(ks))]
+        split = [
+            Averages(*(values[..., i * count : (i + 1) * count] for values in result))
+            for i in range(len(ks))
+        ]
         found = [(way, float(k), part) for k, part in zip(ks, split, strict=True)]
     else:
         both = np.concatenate([taus, taus])
@@ -84,7 +90,9 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
         for up, down in zip(ks, ks[::-1], strict=True):
             parameters = _parameters(options, both, np.repeat([up, down], count))
             if states is None:
-                states = np.hstack([begin["up"](parameters[:, :count]), begin["down"](parameters[:, count:])])
+                states = np.hstack(
+                    [begin["up"](parameters[:, :count]), begin["down"](parameters[:, count:])]
+                )
             states[PHI] += PUSH
             result = _averages(states, parameters, options)
             states = result.states
@@ -93,21 +101,45 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     return [
         {"way": way, "tau": tau, "k": k, "omega_mean": mean, "omega_std": std}
         for way, k, part in found
-        for tau, mean, std in zip(taus.tolist(), part.omega_mean.tolist(), part.omega_std.tolist(), strict=True)
+        for tau, mean, std in zip(
+            taus.tolist(), part.omega_mean.tolist(), part.omega_std.tolist(), strict=True
+        )
     ]
 
 
 def _sample(options: dict[str, Any], seed: int) -> list[Row]:
     """Points anywhere in the diagram, from rest, with the ordinary steps and with finer ones."""
     rng = np.random.default_rng(seed)
-    taus, ks = rng.uniform(0.0, options["tau_to"], SAMPLE), rng.uniform(0.0, options["k_to"], SAMPLE)
-    parameters = _parameters(options, np.maximum(taus, axis(options["tau_to"], options["points"])[0]), ks)
-    plain, fine = (_averages(_at_rest(parameters), parameters, options, fineness) for fineness in (FINE, FINER * FINE))
-    means, stds = np.abs(np.abs(plain.omega_mean) - np.abs(fine.omega_mean)), np.abs(plain.omega_std - fine.omega_std)
+    taus, ks = (
+        rng.uniform(0.0, options["tau_to"], SAMPLE),
+        rng.uniform(0.0, options["k_to"], SAMPLE),
+    )
+    parameters = _parameters(
+        options, np.maximum(taus, axis(options["tau_to"], options["points"])[0]), ks
+    )
+    plain, fine = (
+        _averages(_at_rest(parameters), parameters, options, fineness)
+        for fineness in (FINE, FINER * FINE)
+    )
+    means, stds = (
+        np.abs(np.abs(plain.omega_mean) - np.abs(fine.omega_mean)),
+        np.abs(plain.omega_std - fine.omega_std),
+    )
     return [
-        {"tau": tau, "k": k, "omega_mean": mean, "omega_std": std, "mean_off_by": off, "std_off_by": off_too}
+        {
+            "tau": tau,
+            "k": k,
+            "omega_mean": mean,
+            "omega_std": std,
+            "mean_off_by": off,
+            "std_off_by": off_too,
+        }
         for tau, k, mean, std, off, off_too in zip(
-            *(v.tolist() for v in (parameters[1], ks, plain.omega_mean, plain.omega_std, means, stds)), strict=True
+            *(
+                v.tolist()
+                for v in (parameters[1], ks, plain.omega_mean, plain.omega_std, means, stds)
+            ),
+            strict=True,
         )
     ]
 
@@ -120,14 +152,17 @@ def _at_rest(parameters: Array) -> Array:
     return resting(np.full(parameters.shape[1], PUSH))
 
 
-def _averages(states: Array, parameters: Array, options: dict[str, Any], fineness: float = FINE) -> Averages:
+def _averages(
+    states: Array, parameters: Array, options: dict[str, Any], fineness: float = FINE
+) -> Averages:
     return averages(states, parameters, options["transient"], options["seconds"], fineness)
 
 
 def phase(row: Row, k_hopf: float) -> str:
     """S, FB, LLM or C, by mean and deviation of omega.
 
-    What neither rests nor rolls goes forth and back near the Hopf line, where the cycles of the resting angles are, and else is chaotic.
+    What neither rests nor rolls goes forth and back near the Hopf line, where the cycles of the
+    resting angles are, and else is chaotic.
     """
     mean, std = abs(row["omega_mean"]), row["omega_std"]
     if mean < STILL and std < STILL:
@@ -152,28 +187,48 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     options = setting.options
     diagram = [row for row in rows if row["panel"] in ("plane", "inset")]
     of_row = dict(zip(map(id, diagram), phases(diagram, options), strict=True))
-    numbers: dict[str, Any] = {"constants": {name: options[name] for name in ("a", "f", "I")}, "shares": {}, "rest_misjudged": {}}
+    numbers: dict[str, Any] = {
+        "constants": {name: options[name] for name in ("a", "f", "I")},
+        "shares": {},
+        "rest_misjudged": {},
+    }
     numbers["accuracy"] = _accuracy([row for row in rows if row["panel"] == "accuracy"], options)
     for panel in planes(options):
         for way in ways(options):
             own = [row for row in diagram if row["panel"] == panel and row["way"] == way]
             found = [of_row[id(row)] for row in own]
-            numbers["shares"][f"{panel}, {way}"] = {name: found.count(name) / len(found) for name in PHASES}
+            numbers["shares"][f"{panel}, {way}"] = {
+                name: found.count(name) / len(found) for name in PHASES
+            }
             numbers["rest_misjudged"][f"{panel}, {way}"] = {
-                name: sum((row["k"] < k) != (of_row[id(row)] == "S") for row, k in zip(own, line, strict=True)) / len(own)
+                name: (
+                    sum(
+                        (row["k"] < k) != (of_row[id(row)] == "S")
+                        for row, k in zip(own, line, strict=True)
+                    )
+                    / len(own)
+                )
                 for name, line in (
                     ("by the Hopf line", [critical_k(_wheel(options, row["tau"])) for row in own]),
                     ("by 2 f / (a tau)", [estimate(_wheel(options, row["tau"])) for row in own]),
                 )
             }
     if options["start"] == "sweep":
-        numbers["hysteresis"] = {panel: _hysteresis([row for row in diagram if row["panel"] == panel], of_row) for panel in planes(options)}
+        numbers["hysteresis"] = {
+            panel: _hysteresis([row for row in diagram if row["panel"] == panel], of_row)
+            for panel in planes(options)
+        }
     return Findings([_claim(numbers, ways(options)[0])], numbers)
 
 
 def _accuracy(sample: list[Row], options: dict[str, Any]) -> dict[str, Any]:
-    """How much the averages of points change if steps are FINER times smaller, chaotic ones apart: these never come out the same."""
-    regular = [row for row, name in zip(sample, phases(sample, options), strict=True) if name != "C"]
+    """How much the averages of points change if steps are FINER times smaller, chaotic ones apart.
+
+    These never come out the same.
+    """
+    regular = [
+        row for row, name in zip(sample, phases(sample, options), strict=True) if name != "C"
+    ]
     changes = np.array([max(row["mean_off_by"], row["std_off_by"]) for row in regular])
     return {
         "points": len(regular),
@@ -188,15 +243,26 @@ def _hysteresis(rows: list[Row], of_row: dict[int, str]) -> dict[str, float]:
     pairs: dict[tuple[float, float], dict[str, str]] = {}
     for row in rows:
         pairs.setdefault((row["tau"], row["k"]), {})[row["way"]] = of_row[id(row)]
-    found = [f"{pair['up']} up, {pair['down']} down" for pair in pairs.values() if pair["up"] != pair["down"]]
+    found = [
+        f"{pair['up']} up, {pair['down']} down"
+        for pair in pairs.values()
+        if pair["up"] != pair["down"]
+    ]
     return {name: found.count(name) / len(pairs) for name in sorted(set(found))}
 
 
 def _claim(numbers: dict[str, Any], way: str) -> Claim:
     shares, misjudged = numbers["shares"], numbers["rest_misjudged"]
     wanted = {"plane": PHASES, "inset": ("S", "FB", "LLM")}
-    missing = [f"{name} in the {panel}" for panel, names in wanted.items() for name in names if not shares[f"{panel}, {way}"][name]]
-    exact, rough = (misjudged[f"inset, {way}"][name] for name in ("by the Hopf line", "by 2 f / (a tau)"))
+    missing = [
+        f"{name} in the {panel}"
+        for panel, names in wanted.items()
+        for name in names
+        if not shares[f"{panel}, {way}"][name]
+    ]
+    exact, rough = (
+        misjudged[f"inset, {way}"][name] for name in ("by the Hopf line", "by 2 f / (a tau)")
+    )
     return Claim(
         "M7",
         "four phases in (k, tau): S, FB, LLM and C; rest ends near k tau = 2 f / a",

@@ -1,4 +1,7 @@
-"""Which studies of the analytic model there are, and what each can be asked for. Light enough for `kickctl --help`."""
+"""Which studies of the analytic model there are, and what each can be asked for.
+
+Light enough for `kickctl --help`.
+"""
 
 from __future__ import annotations
 
@@ -18,31 +21,61 @@ TABLE = {
         ("M1", "M2"),
     ),
     "hopf": Entry(
-        "the exact Hopf line in (k, tau), whether limit cycles are born stable there, and the paper's estimate beside it",
+        "the exact Hopf line in (k, tau), whether limit cycles are born stable there, and the"
+        " paper's estimate beside it",
         (A, TAU, F, I),
         ("M3",),
     ),
     "branch": Entry(
-        "fixpoints, limit cycles and rotations followed in a parameter, stable and unstable, with their bifurcations",
+        "fixpoints, limit cycles and rotations followed in a parameter, stable and unstable, with"
+        " their bifurcations",
         (
             A,
             TAU,
-            K._replace(default=None, doc="spring constant of the rods, if another constant is followed (default 1.85)"),
+            K._replace(
+                default=None,
+                doc="spring constant of the rods, if another constant is followed (default 1.85)",
+            ),
             F,
             I,
-            Option("along", "k", 0.0, 0.0, "the constant that is followed", ("k", "tau", "a", "f", "I")),
-            Option("to", None, 1e-6, 1e4, "where to end (default: 20 for k, twelve times its value for others)"),
-            Option("dry", 0.1, 0.0, 10.0, "dry friction of the motor, for a branch of its own, in units of the rods' force"),
+            Option(
+                "along", "k", 0.0, 0.0, "the constant that is followed", ("k", "tau", "a", "f", "I")
+            ),
+            Option(
+                "to",
+                None,
+                1e-6,
+                1e4,
+                "where to end (default: 20 for k, twelve times its value for others)",
+            ),
+            Option(
+                "dry",
+                0.1,
+                0.0,
+                10.0,
+                "dry friction of the motor, for a branch of its own, in units of the rods' force",
+            ),
         ),
         ("M5", "M6", "M9"),
     ),
     "portrait": Entry(
-        "portraits in (phi, omega/2pi): fixpoints, manifolds of the saddles, limit cycles, trajectories",
-        (A, TAU, K._replace(default=None, doc="spring constant of the rods (default: the paper's 1.4, 1.65 and 1.85)"), F, I),
+        "portraits in (phi, omega/2pi): fixpoints, manifolds of the saddles, limit cycles,"
+        " trajectories",
+        (
+            A,
+            TAU,
+            K._replace(
+                default=None,
+                doc="spring constant of the rods (default: the paper's 1.4, 1.65 and 1.85)",
+            ),
+            F,
+            I,
+        ),
         ("M4",),
     ),
     "phase-diagram": Entry(
-        "std and mean of omega over (k, tau), with the phases and the lines between them; k swept up and down",
+        "std and mean of omega over (k, tau), with the phases and the lines between them; k swept"
+        " up and down",
         (
             A,
             F,
@@ -64,30 +97,53 @@ TABLE = {
         ("M7",),
     ),
     "lyapunov": Entry(
-        "the Lyapunov spectrum at a point, the largest exponent along k and over the plane, attractors and chaotic transients",
+        "the Lyapunov spectrum at a point, the largest exponent along k and over the plane,"
+        " attractors and chaotic transients",
         (
             A,
             TAU._replace(default=1.0),
             K._replace(default=15.0),
             F,
             I,
-            Option("seconds", 2000.0, 50.0, 1e6, "how long to follow each of 64 wheels for the spectrum, s; beyond 2000 s, more wheels"),
+            Option(
+                "seconds",
+                2000.0,
+                50.0,
+                1e6,
+                "how long to follow each of 64 wheels for the spectrum, s; beyond 2000 s, more"
+                " wheels",
+            ),
         ),
         ("M8",),
     ),
     "basins": Entry(
-        "basins of attraction in (phi, omega), and of kicks: which kick at which phase of the cycle leads where",
-        (A, TAU, K._replace(default=8.0), F, I, Option("points", 240, 16, 4000, "points on each axis")),
+        "basins of attraction in (phi, omega), and of kicks: which kick at which phase of the cycle"
+        " leads where",
+        (
+            A,
+            TAU,
+            K._replace(default=8.0),
+            F,
+            I,
+            Option("points", 240, 16, 4000, "points on each axis"),
+        ),
     ),
     "tick": Entry(
-        "what the length of a tick and the motor's latency do to the lines: the sampled wheel as a map",
+        "what the length of a tick and the motor's latency do to the lines: the sampled wheel as"
+        " a map",
         (
             A,
             TAU,
             F,
             I,
             Option("tick", 0.03, 1e-5, 1.0, "length of a tick, s"),
-            Option("latency", 0.0, 0.0, 1.0, "how long after its tick's begin a torque acts, s; no longer than a tick"),
+            Option(
+                "latency",
+                0.0,
+                0.0,
+                1.0,
+                "how long after its tick's begin a torque acts, s; no longer than a tick",
+            ),
         ),
     ),
 }

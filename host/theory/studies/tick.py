@@ -1,7 +1,9 @@
-"""What a brick's tick does to the lines of the model: where rest loses its stability, where rolling begins, and how fast it is.
+"""What a brick's tick does to the lines of the model.
 
-Two orders within a tick are compared: 'new' acts on the potentials that the tick has just made, as the robot does, 'old' on those of the
-tick before.
+Where rest loses its stability, where rolling begins, and how fast it is.
+
+Two orders within a tick are compared: 'new' acts on the potentials that the tick has just made, as
+the robot does, 'old' on those of the tick before.
 """
 
 from __future__ import annotations
@@ -33,8 +35,8 @@ SHORT = tuple(1.0 / (25 * 2**number) for number in range(8))
 GROWTH_POINTS = 81
 # The paper's robot runs at this k.
 RUNNING_K = 8.0
-# How long motions are followed at each k, in memories of the wheel, but at most so many seconds; how far rolling is looked for, in parts
-# of k_c.
+# How long motions are followed at each k, in memories of the wheel, but at most so many seconds;
+# how far rolling is looked for, in parts of k_c.
 FOLLOWED, LONGEST_S, LEAST, MOST = 300.0, 600.0, 0.2, 5.0
 # A wheel that takes more steps for that is too stiff to be followed as often as it has to be.
 MOST_STEPS = 1e6
@@ -44,16 +46,24 @@ _SWING_RAD = 1e-4
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
-    """The continuous limit; each tick and each latency by both orders; and what speaks of accuracy. Raises WrongUse."""
+    """The continuous limit; each tick and each latency by both orders.
+
+    And what speaks of accuracy. Raises WrongUse.
+    """
     hopf(wheel_of(options))
     Clock(options["tick"], options["latency"]).checked()
     ticks_s = [tick_s for tick_s in TICKS_S if tick_s >= options["latency"]]
     latencies_s = [options["tick"] * number / (LATENCIES - 1) for number in range(LATENCIES)]
-    found: list[Cell] = [{"part": "limit", "order": CONTINUOUS}, {"part": "growth", "order": CONTINUOUS}]
+    found: list[Cell] = [
+        {"part": "limit", "order": CONTINUOUS},
+        {"part": "growth", "order": CONTINUOUS},
+    ]
     for order in ORDERS:
         found += [{"part": part, "order": order} for part in ("point", "growth", "short", "check")]
         found += [{"part": "tick", "order": order, "tick_s": tick_s} for tick_s in ticks_s]
-        found += [{"part": "latency", "order": order, "latency_s": latency_s} for latency_s in latencies_s]
+        found += [
+            {"part": "latency", "order": order, "latency_s": latency_s} for latency_s in latencies_s
+        ]
     return found
 
 
@@ -77,7 +87,13 @@ def _limit(wheel: Wheel) -> Row:
     k_c = hopf(wheel).k
     steps = followed_s(wheel) * float(rate_per_s(wheel._replace(k=MOST * k_c).columns(1))[0])
     if steps > MOST_STEPS:
-        return {"k_c": k_c, "k_rolls": None, "k_stops": None, "hz": None, "note": f"too stiff to follow: a wheel takes {steps:.1e} steps"}
+        return {
+            "k_c": k_c,
+            "k_rolls": None,
+            "k_stops": None,
+            "hz": None,
+            "note": f"too stiff to follow: a wheel takes {steps:.1e} steps",
+        }
     return {"k_c": k_c, **_behaviour(Continuous(), wheel, k_c, followed_s(wheel)), "note": None}
 
 
@@ -89,12 +105,20 @@ def followed_s(wheel: Wheel) -> float:
 def lines(wheel: Wheel, clock: Clock) -> Row:
     """What this clock makes of the wheel; what there is not is None.
 
-    k_c: where rest loses its stability, with modulus and angle (rad a tick) of the multiplier there. k_rolls, k_stops: where swinging
-    turns into rolling as k rises, and where rolling ends as k falls. hz: turns per second at k = RUNNING_K.
+    k_c: where rest loses its stability, with modulus and angle (rad a tick) of the multiplier
+    there. k_rolls, k_stops: where swinging turns into rolling as k rises, and where rolling ends as
+    k falls. hz: turns per second at k = RUNNING_K.
     """
     k_c = critical_k(wheel, clock)
     if not k_c:
-        return {"k_c": k_c, "modulus": None, "angle": None, "k_rolls": None, "k_stops": None, "hz": None}
+        return {
+            "k_c": k_c,
+            "modulus": None,
+            "angle": None,
+            "k_rolls": None,
+            "k_stops": None,
+            "hz": None,
+        }
     multiplier = leading(wheel._replace(k=k_c), clock)
     return {
         "k_c": k_c,
@@ -113,14 +137,19 @@ def _behaviour(model: Model, wheel: Wheel, k_c: float, seconds: float) -> Row:
 
 
 def _running_hz(model: Model, wheel: Wheel, seconds: float) -> float | None:
-    """Turns per second of a wheel that rolls steadily: as far in one half of the time as in the other, to a quarter turn."""
+    """Turns per second of a wheel that rolls steadily.
+
+    As far in one half of the time as in the other, to a quarter turn.
+    """
     states = resting(np.zeros(1))
     states[PHI + 1] = 2 * pi
     begun = model.averages(model.begun(states), wheel.columns(1), seconds / 2)
     halves = [model.averages(begun.states, wheel.columns(1), seconds / 4)]
     halves.append(model.averages(halves[0].states, wheel.columns(1), seconds / 4))
     turns = [abs(float(half.omega_mean[0])) * seconds / 4 / (2 * pi) for half in halves]
-    return sum(turns) / (seconds / 2) if turns[1] > 2.0 and abs(turns[0] - turns[1]) < 0.25 else None
+    return (
+        sum(turns) / (seconds / 2) if turns[1] > 2.0 and abs(turns[0] - turns[1]) < 0.25 else None
+    )
 
 
 def _growth(wheel: Wheel, clock: Clock | None) -> list[Row]:
@@ -132,11 +161,14 @@ def _growth(wheel: Wheel, clock: Clock | None) -> list[Row]:
             matrix: Any = jacobian_at(sampled.at_rest()[:4], here)
             rates = np.linalg.eigvals(matrix)
         else:
-            # The least float keeps the multiplier 0, which there is without latency, from having no logarithm.
+            # The least float keeps the multiplier 0, which there is without latency, from having no
+            # logarithm.
             rates = np.log(multipliers(here, clock).astype(complex) + 1e-300) / clock.tick_s
         # The pair, or what becomes the pair: without k, a wheel stays where it is put.
         slowest = max(rates, key=lambda rate: float(rate.real))
-        rows.append({"k": k, "growth_per_s": float(slowest.real), "hz": abs(float(slowest.imag)) / (2 * pi)})
+        rows.append(
+            {"k": k, "growth_per_s": float(slowest.real), "hz": abs(float(slowest.imag)) / (2 * pi)}
+        )
     return rows
 
 
@@ -146,7 +178,11 @@ def _check(wheel: Wheel, clock: Clock) -> Row:
     if not k_c:
         return {"jacobian_off": None, "k_c_off": None, "onset_off": None}
     row, again = lines(wheel, clock), _behaviour(Sampled(clock), wheel, k_c, 2 * followed_s(wheel))
-    offs = [abs(row[name] / again[name] - 1) for name in ("k_rolls", "k_stops") if row[name] and again[name]]
+    offs = [
+        abs(row[name] / again[name] - 1)
+        for name in ("k_rolls", "k_stops")
+        if row[name] and again[name]
+    ]
     return {
         "jacobian_off": _jacobian_off(wheel._replace(k=k_c), clock),
         "k_c_off": abs(k_by_time_course(wheel, clock, k_c) / k_c - 1),
@@ -168,15 +204,22 @@ def k_by_time_course(wheel: Wheel, clock: Clock, k_c: float) -> float:
     parameters = wheel.columns(2)
     parameters[2] = k_c * (1 - NEAR), k_c * (1 + NEAR)
     window = round(200 * 2 * pi / abs(np.angle(leading(wheel._replace(k=k_c), clock))))
-    first = sampled.averages(sampled.unforced(resting(np.full(2, _SWING_RAD))), parameters, clock, 2 * window)
+    first = sampled.averages(
+        sampled.unforced(resting(np.full(2, _SWING_RAD))), parameters, clock, 2 * window
+    )
     first = sampled.averages(first.states, parameters, clock, window)
-    later = sampled.averages(sampled.advance(first.states, parameters, clock, PATIENCE), parameters, clock, window)
+    later = sampled.averages(
+        sampled.advance(first.states, parameters, clock, PATIENCE), parameters, clock, window
+    )
     below, above = np.log(later.omega_std / first.omega_std).tolist()
     return float(k_c * (1 - NEAR + 2 * NEAR * below / (below - above)))
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """No claim of the paper's, which knows no tick: where the lines are, and how they move with the tick."""
+    """No claim of the paper's, which knows no tick.
+
+    Where the lines are, and how they move with the tick.
+    """
     options = setting.options
     wheel = wheel_of(options)
     limit = next(row for row in rows if row["part"] == "limit")
@@ -214,7 +257,9 @@ def _numbers(rows: list[Row], k_hopf: float) -> dict[str, Any]:
         "k_rolls": point["k_rolls"],
         "k_stops": point["k_stops"],
         "hz": point["hz"],
-        "shift_pct_at_tick_s": {f"{tick_s:g}": shift_pct(at.get(tick_s), k_hopf) for tick_s in TOLD_S},
+        "shift_pct_at_tick_s": {
+            f"{tick_s:g}": shift_pct(at.get(tick_s), k_hopf) for tick_s in TOLD_S
+        },
         "k_c_rises_per_s_of_tick": _extrapolated(slopes),
     }
 
@@ -230,9 +275,13 @@ def _accuracy(rows: list[Row], limit: Row, options: dict[str, Any]) -> dict[str,
         "jacobian_against_differences": check["jacobian_off"],
         "k_c_against_time_course": check["k_c_off"],
         "k_rolls_and_stops_followed_twice_as_long": check["onset_off"],
-        "k_c_without_tick_against_hopf": abs(_extrapolated([k_c for _, k_c in _short(rows)]) / limit["k_c"] - 1),
+        "k_c_without_tick_against_hopf": abs(
+            _extrapolated([k_c for _, k_c in _short(rows)]) / limit["k_c"] - 1
+        ),
         "order_of_convergence": log2(offs[-2] / offs[-1]),
-        "k_rolls_without_tick_against_continuous": abs(_extrapolated(known) / limit["k_rolls"] - 1) if comparable else None,
+        "k_rolls_without_tick_against_continuous": (
+            abs(_extrapolated(known) / limit["k_rolls"] - 1) if comparable else None
+        ),
     }
 
 

@@ -1,4 +1,7 @@
-"""The experiments on simulated cars and trains: what their numbers mean, on made-up motions; and short runs of the real ones."""
+"""The experiments on simulated cars and trains: what their numbers mean, on made-up motions.
+
+And short runs of the real ones.
+"""
 
 import importlib
 import json
@@ -13,10 +16,18 @@ import numpy as np
 import pytest
 
 from host.errors import NotDone, WrongUse
-from host.perform import reproduce
-from host.experiments.bodies import car_route, car_slope, train_fault, train_kick, train_start, train_wall, train_wiggle
+from host.experiments.bodies import (
+    car_route,
+    car_slope,
+    train_fault,
+    train_kick,
+    train_start,
+    train_wall,
+    train_wiggle,
+)
 from host.experiments.bodies.stage import Ran, pushed_off
 from host.experiments.registry import BODIES, TABLE
+from host.perform import reproduce
 from host.perform.run import perform
 from host.runs import processes
 from host.runs.claims import Claim
@@ -28,7 +39,13 @@ SHORT = {"seconds": 3.0, "seeds": 2, "trials": 1, "goals": 1, "preset": "paper"}
 
 
 def setting(name, seed=1, **options):
-    return Setting(seed, {option.name: options.get(option.name, SHORT[option.name]) for option in TABLE[name].options})
+    return Setting(
+        seed,
+        {
+            option.name: options.get(option.name, SHORT[option.name])
+            for option in TABLE[name].options
+        },
+    )
 
 
 def module(name):
@@ -67,14 +84,23 @@ def test_a_short_run_ends_in_numbers_and_a_figure(name, monkeypatch):
     rows = []
     for kind in fields:
         of_kind = [cell for cell in cells if (*sorted(cell), cell.get("part")) == kind]
-        first = next((cell for cell in of_kind if {key: cell.get(key) for key in (shown[0] if shown else ())} in shown), of_kind[0])
+        first = next(
+            (
+                cell
+                for cell in of_kind
+                if {key: cell.get(key) for key in (shown[0] if shown else ())} in shown
+            ),
+            of_kind[0],
+        )
         made_rows = experiment.simulate(first, chosen)
         assert plain(made_rows) == made_rows
         rows += [{**cell, **row} for cell in of_kind for row in made_rows]
     findings = experiment.report(rows, chosen)
     assert [claim.id for claim in findings.claims] == list(TABLE[name].claims)
     assert plain(findings.numbers) == findings.numbers
-    figure = importlib.import_module("host.figures.bodies." + name.replace("-", "_")).draw(rows, findings)
+    figure = importlib.import_module("host.figures.bodies." + name.replace("-", "_")).draw(
+        rows, findings
+    )
     figure.canvas.draw()
     assert all(axes.has_data() for axes in figure.axes)
 
@@ -107,11 +133,20 @@ def test_the_claims_come_after_those_of_robot_and_model():
     assert known[0] == "R1"
 
 
-@pytest.mark.parametrize(("uri", "library", "reason"), [("tcp://robot:5425", True, "by name"), ("sim://", False, "kickctl[bodies]")])
-def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(monkeypatch, tmp_path, uri, library, reason):
+@pytest.mark.parametrize(
+    ("uri", "library", "reason"),
+    [("tcp://robot:5425", True, "by name"), ("sim://", False, "kickctl[bodies]")],
+)
+def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(
+    monkeypatch, tmp_path, uri, library, reason
+):
     def perform(name, *_, **__):
         assert name not in BODIES
-        claims = [Claim(number, "", "", 1.0, "1", None, holds=True).as_dict() for number in known if number in entry(name).claims]
+        claims = [
+            Claim(number, "", "", 1.0, "1", None, holds=True).as_dict()
+            for number in known
+            if number in entry(name).claims
+        ]
         return {"claims": claims, "seed": 1, "version": ""}
 
     def entry(name):
@@ -163,7 +198,9 @@ def ran(omega, x=0.0, y=0.0, dt_s=0.005):
     """A run whose wheels turned at omega (times, wheels), and whose middle was at x, y."""
     omega = np.asarray(omega, dtype=float)
     t = np.arange(len(omega)) * dt_s
-    centre = np.stack([np.broadcast_to(x, t.shape), np.broadcast_to(y, t.shape), np.zeros_like(t)], axis=1)
+    centre = np.stack(
+        [np.broadcast_to(x, t.shape), np.broadcast_to(y, t.shape), np.zeros_like(t)], axis=1
+    )
     return Ran(Course(t, omega, centre, np.zeros_like(t)), np.zeros((len(t), 8)), centre, None)
 
 
@@ -194,7 +231,13 @@ def wall_rows(counts, ended=train_wall.STUCK):
     rows = []
     for train in train_wall.TRAINS:
         for bouncy in (False, True):
-            own = {**train, "bouncy": bouncy, "number": 0, "whole": counts[train["preset"]], "aside_m": 0.0}
+            own = {
+                **train,
+                "bouncy": bouncy,
+                "number": 0,
+                "whole": counts[train["preset"]],
+                "aside_m": 0.0,
+            }
             times = [float(time) for time in range(9)]  # not all of them of the whole train
             rows += [{**own, "controller": True, "reversals_s": times, "ended": train_wall.RUNS}]
             rows += [{**own, "controller": False, "reversals_s": [], "ended": ended}]
@@ -210,7 +253,9 @@ def wall_rows(counts, ended=train_wall.STUCK):
         (9, 9, train_wall.RUNS, False),
     ],
 )
-def test_b3_wants_five_reversals_of_both_presets_and_none_without_neurons(paper, snake, ended, holds):
+def test_b3_wants_five_reversals_of_both_presets_and_none_without_neurons(
+    paper, snake, ended, holds
+):
     rows = wall_rows({"paper": paper, "snake2019": snake}, ended)
     (claim,) = train_wall.report(rows, setting("train-wall")).claims
     assert claim.holds is holds
@@ -219,7 +264,13 @@ def test_b3_wants_five_reversals_of_both_presets_and_none_without_neurons(paper,
 
 def start_rows(orders, ways):
     return [
-        {"preset": name, "number": number, "t_s": t_s, "order": order if t_s else 0.2, "omega_rad_s": 40.0 * way}
+        {
+            "preset": name,
+            "number": number,
+            "t_s": t_s,
+            "order": order if t_s else 0.2,
+            "omega_rad_s": 40.0 * way,
+        }
         for name in ("paper", "snake2019")
         for number, (order, way) in enumerate(zip(orders, ways, strict=True))
         for t_s in (0.0, 5.0, 5.5)
@@ -227,7 +278,8 @@ def start_rows(orders, ways):
 
 
 @pytest.mark.parametrize(
-    ("orders", "ways", "holds"), [((1.0, 1.0), (1, -1), True), ((1.0, 0.9), (1, -1), False), ((1.0, 1.0), (1, 1), False)]
+    ("orders", "ways", "holds"),
+    [((1.0, 1.0), (1, -1), True), ((1.0, 0.9), (1, -1), False), ((1.0, 1.0), (1, 1), False)],
 )
 def test_b2_wants_all_trains_ordered_and_both_directions(orders, ways, holds):
     findings = train_start.report(start_rows(orders, ways), setting("train-start"))
@@ -246,17 +298,37 @@ def test_b2_wants_all_trains_ordered_and_both_directions(orders, ways, holds):
     ],
 )
 def test_b1_wants_ten_minutes_inside_on_the_wheels(inside, flipped, seconds, last_s, holds):
-    fixed = {"reach_m": 5.0, "lean_rad": 0.3, "reversals": 9, "path_m": 1.0, "travelled": 1.0, "last_s": last_s, "spun": 0.0, "squares": 9}
-    rows = [{"angle": angle, "number": 0, "inside": inside, "flipped": flipped, **fixed} for angle in car_slope.ANGLES]
+    fixed = {
+        "reach_m": 5.0,
+        "lean_rad": 0.3,
+        "reversals": 9,
+        "path_m": 1.0,
+        "travelled": 1.0,
+        "last_s": last_s,
+        "spun": 0.0,
+        "squares": 9,
+    }
+    rows = [
+        {"angle": angle, "number": 0, "inside": inside, "flipped": flipped, **fixed}
+        for angle in car_slope.ANGLES
+    ]
     (claim,) = car_slope.report(rows, setting("car-slope", seconds=seconds)).claims
     assert claim.holds is holds
 
 
 def test_a_wave_that_travels_has_its_frequency_its_lag_and_its_amplitudes():
     t = np.arange(6000) * 0.005
-    waves = np.stack([amplitude * np.cos(2 * pi * 3.8 * t - joint * 2.2) for joint, amplitude in enumerate((5, 10, 15, 20))], axis=1)
+    waves = np.stack(
+        [
+            amplitude * np.cos(2 * pi * 3.8 * t - joint * 2.2)
+            for joint, amplitude in enumerate((5, 10, 15, 20))
+        ],
+        axis=1,
+    )
     rows = train_wiggle.wiggling(waves, 0.005)
-    assert [row["std_deg"] for row in rows] == pytest.approx(np.array((5, 10, 15, 20)) / np.sqrt(2), rel=0.01)
+    assert [row["std_deg"] for row in rows] == pytest.approx(
+        np.array((5, 10, 15, 20)) / np.sqrt(2), rel=0.01
+    )
     assert [row["lag_deg"] for row in rows[1:]] == pytest.approx([-np.degrees(2.2)] * 3, abs=1.0)
     assert rows[0]["lag_deg"] is None
     assert [row["hz"] for row in rows] == pytest.approx([3.8] * 4, abs=0.05)
@@ -270,8 +342,17 @@ def turning(*speeds):
 def test_a_cars_motion_has_one_name():
     t = np.arange(1000) * 0.005
     swing = np.stack([5 * np.cos(3 * t), 0 * t], axis=1)
-    found = [car_route.kind_of(omega, 0.005) for omega in (turning(0, 0), swing, turning(9, -9), turning(9, 8), turning(-9, -8))]
-    assert found == [car_route.REST, car_route.SWING, car_route.SPIN, car_route.ROLL, car_route.ROLL]
+    found = [
+        car_route.kind_of(omega, 0.005)
+        for omega in (turning(0, 0), swing, turning(9, -9), turning(9, 8), turning(-9, -8))
+    ]
+    assert found == [
+        car_route.REST,
+        car_route.SWING,
+        car_route.SPIN,
+        car_route.ROLL,
+        car_route.ROLL,
+    ]
 
 
 def test_the_formula_gives_the_speed_of_the_car_of_2019_and_none_below_its_onset():
@@ -281,7 +362,12 @@ def test_the_formula_gives_the_speed_of_the_car_of_2019_and_none_below_its_onset
 
 @pytest.mark.parametrize(
     ("after", "outcome"),
-    [(-40.0, train_kick.REVERSED), (40.0, train_kick.ON), (1.0, train_kick.STOPS), (np.array([40.0] * 5 + [-40.0] * 5), train_kick.MIXED)],
+    [
+        (-40.0, train_kick.REVERSED),
+        (40.0, train_kick.ON),
+        (1.0, train_kick.STOPS),
+        (np.array([40.0] * 5 + [-40.0] * 5), train_kick.MIXED),
+    ],
 )
 def test_a_kicks_outcome_is_told_by_all_wheels(after, outcome):
     assert train_kick.outcome_of(np.full(10, 50.0), np.broadcast_to(after, (10,))) == outcome
@@ -302,6 +388,12 @@ def test_a_wheel_is_as_large_and_as_weak_as_the_fault_has_it():
     body = pushed_off(preset("paper"), seed=1, prepare=train_fault.sized(radii))
     sizes = [body.model.geom(name + "_wheel").size[0] for name in body.wheels]
     assert sizes == pytest.approx(0.03 * radii)
-    dead = train_fault.simulate({"part": "weaker", "wheel": train_fault.WEAK, "percent": -100, "number": 1}, setting("train-fault"))
-    whole = train_fault.simulate({"part": "weaker", "wheel": train_fault.WEAK, "percent": 0, "number": 1}, setting("train-fault"))
+    dead = train_fault.simulate(
+        {"part": "weaker", "wheel": train_fault.WEAK, "percent": -100, "number": 1},
+        setting("train-fault"),
+    )
+    whole = train_fault.simulate(
+        {"part": "weaker", "wheel": train_fault.WEAK, "percent": 0, "number": 1},
+        setting("train-fault"),
+    )
     assert dead[0]["speed_m_s"] < whole[0]["speed_m_s"]

@@ -1,4 +1,7 @@
-"""The experiment `bifurcation`: the jump, the hysteresis, the unstable branch that is one, and no claim where they are missing."""
+"""The experiment `bifurcation`.
+
+The jump, the hysteresis, the unstable branch that is one, and no claim where they are missing.
+"""
 
 import pytest
 
@@ -32,7 +35,10 @@ def folds():
 
 @pytest.fixture(scope="module")
 def branch():
-    return {hertz: done({"part": "branch", "motion": "forward", "held_hz": hertz})[0] for hertz in (0.24, 0.3, 0.5)}
+    return {
+        hertz: done({"part": "branch", "motion": "forward", "held_hz": hertz})[0]
+        for hertz in (0.24, 0.3, 0.5)
+    }
 
 
 def verdict(rows, number):
@@ -41,7 +47,14 @@ def verdict(rows, number):
 
 def test_the_same_k_finds_the_robot_running_on_the_way_down_and_at_rest_on_the_way_up(sweep):
     for side in WHEELS:
-        runs = {way: {row["k"] for row in sweep if (row["way"], row["side"]) == (way, side) and not row["rests"]} for way in ("down", "up")}
+        runs = {
+            way: {
+                row["k"]
+                for row in sweep
+                if (row["way"], row["side"]) == (way, side) and not row["rests"]
+            }
+            for way in ("down", "up")
+        }
         assert len(runs["down"] - runs["up"]) >= 2
         assert bifurcation.START_K in runs["up"]
         assert min(runs["down"] | runs["up"]) > 0.44
@@ -64,7 +77,13 @@ def test_without_the_feedback_a_wheel_leaves_an_unstable_cycle_and_stays_on_a_st
 
 
 def test_the_claims_hold(sweep, folds, branch):
-    rows = [*sweep, *folds, *branch.values(), *done({"part": "ramp", "trial": 0}), *done({"part": "ramp", "trial": 1}, seed=4)]
+    rows = [
+        *sweep,
+        *folds,
+        *branch.values(),
+        *done({"part": "ramp", "trial": 0}),
+        *done({"part": "ramp", "trial": 1}, seed=4),
+    ]
     assert verdict(rows, "R5").holds
     assert verdict(rows, "R6").holds
 

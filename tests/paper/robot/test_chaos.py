@@ -9,7 +9,18 @@ import pytest
 from host.client.robot import connect
 from host.errors import NotDone
 from host.experiments.robot import chaos
-from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, RESTS, ROLLS, SWITCHES, Jump, ending, switches, wheels_run
+from host.experiments.robot.switching import (
+    CONDITIONS,
+    DELAYED,
+    ORDINARY,
+    RESTS,
+    ROLLS,
+    SWITCHES,
+    Jump,
+    ending,
+    switches,
+    wheels_run,
+)
 from host.figures.robot.chaos import draw
 from host.logs.log import Log
 from host.runs.contract import Setting
@@ -24,7 +35,13 @@ MODE = {"k": chaos.K, "tau_s": chaos.TAU_S}
 
 
 def runs(name, wheels, seconds, seed=1, jump=None, **changes):
-    return np.concatenate(list(wheels_run(CONDITIONS[name], SETTING, wheels, seconds, seed, jump, **{**MODE, **changes})))
+    return np.concatenate(
+        list(
+            wheels_run(
+                CONDITIONS[name], SETTING, wheels, seconds, seed, jump, **{**MODE, **changes}
+            )
+        )
+    )
 
 
 def with_fields(rows, **fields):
@@ -64,7 +81,9 @@ def test_a_noisy_rhythm_has_no_greater_exponent_than_noise_makes():
     assert exponent.interval[0] < of_noise()
 
 
-@pytest.mark.parametrize("values", [np.zeros(9000), np.sin(np.arange(300.0))], ids=["still", "short"])
+@pytest.mark.parametrize(
+    "values", [np.zeros(9000), np.sin(np.arange(300.0))], ids=["still", "short"]
+)
 def test_no_exponent_is_made_up_where_there_is_nothing_to_estimate(values):
     assert from_series(values, 0.03, 2.0) is None
 
@@ -75,7 +94,9 @@ def test_twins_that_double_in_a_second_part_at_ln_2():
 
 
 def test_a_wheel_turns_around_where_its_angle_is_greatest_or_least():
-    phi = np.concatenate([np.linspace(0, 9, 61), np.linspace(9, 2, 50)[1:], np.linspace(2, 12, 70)[1:]])
+    phi = np.concatenate(
+        [np.linspace(0, 9, 61), np.linspace(9, 2, 50)[1:], np.linspace(2, 12, 70)[1:]]
+    )
     assert switches(phi).tolist() == [60, 109]
 
 
@@ -85,7 +106,11 @@ def test_a_wheel_that_chatters_by_two_degrees_at_rest_does_not_switch():
 
 @pytest.mark.parametrize(
     ("after", "expected"),
-    [(np.zeros(1200), RESTS), (np.arange(1200) * 0.3, ROLLS), (np.abs(np.arange(1200) % 100 - 50) * 0.3, SWITCHES)],
+    [
+        (np.zeros(1200), RESTS),
+        (np.arange(1200) * 0.3, ROLLS),
+        (np.abs(np.arange(1200) % 100 - 50) * 0.3, SWITCHES),
+    ],
     ids=[RESTS, ROLLS, SWITCHES],
 )
 def test_what_a_wheel_does_in_the_end_is_told_apart(after, expected):
@@ -124,7 +149,9 @@ def test_with_a_longer_latency_wheels_go_on_switching_and_their_exponent_is_posi
 
 def test_twins_part_with_the_latency_and_a_jump_below_the_steps_dies_with_tau(monkeypatch):
     monkeypatch.setattr(chaos, "_TWINS", 24)
-    cells = ({"part": "twins", "condition": DELAYED, "jump": jump} for jump in (chaos.SEEN, chaos.UNSEEN))
+    cells = (
+        {"part": "twins", "condition": DELAYED, "jump": jump} for jump in (chaos.SEEN, chaos.UNSEEN)
+    )
     seen, unseen = (chaos.growth(chaos.simulate(cell, SETTING)) for cell in cells)
     assert seen.interval[0] > 0.5
     assert unseen.rate == pytest.approx(-1 / chaos.TAU_S, abs=0.05)
@@ -132,7 +159,12 @@ def test_twins_part_with_the_latency_and_a_jump_below_the_steps_dies_with_tau(mo
 
 def test_it_is_the_bound_of_the_torque_that_ends_the_chaos_of_the_papers_model():
     free, bounded = (
-        {row["end"] for row in chaos.simulate({"part": "model", "wheel": "paper", "bounded": bounded}, SETTING)}
+        {
+            row["end"]
+            for row in chaos.simulate(
+                {"part": "model", "wheel": "paper", "bounded": bounded}, SETTING
+            )
+        }
         for bounded in (False, True)
     )
     assert free == {SWITCHES}
@@ -140,15 +172,28 @@ def test_it_is_the_bound_of_the_torque_that_ends_the_chaos_of_the_papers_model()
 
 
 def test_a_piece_done_again_has_the_same_rows_and_they_survive_json():
-    for cell in ({"part": "map", "latency_s": 0.075, "inertia": 1.0}, {"part": "speed", "condition": ORDINARY}):
+    for cell in (
+        {"part": "map", "latency_s": 0.075, "inertia": 1.0},
+        {"part": "speed", "condition": ORDINARY},
+    ):
         rows = chaos.simulate(cell, SETTING)
-        assert rows == chaos.simulate(cell, SETTING) == json.loads(json.dumps(rows, allow_nan=False))
+        assert (
+            rows == chaos.simulate(cell, SETTING) == json.loads(json.dumps(rows, allow_nan=False))
+        )
 
 
 def series_rows(records):
     """Both wheels of a robot."""
     return [
-        {"part": "series", "condition": ORDINARY, "side": side, "t_s": 0.03 * tick, "phi_rad": phi, "force": force, "torque": torque}
+        {
+            "part": "series",
+            "condition": ORDINARY,
+            "side": side,
+            "t_s": 0.03 * tick,
+            "phi_rad": phi,
+            "force": force,
+            "torque": torque,
+        }
         for side, record in zip(("left", "right"), records, strict=True)
         for tick, (phi, force, torque) in enumerate(record[:, [PHI, FORCE, TORQUE]].tolist())
     ]
@@ -173,7 +218,9 @@ def test_r14_does_not_hold_for_a_robot_that_rolls_nor_for_one_that_rolls_to_and_
 
 def _even(record):
     """A wheel to and fro, like clockwork but for a late tick now and then."""
-    time_s = 0.03 * np.arange(len(record)) + 0.001 * np.random.default_rng(0).standard_exponential(len(record))
+    time_s = 0.03 * np.arange(len(record)) + 0.001 * np.random.default_rng(0).standard_exponential(
+        len(record)
+    )
     even = record.copy()
     even[:, PHI] = np.round(180 / pi * 3 * np.sin(4 * time_s)) * pi / 180
     even[:, FORCE] = 8 * np.sin(4 * time_s + 1)
@@ -181,10 +228,20 @@ def _even(record):
 
 
 def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hold(monkeypatch):
-    for name, value in (("LATENCIES_S", (0.003, 0.06)), ("INERTIAS", (1.0,)), ("_LIVES", 6), ("_LIVES_DELAYED", 2), ("_TWINS", 4)):
+    for name, value in (
+        ("LATENCIES_S", (0.003, 0.06)),
+        ("INERTIAS", (1.0,)),
+        ("_LIVES", 6),
+        ("_LIVES_DELAYED", 2),
+        ("_TWINS", 4),
+    ):
         monkeypatch.setattr(chaos, name, value)
     setting = Setting(1, {"minutes": 1.0})
-    rows = [row for cell in chaos.cells(setting.options, batch=True) for row in with_fields(chaos.simulate(cell, setting), **cell)]
+    rows = [
+        row
+        for cell in chaos.cells(setting.options, batch=True)
+        for row in with_fields(chaos.simulate(cell, setting), **cell)
+    ]
     findings = chaos.report(rows, setting)
     (claim,) = findings.claims
     assert not claim.holds
@@ -220,5 +277,7 @@ def test_a_stop_in_between_is_told():
 
         robot.wait = stopped_meanwhile
         with pytest.raises(NotDone, match="does not run"):
-            chaos.trial({"part": "series", "condition": ORDINARY}, robot, log, Setting(1, {"minutes": 10.0}))
+            chaos.trial(
+                {"part": "series", "condition": ORDINARY}, robot, log, Setting(1, {"minutes": 10.0})
+            )
         assert log.seconds < 5.0

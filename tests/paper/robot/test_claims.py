@@ -14,7 +14,10 @@ OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def trial(seed, **kick):
-    """Start, settle, kick both wheels and watch them: [(heading before, heading after)] of left and right."""
+    """Start, settle, kick both wheels and watch them.
+
+    [(heading before, heading after)] of left and right.
+    """
     brick = SimBrick(seed)
     loop = Loop(brick.motors, brick.battery, brick.clock, seed)
     loop.start()
@@ -36,7 +39,9 @@ def trial(seed, **kick):
 
 def reversals(**kick):
     """How many of TRIALS robots had both wheels reversed."""
-    return sum(all(new == OPPOSITE.get(old) for old, new in trial(seed, **kick)) for seed in range(TRIALS))
+    return sum(
+        all(new == OPPOSITE.get(old) for old, new in trial(seed, **kick)) for seed in range(TRIALS)
+    )
 
 
 def test_r8_membrane_inversion_always_reverses():
@@ -55,7 +60,11 @@ def test_r9_long_position_kicks_fail_again():
 
 @pytest.mark.parametrize(("sign", "begins"), [(1, "forward"), (-1, "backward")])
 def test_r10_the_sign_that_the_paper_names_reverses(sign, begins):
-    outcomes = [turn for seed in range(TRIALS) for turn in trial(seed, mode="phase", ticks=3, shift=sign * 3 * pi / 4)]
+    outcomes = [
+        turn
+        for seed in range(TRIALS)
+        for turn in trial(seed, mode="phase", ticks=3, shift=sign * 3 * pi / 4)
+    ]
     reversed_ones = [new == OPPOSITE[begins] for old, new in outcomes if old == begins]
     assert len(reversed_ones) >= TRIALS / 2
     assert sum(reversed_ones) >= 0.95 * len(reversed_ones)

@@ -1,4 +1,7 @@
-"""The experiment `primitives`: every transition tried, by kicks alone where the paper says so, and no claim without its evidence."""
+"""The experiment `primitives`.
+
+Every transition tried, by kicks alone where the paper says so, and no claim without its evidence.
+"""
 
 from collections import Counter
 from itertools import pairwise
@@ -17,7 +20,9 @@ def summary(tmp_path_factory):
     """One round, one start and one try of rest at three k, through the robot's whole loop."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(primitives, "KS", KS)
-        return perform("primitives", "sim://", seed=2, out=tmp_path_factory.mktemp("results"), trials=1)
+        return perform(
+            "primitives", "sim://", seed=2, out=tmp_path_factory.mktemp("results"), trials=1
+        )
 
 
 def claims_of(summary):
@@ -25,14 +30,32 @@ def claims_of(summary):
 
 
 def row(begin, end, *, reached=True, k=8.0):
-    return {"kind": "transition", "begin": begin, "end": end, "reached": reached, "kicks": 1, "seconds": 1.0, "k_before": 8.0, "k": k}
+    return {
+        "kind": "transition",
+        "begin": begin,
+        "end": end,
+        "reached": reached,
+        "kicks": 1,
+        "seconds": 1.0,
+        "k_before": 8.0,
+        "k": k,
+    }
 
 
 def round_of(**changes):
     """Rows in which all went well, with changes to the transition from forward to backward."""
-    rows = [row(*pair, **(changes if pair == ("forward", "backward") else {})) for pair in pairwise(primitives.circuit())]
+    rows = [
+        row(*pair, **(changes if pair == ("forward", "backward") else {}))
+        for pair in pairwise(primitives.circuit())
+    ]
     rows += [{"kind": "rest", "k": k, "runs": k > 0.45, "stays": k < 0.6} for k in primitives.KS]
-    return [*rows, *({"kind": "start", "side": side, "hz": hertz, "duty_pct": 85.0, "ripple": 0.0} for side, hertz in started())]
+    return [
+        *rows,
+        *(
+            {"kind": "start", "side": side, "hz": hertz, "duty_pct": 85.0, "ripple": 0.0}
+            for side, hertz in started()
+        ),
+    ]
 
 
 def started(backward=-2.0):
@@ -46,7 +69,9 @@ def verdict(rows, number):
 
 def test_a_round_makes_every_transition_once_each_from_where_the_last_ended():
     tour = primitives.circuit()
-    wanted = {(begin, end): 1 for begin in primitives.STATES for end in primitives.STATES if begin != end}
+    wanted = {
+        (begin, end): 1 for begin in primitives.STATES for end in primitives.STATES if begin != end
+    }
     assert Counter(pairwise(tour)) == wanted
 
 
@@ -54,7 +79,9 @@ def test_all_primitives_are_reached_from_each_other(summary):
     claims = claims_of(summary)
     assert claims["R7"]["holds"], claims["R7"]
     assert len(summary["numbers"]["transitions"]) == 20
-    assert all(score["reached"] == score["of"] == 1 for score in summary["numbers"]["transitions"].values())
+    assert all(
+        score["reached"] == score["of"] == 1 for score in summary["numbers"]["transitions"].values()
+    )
 
 
 def test_speed_power_and_steadiness_are_the_papers(summary):
@@ -79,17 +106,24 @@ def test_a_transition_that_failed_or_needed_another_k_is_not_one_by_kicks_alone(
 
 
 def test_a_transition_that_was_never_tried_is_no_success():
-    rows = [row for row in round_of() if (row.get("begin"), row.get("end")) != ("stopped", "spin-left")]
+    rows = [
+        row for row in round_of() if (row.get("begin"), row.get("end")) != ("stopped", "spin-left")
+    ]
     assert not verdict(rows, "R7").holds
 
 
 def test_rest_that_coexists_with_locomotion_nowhere_is_a_failure():
-    rows = [{**row, "stays": row["k"] < 0.45} if row["kind"] == "rest" else row for row in round_of()]
+    rows = [
+        {**row, "stays": row["k"] < 0.45} if row["kind"] == "rest" else row for row in round_of()
+    ]
     assert not verdict(rows, "R7").holds
 
 
 @pytest.mark.parametrize("backward", [2.0, -1.8])
 def test_one_direction_alone_or_of_another_speed_is_no_coexistence_of_mirror_images(backward):
     rows = [row for row in round_of() if row["kind"] != "start"]
-    rows += [{"kind": "start", "side": side, "hz": hertz, "duty_pct": 85.0, "ripple": 0.0} for side, hertz in started(backward)]
+    rows += [
+        {"kind": "start", "side": side, "hz": hertz, "duty_pct": 85.0, "ripple": 0.0}
+        for side, hertz in started(backward)
+    ]
     assert not verdict(rows, "R1").holds

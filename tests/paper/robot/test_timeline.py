@@ -49,7 +49,9 @@ def verdict(rows, number):
 
 def test_all_three_kicks_reverse_there_and_back_and_take_longer_to_settle_than_they_last(rows):
     kicks = [row for row in rows if row["kind"] == "kick"]
-    assert [row["mode"] for row in kicks] == 2 * [mode for mode in timeline.KICKS for _ in timeline.TURNS]
+    assert [row["mode"] for row in kicks] == 2 * [
+        mode for mode in timeline.KICKS for _ in timeline.TURNS
+    ]
     assert all(row["reversed"] for row in kicks)
     assert min(timeline.settling(timeline.kicks(rows))) > max(row["kick_s"] for row in kicks)
     assert verdict(rows, "R8").measured == 1.0
@@ -59,12 +61,16 @@ def test_all_three_kicks_reverse_there_and_back_and_take_longer_to_settle_than_t
 
 def test_kicks_make_the_relative_phase_slip_and_that_it_does_not_without(rows):
     done = timeline.kicks(rows)
-    assert max(abs(row["slip_rad"]) for row in done) > 3 * max(abs(row["drift_rad"]) for row in done)
+    assert max(abs(row["slip_rad"]) for row in done) > 3 * max(
+        abs(row["drift_rad"]) for row in done
+    )
 
 
 def test_slip_is_what_lies_between_the_phases_before_and_after(rows):
     for row in timeline.kicks(rows):
-        assert timeline.wrapped(row["relative_before_rad"] + row["slip_rad"] - row["relative_after_rad"]) == pytest.approx(0.0, abs=1e-9)
+        assert timeline.wrapped(
+            row["relative_before_rad"] + row["slip_rad"] - row["relative_after_rad"]
+        ) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_only_the_first_round_keeps_its_ticks_and_they_show_both_kicks_of_each_kind(rows):
@@ -72,12 +78,16 @@ def test_only_the_first_round_keeps_its_ticks_and_they_show_both_kicks_of_each_k
     assert {row["trial"] for row in ticks} == {0}
     for mode in timeline.KICKS:
         kicked = [row["kicked"] for row in ticks if row["mode"] == mode]
-        assert np.count_nonzero(np.diff(np.array([False, *kicked], dtype=int)) == 1) == len(timeline.TURNS)
+        assert np.count_nonzero(np.diff(np.array([False, *kicked], dtype=int)) == 1) == len(
+            timeline.TURNS
+        )
 
 
 def test_the_same_seed_gives_the_same_rows_which_survive_json(rows):
     again = done({"trial": 1})
-    assert json.loads(json.dumps(again, allow_nan=False)) == [row for row in rows if row["trial"] == 1]
+    assert json.loads(json.dumps(again, allow_nan=False)) == [
+        row for row in rows if row["trial"] == 1
+    ]
 
 
 def test_the_figure_shows_the_round(rows):
@@ -101,6 +111,8 @@ def test_kicks_that_did_not_reverse_count_against_the_inversion():
     assert not verdict([kick(0.1), {**kick(0.1), "reversed": False}], "R8").holds
 
 
-@pytest.mark.parametrize(("angle", "same"), [(0.0, 0.0), (3 * pi, -pi), (-pi / 2, -pi / 2), (7.0, 7.0 - 2 * pi)])
+@pytest.mark.parametrize(
+    ("angle", "same"), [(0.0, 0.0), (3 * pi, -pi), (-pi / 2, -pi / 2), (7.0, 7.0 - 2 * pi)]
+)
 def test_relative_phases_are_directions(angle, same):
     assert timeline.wrapped(angle) == pytest.approx(same)

@@ -19,9 +19,18 @@ FLOOR = {"part": "claim", **wall.PAPER}
 
 
 def ticks(*phases):
-    """(t, phi, torque) of phases of (seconds, left speed, right speed) in rad/s; M has the speed's sign."""
-    speeds = np.concatenate([np.tile([left, right], (round(seconds / TICK_S), 1)) for seconds, left, right in phases]).astype(float)
-    return np.arange(len(speeds)) * TICK_S, np.cumsum(speeds, axis=0) * TICK_S, 0.8 * np.sign(speeds)
+    """(t, phi, torque) of phases of (seconds, left speed, right speed) in rad/s.
+
+    M has the speed's sign.
+    """
+    speeds = np.concatenate(
+        [np.tile([left, right], (round(seconds / TICK_S), 1)) for seconds, left, right in phases]
+    ).astype(float)
+    return (
+        np.arange(len(speeds)) * TICK_S,
+        np.cumsum(speeds, axis=0) * TICK_S,
+        0.8 * np.sign(speeds),
+    )
 
 
 # What counts.
@@ -147,7 +156,10 @@ def rows_of(bounced, stuck, **fields):
     return [good] * bounced + [bad] * stuck
 
 
-@pytest.mark.parametrize(("bounced", "stuck", "holds"), [(50, 0, True), (48, 2, True), (47, 3, False), (0, 50, False), (0, 0, False)])
+@pytest.mark.parametrize(
+    ("bounced", "stuck", "holds"),
+    [(50, 0, True), (48, 2, True), (47, 3, False), (0, 50, False), (0, 0, False)],
+)
 def test_r13_holds_from_95_percent_on(bounced, stuck, holds):
     rows = rows_of(bounced, stuck, k=2.0)
     (claim,) = wall.report(rows, SETTING).claims
@@ -173,7 +185,13 @@ def test_the_figure_is_drawn_from_a_robots_rows_and_from_simulated_ones():
     robots = rows_of(5, 2, k=2.0)
     assert len(draw(robots, wall.report(robots, SETTING)).axes) == 1
     series = [
-        {"part": "series", **condition, "t_s": tick * TICK_S, **{side + "_torque": 0.8 for side in WHEELS}, "bounce": tick == 9}
+        {
+            "part": "series",
+            **condition,
+            "t_s": tick * TICK_S,
+            **{side + "_torque": 0.8 for side in WHEELS},
+            "bounce": tick == 9,
+        }
         for condition in (wall.PAPER, wall.WITH_BUMPER)
         for tick in range(20)
     ]

@@ -1,4 +1,8 @@
-"""Kicks and basins of the model: kicks against the robot's and another integrator's, symmetries, outcomes, and what the maps must show."""
+"""Kicks and basins of the model.
+
+Kicks against the robot's and another integrator's, symmetries, outcomes, and what the maps must
+show.
+"""
 
 from math import pi
 
@@ -10,7 +14,18 @@ from host.errors import WrongUse
 from host.figures.theory.basins import draw
 from host.runs.contract import Findings, Setting
 from host.theory.analysis import fates
-from host.theory.analysis.fates import BACK, BACKWARD, FORWARD, OTHER, REST, after_kicks, mirrored, rolling, started, watched
+from host.theory.analysis.fates import (
+    BACK,
+    BACKWARD,
+    FORWARD,
+    OTHER,
+    REST,
+    after_kicks,
+    mirrored,
+    rolling,
+    started,
+    watched,
+)
 from host.theory.engine import sampled
 from host.theory.engine.ensemble import Averages
 from host.theory.engine.kicked import KICKS, Continuous, Sampled, inverted, seen_in
@@ -37,7 +52,11 @@ def begun():
 
 def shares(model, wheels, mode, sign, lengths_s):
     """The share of wheels that a kick of each length reverses."""
-    return (after_kicks(model, WHEEL, wheels, mode, sign, [0.0, *lengths_s])[1:] == BACKWARD).mean(axis=1).tolist()
+    return (
+        (after_kicks(model, WHEEL, wheels, mode, sign, [0.0, *lengths_s])[1:] == BACKWARD)
+        .mean(axis=1)
+        .tolist()
+    )
 
 
 def test_kicks_show_the_neurons_what_the_robots_kicks_show_them():
@@ -50,16 +69,29 @@ def test_kicks_show_the_neurons_what_the_robots_kicks_show_them():
 
 def test_a_kick_alters_the_potentials_rates_and_not_the_force():
     x, actual = (0.3, -0.4), actual_positions(0.7)
-    plain, kicked = (seen_rates(*x, 5.0, *actual, *seen, *WHEEL) for seen in (actual, (-actual[0], -actual[1])))
+    plain, kicked = (
+        seen_rates(*x, 5.0, *actual, *seen, *WHEEL) for seen in (actual, (-actual[0], -actual[1]))
+    )
     assert plain[2:] == kicked[2:]
-    assert [(kicked[i] + plain[i]) / 2 for i in (0, 1)] == pytest.approx([-x[0] / 0.25, -x[1] / 0.25])
+    assert [(kicked[i] + plain[i]) / 2 for i in (0, 1)] == pytest.approx(
+        [-x[0] / 0.25, -x[1] / 0.25]
+    )
 
 
-@pytest.mark.parametrize("kick", [PLAIN, *(seen_in(mode, sign) for mode, sign in KICKS[1:]), Seen(0.3, 1.1)])
+@pytest.mark.parametrize(
+    "kick", [PLAIN, *(seen_in(mode, sign) for mode, sign in KICKS[1:]), Seen(0.3, 1.1)]
+)
 def test_a_kicked_wheel_moves_as_another_integrator_moves_it(kick):
     def field(_, y):
         sign, angle = 1 - 2 * kick.beta, y[PHI] + kick.shift_rad
-        return seen_rates(*y[:2], y[OMEGA], *actual_positions(y[PHI]), sign * np.cos(angle), sign * np.sin(angle), *WHEEL)
+        return seen_rates(
+            *y[:2],
+            y[OMEGA],
+            *actual_positions(y[PHI]),
+            sign * np.cos(angle),
+            sign * np.sin(angle),
+            *WHEEL,
+        )
 
     state = np.array([0.3, -0.4, 1.0, 7.0])
     solved = solve_ivp(field, (0.0, 0.4), state, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
@@ -71,13 +103,17 @@ def test_without_a_kick_a_kicked_wheel_is_any_wheel():
     states = started(np.linspace(-3.0, 3.0, 7), np.linspace(-9.0, 9.0, 7))
     for model in MODELS:
         kicked = model.kicked(model.begun(states), WHEEL.columns(7), 0.6, PLAIN)
-        assert kicked == pytest.approx(model.averages(model.begun(states), WHEEL.columns(7), 0.6).states, abs=1e-7)
+        assert kicked == pytest.approx(
+            model.averages(model.begun(states), WHEEL.columns(7), 0.6).states, abs=1e-7
+        )
 
 
 @pytest.mark.parametrize(("mode", "sign"), KICKS[1:])
 def test_a_sampled_kick_reverses_the_wheels_that_the_robots_own_kick_reverses(begun, mode, sign):
     lengths = (3, 5, 8)
-    found = after_kicks(Sampled(), WHEEL, begun[1], mode, sign, [0.0, *(TICK_S * ticks for ticks in lengths)])[1:]
+    found = after_kicks(
+        Sampled(), WHEEL, begun[1], mode, sign, [0.0, *(TICK_S * ticks for ticks in lengths)]
+    )[1:]
     shift = {"shift": sign * 3 * pi / 4} if sign else {}
     for ticks, line in zip(lengths, found, strict=True):
         kick = parse({"id": "test", "mode": mode, "ticks": ticks, **shift}, (1, 1), Params(), 0)
@@ -93,7 +129,8 @@ def test_a_quarter_turn_ahead_a_kick_does_the_same(model, begun):
     for mode, sign in KICKS:
         lengths_s = [0.0, 0.12, 0.24]
         assert (
-            after_kicks(model, WHEEL, wheels, mode, sign, lengths_s) == after_kicks(model, WHEEL, turned, mode, sign, lengths_s)
+            after_kicks(model, WHEEL, wheels, mode, sign, lengths_s)
+            == after_kicks(model, WHEEL, turned, mode, sign, lengths_s)
         ).mean() > 0.99
 
 
@@ -105,25 +142,42 @@ def test_in_a_mirror_a_kick_of_the_other_sign_does_the_other(model, begun):
         lengths_s = [0.0, 0.12, 0.24]
         forward = after_kicks(model, WHEEL, wheels, mode, sign, lengths_s)
         backward = after_kicks(model, WHEEL, mirrored(wheels), mode, -sign, lengths_s)
-        assert np.mean([opposite[name] == other for name, other in zip(forward.ravel(), backward.ravel(), strict=True)]) > 0.99
+        assert (
+            np.mean(
+                [
+                    opposite[name] == other
+                    for name, other in zip(forward.ravel(), backward.ravel(), strict=True)
+                ]
+            )
+            > 0.99
+        )
 
 
 @NAMED
 def test_inverted_potentials_always_reverse_a_wheel(model, begun):
-    assert set(after_kicks(model, WHEEL, begun[MODELS.index(model)], MEMBRANE, 0, [0.0]).ravel()) == {BACKWARD}
+    assert set(
+        after_kicks(model, WHEEL, begun[MODELS.index(model)], MEMBRANE, 0, [0.0]).ravel()
+    ) == {BACKWARD}
 
 
 @NAMED
 def test_a_kick_of_no_length_does_nothing_and_some_lengths_always_reverse(model, begun):
     wheels = begun[MODELS.index(model)]
     assert set(after_kicks(model, WHEEL, wheels, POSITION, 0, [0.0]).ravel()) == {FORWARD}
-    assert shares(model, wheels, POSITION, 0, [0.06, 0.18, 0.36]) == [0.0, 1.0, pytest.approx(0.43, abs=0.15)]
+    assert shares(model, wheels, POSITION, 0, [0.06, 0.18, 0.36]) == [
+        0.0,
+        1.0,
+        pytest.approx(0.43, abs=0.15),
+    ]
     assert shares(model, wheels, PHASE, 1, [0.06, 0.12, 0.3]) == [0.0, 1.0, 1.0]
     assert max(shares(model, wheels, PHASE, -1, [0.03, 0.06, 0.09])) == 0.0
 
 
 def test_the_wrong_sign_is_sure_for_the_sampled_wheel_only(begun):
-    continuous, by_ticks = (shares(model, wheels, PHASE, -1, [0.18, 0.21]) for model, wheels in zip(MODELS, begun, strict=True))
+    continuous, by_ticks = (
+        shares(model, wheels, PHASE, -1, [0.18, 0.21])
+        for model, wheels in zip(MODELS, begun, strict=True)
+    )
     assert by_ticks == [1.0, 1.0]
     assert max(continuous) < 0.75
 
@@ -136,7 +190,9 @@ def test_a_kick_that_altered_the_projection_too_would_never_reverse(begun):
         x1, x2, phi, omega, _ = kicked[:, number].tolist()
         for _ in range(5):
             minus = [-position for position in actual_positions(phi)]
-            x1, x2, force, _ = step_wheel(x1, x2, *minus, *minus, TICK_S, WHEEL.a, WHEEL.tau_s, WHEEL.k, 2)
+            x1, x2, force, _ = step_wheel(
+                x1, x2, *minus, *minus, TICK_S, WHEEL.a, WHEEL.tau_s, WHEEL.k, 2
+            )
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
         kicked[:, number] = x1, x2, phi, omega, 0.0
     right = Sampled().kicked(begun[1], WHEEL.columns(PHASES), 5 * TICK_S, seen_in(POSITION, 0))
@@ -166,7 +222,8 @@ def test_phases_cover_the_quarter_turn_evenly_in_time(model, begun):
 )
 def test_outcomes_are_told_from_two_windows(travel, std, expected):
     windows = [
-        Averages(np.array([quarters * pi / 2 / 10.0]), np.array([own]), np.zeros((4, 1))) for quarters, own in zip(travel, std, strict=True)
+        Averages(np.array([quarters * pi / 2 / 10.0]), np.array([own]), np.zeros((4, 1)))
+        for quarters, own in zip(travel, std, strict=True)
     ]
     assert fates.outcomes(*windows, 10.0, stable=True).tolist() == [expected]
     if expected == REST:
@@ -182,13 +239,20 @@ def test_rest_is_stable_below_each_models_own_k(model):
 
 def test_between_the_two_k_c_the_continuous_wheel_swings_and_the_sampled_one_rests():
     states = started(np.array([0.1, 0.3, 1.7]), np.zeros(3))
-    names = [watched(model, model.begun(states), WHEEL._replace(k=1.65))[0].tolist() for model in MODELS]
+    names = [
+        watched(model, model.begun(states), WHEEL._replace(k=1.65))[0].tolist() for model in MODELS
+    ]
     assert names == [[BACK] * 3, [REST] * 3]
 
 
 @NAMED
 def test_slow_wheels_rest_where_they_are_and_fast_ones_wells_further_on(model):
-    rows = basins._starts(model, WHEEL._replace(k=1.2), np.array([0.1, pi / 2 - 0.1, 0.1, -0.1]), np.array([0.0, 0.0, 20.0, -20.0]))
+    rows = basins._starts(
+        model,
+        WHEEL._replace(k=1.2),
+        np.array([0.1, pi / 2 - 0.1, 0.1, -0.1]),
+        np.array([0.0, 0.0, 20.0, -20.0]),
+    )
     assert [row["outcome"] for row in rows] == [REST] * 4
     assert [row["quarters"] for row in rows[:2]] == [0, 1]
     assert rows[2]["quarters"] == -rows[3]["quarters"] > 0
@@ -219,7 +283,11 @@ def run():
         patch.setattr(basins, "PHASES", 30)
         patch.setattr(basins, "CHECKED", 40)
         setting = Setting(1, OPTIONS)
-        rows = [{**cell, **row} for cell in basins.cells(OPTIONS) for row in basins.simulate(cell, setting)]
+        rows = [
+            {**cell, **row}
+            for cell in basins.cells(OPTIONS)
+            for row in basins.simulate(cell, setting)
+        ]
         return rows, basins.report(rows, setting)
 
 
@@ -231,10 +299,14 @@ def test_the_study_tells_basins_sure_kicks_and_its_accuracy(run):
         assert 0.1 < of_model["turned_around"] < 0.4
         assert set(numbers["accuracy"]["same_outcome"][model].values()) <= {1.0, None}
         assert numbers["accuracy"]["angle_off_rad"][model] < 1e-6
-    sure = {(kick["model"], kick["mode"], kick["sign"]): kick["sure_s"] for kick in numbers["kicks"]}
+    sure = {
+        (kick["model"], kick["mode"], kick["sign"]): kick["sure_s"] for kick in numbers["kicks"]
+    }
     assert sure["sampled", POSITION, 0] == [[pytest.approx(0.15), pytest.approx(0.21)]]
     assert sure["sampled", PHASE, 1] == [[pytest.approx(0.12), pytest.approx(0.3)]]
-    assert sure["continuous", POSITION, 0] == [[pytest.approx(0.145, abs=0.006), pytest.approx(0.22, abs=0.006)]]
+    assert sure["continuous", POSITION, 0] == [
+        [pytest.approx(0.145, abs=0.006), pytest.approx(0.22, abs=0.006)]
+    ]
     assert sure["continuous", PHASE, -1] == []
     assert numbers["no_wheel_rolls"] == []
     assert 0.05 < numbers["starts_that_end_otherwise_if_sampled"] < 0.35
@@ -242,7 +314,10 @@ def test_the_study_tells_basins_sure_kicks_and_its_accuracy(run):
 
 def test_the_same_seed_checks_the_same_starts():
     cell = {"part": "check", "model": "sampled"}
-    states = [np.random.default_rng(Setting(1, OPTIONS).seed_of(cell)).random(3).tolist() for _ in range(2)]
+    states = [
+        np.random.default_rng(Setting(1, OPTIONS).seed_of(cell)).random(3).tolist()
+        for _ in range(2)
+    ]
     assert states[0] == states[1]
 
 
@@ -250,13 +325,18 @@ def test_the_figure_shows_starts_and_kicks_of_both_models(run):
     figure = draw(*run)
     assert round(figure.get_size_inches()[0] * figure.dpi) == 1600
     assert len(figure.axes) == 12
-    assert [text.get_text() for text in figure.axes[8].get_legend().get_texts()][:2] == ["rolls forward", "rolls backward"]
+    assert [text.get_text() for text in figure.axes[8].get_legend().get_texts()][:2] == [
+        "rolls forward",
+        "rolls backward",
+    ]
 
 
 def test_where_no_wheel_rolls_the_study_says_so_and_still_draws(run):
     setting = Setting(1, OPTIONS | {"k": 1.2})
     rows = [row for row in run[0] if row["part"] != "kicks"]
-    rows = [row | {"outcome": REST, "quarters": 1} if row["part"] == "starts" else row for row in rows]
+    rows = [
+        row | {"outcome": REST, "quarters": 1} if row["part"] == "starts" else row for row in rows
+    ]
     findings = basins.report(rows, setting)
     assert findings.numbers["no_wheel_rolls"] == ["continuous", "sampled"]
     assert findings.numbers["kicks"] == []
@@ -265,7 +345,9 @@ def test_where_no_wheel_rolls_the_study_says_so_and_still_draws(run):
     figure = draw(rows, findings)
     assert len(figure.axes) == 2
     assert "no wheel rolls" in figure.get_suptitle()
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"bound to $\varphi$ = $\pi/2$"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        r"bound to $\varphi$ = $\pi/2$"
+    ]
 
 
 def test_where_only_one_models_wheel_rolls_the_other_panels_say_so(run):

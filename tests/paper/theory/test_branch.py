@@ -17,7 +17,11 @@ def setting(**options):
 
 def rows_of(own, parts=None):
     cells = [cell for cell in branch.cells(own.options) if parts is None or cell["part"] in parts]
-    return [{**cell, **row} for cell in cells for row in json.loads(json.dumps(branch.simulate(cell, own), allow_nan=False))]
+    return [
+        {**cell, **row}
+        for cell in cells
+        for row in json.loads(json.dumps(branch.simulate(cell, own), allow_nan=False))
+    ]
 
 
 PAPER = setting(to=3.0)
@@ -47,9 +51,13 @@ def test_the_contract_has_the_merging_and_the_special_points_in_plain_data(found
         ("fold", "rotation with dry friction"),
         ("merging", "rotation with dry friction"),
     }
-    assert all({"type", "k", "omega_mean", "multipliers"} <= set(point) for point in points.values())
+    assert all(
+        {"type", "k", "omega_mean", "multipliers"} <= set(point) for point in points.values()
+    )
     assert points["hopf", "rest"]["multipliers"][0] == pytest.approx([1.0, 0.0], abs=1e-9)
-    assert points["fold", "rotation with dry friction"]["multipliers"][0] == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert points["fold", "rotation with dry friction"]["multipliers"][0] == pytest.approx(
+        [1.0, 0.0], abs=1e-9
+    )
 
 
 def test_two_methods_agree_in_each_number(found, rows):
@@ -65,14 +73,22 @@ def test_two_methods_agree_in_each_number(found, rows):
 
 
 def test_rest_swings_and_rotations_are_stable_where_the_paper_finds_them(rows):
-    for k, part, stable in ((1.4, "fixpoints", True), (1.65, "fixpoints", False), (1.65, "FB", True), (1.85, "LLM", True)):
+    for k, part, stable in (
+        (1.4, "fixpoints", True),
+        (1.65, "fixpoints", False),
+        (1.65, "FB", True),
+        (1.85, "LLM", True),
+    ):
         near = min(
-            (row for row in rows if row["part"] == part and row["kind"] in ("cycle", "fixpoint")), key=lambda row: abs(row["value"] - k)
+            (row for row in rows if row["part"] == part and row["kind"] in ("cycle", "fixpoint")),
+            key=lambda row: abs(row["value"] - k),
         )
         assert near["value"] == pytest.approx(k, rel=0.07)
         assert near["stable"] is stable
     assert all(not row["stable"] for row in rows if row["kind"] == "fixpoint" and row["phi"] > 0.0)
-    amplitudes = [row["amplitude"] for row in rows if row["part"] == "FB" and row["kind"] == "cycle"]
+    amplitudes = [
+        row["amplitude"] for row in rows if row["part"] == "FB" and row["kind"] == "cycle"
+    ]
     assert amplitudes == sorted(amplitudes)
     assert 0.785 < amplitudes[-1] < 0.7854
 
@@ -87,7 +103,11 @@ def test_the_claims_hold_and_say_where_the_formula_does_not(found):
 
 
 def test_m5_does_not_hold_if_a_branch_does_not_reach_the_merging_or_cycles_are_born_unstable(rows):
-    without = [row for row in rows if not (row["part"] == "FB" and row["kind"] == "cycle" and row["period"] > 4.0)]
+    without = [
+        row
+        for row in rows
+        if not (row["part"] == "FB" and row["kind"] == "cycle" and row["period"] > 4.0)
+    ]
     assert not claim(branch.report(without, PAPER), "M5").holds
     unstable = [{**row, "l1": 0.1} if row.get("type") == "hopf" else row for row in rows]
     assert not claim(branch.report(unstable, PAPER), "M5").holds
@@ -104,7 +124,14 @@ def test_the_branch_with_dry_friction_ends_in_a_fold_below_its_merging(found):
 def test_the_figure_shows_stable_and_unstable_parts(found, rows):
     figure = draw(rows, found)
     labels = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"rotation with dry friction, unstable", "fold, dry friction", "Hopf", "merging", "rest", "rest, unstable"} <= labels
+    assert {
+        "rotation with dry friction, unstable",
+        "fold, dry friction",
+        "Hopf",
+        "merging",
+        "rest",
+        "rest, unstable",
+    } <= labels
 
 
 def test_nothing_to_find_is_said_and_drawn():
@@ -121,5 +148,11 @@ def test_nothing_to_find_is_said_and_drawn():
 def test_another_constant_is_followed_to_the_same_merging():
     along = setting(along="f", k=1.77731184665692)
     rows = rows_of(along, ("merging",))
-    (point,) = branch.report([*rows, *rows_of(along, ("turning",))], along).numbers["special_points"]
-    assert (point["type"], point["f"], point["k"]) == ("merging", pytest.approx(0.5, rel=1e-10), 1.77731184665692)
+    (point,) = branch.report([*rows, *rows_of(along, ("turning",))], along).numbers[
+        "special_points"
+    ]
+    assert (point["type"], point["f"], point["k"]) == (
+        "merging",
+        pytest.approx(0.5, rel=1e-10),
+        1.77731184665692,
+    )

@@ -1,4 +1,7 @@
-"""Cycles of the analytic model by continuation: exact limits, symmetry, scaling, another integrator, and what is not to be found."""
+"""Cycles of the analytic model by continuation.
+
+Exact limits, symmetry, scaling, another integrator, and what is not to be found.
+"""
 
 import numpy as np
 import pytest
@@ -10,7 +13,15 @@ from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Family, Shooting
 from host.theory.analysis.hopf import hopf
 from host.theory.analysis.merging import course, merging, mergings, neutral_tau_s, passes
-from host.theory.analysis.special import FOLD, LOST, MERGING, NEIMARK_SACKER, PITCHFORK, RANGE, follow
+from host.theory.analysis.special import (
+    FOLD,
+    LOST,
+    MERGING,
+    NEIMARK_SACKER,
+    PITCHFORK,
+    RANGE,
+    follow,
+)
 from host.theory.model.turning import constant_velocity, driven, potentials
 from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
 
@@ -33,7 +44,15 @@ def rolls_by_scipy(wheel):
 
     turned_back.terminal = passed.terminal = True
     turned_back.direction = -1
-    run = solve_ivp(lambda _, y: rates(*y, *wheel), (0.0, 60.0), start, "DOP853", events=(turned_back, passed), rtol=1e-12, atol=1e-14)
+    run = solve_ivp(
+        lambda _, y: rates(*y, *wheel),
+        (0.0, 60.0),
+        start,
+        "DOP853",
+        events=(turned_back, passed),
+        rtol=1e-12,
+        atol=1e-14,
+    )
     return len(run.t_events[1]) > 0
 
 
@@ -52,7 +71,10 @@ def rolling_8():
 
 
 def test_another_integrator_finds_the_merging_between_the_same_wheels():
-    assert [rolls_by_scipy(PAPER._replace(k=K_MERGE * (1 + off))) for off in (-1e-9, 1e-9)] == [False, True]
+    assert [rolls_by_scipy(PAPER._replace(k=K_MERGE * (1 + off))) for off in (-1e-9, 1e-9)] == [
+        False,
+        True,
+    ]
 
 
 def test_the_merging_lies_between_the_papers_portraits_and_does_not_depend_on_how_it_is_sought():
@@ -113,7 +135,9 @@ def test_shooting_knows_its_derivatives(family, along):
         assert shooting(unknowns)[1][:, column] == pytest.approx(difference, abs=1e-7)
 
 
-def test_multipliers_of_the_whole_period_are_powers_of_those_of_the_piece_that_symmetry_repeats(swinging, rolling_8):
+def test_multipliers_of_the_whole_period_are_powers_of_those_of_the_piece_that_symmetry_repeats(
+    swinging, rolling_8
+):
     cycle = next(point.unknowns for point in swinging.ways[0].points if point.unknowns[4] > 1.7)
     for shooting, unknowns in ((swinging.shooting, cycle), (Shooting(PAPER, ROTATION), rolling_8)):
         family = shooting.family
@@ -121,7 +145,9 @@ def test_multipliers_of_the_whole_period_are_powers_of_those_of_the_piece_that_s
         period = unknowns * [1.0, 1.0, 1.0, family.power, 1.0]
         assert np.abs(Shooting(PAPER, whole)(period)[0]).max() < 1e-9
         found = Shooting(PAPER, whole).multipliers(period)
-        assert np.sort_complex(found) == pytest.approx(np.sort_complex(shooting.multipliers(unknowns) ** family.power), abs=1e-9)
+        assert np.sort_complex(found) == pytest.approx(
+            np.sort_complex(shooting.multipliers(unknowns) ** family.power), abs=1e-9
+        )
 
 
 def test_the_product_of_multipliers_is_that_of_the_constant_divergence(rolling_8):
@@ -132,22 +158,36 @@ def test_the_product_of_multipliers_is_that_of_the_constant_divergence(rolling_8
 def test_scipy_brings_a_rotation_back_after_a_turn(rolling_8):
     x1, x2, omega, quarter_s, k = rolling_8
     wheel = PAPER._replace(k=k)
-    end = solve_ivp(lambda _, y: rates(*y, *wheel), (0.0, 4 * quarter_s), [x1, x2, 0.0, omega], "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    end = solve_ivp(
+        lambda _, y: rates(*y, *wheel),
+        (0.0, 4 * quarter_s),
+        [x1, x2, 0.0, omega],
+        "DOP853",
+        rtol=1e-12,
+        atol=1e-13,
+    ).y[:, -1]
     assert end == pytest.approx([x1, x2, 2 * np.pi, omega], abs=1e-9)
 
 
 def test_the_mirror_image_of_a_rotation_is_one_backward(rolling_8):
     x1, x2, omega, quarter_s, k = rolling_8
     backward = Family("backward", ROTATION.back.T, -np.pi / 2, 4.0)
-    assert np.abs(Shooting(PAPER, backward)(np.array([x1, -x2, -omega, quarter_s, k]))[0]).max() < 1e-11
+    assert (
+        np.abs(Shooting(PAPER, backward)(np.array([x1, -x2, -omega, quarter_s, k]))[0]).max()
+        < 1e-11
+    )
 
 
 def test_cycles_are_born_at_the_exact_hopf_bifurcation_and_grow_as_the_square_root(swinging):
     assert hopf_values(PAPER, "k", 0.02, 20.0) == pytest.approx([hopf(PAPER).k], rel=1e-12)
     small = swinging.ways[0].points[:12]
-    size = np.array([np.abs(swinging.shooting.path(point.unknowns)[:, PHI, 0]).max() for point in small])
+    size = np.array(
+        [np.abs(swinging.shooting.path(point.unknowns)[:, PHI, 0]).max() for point in small]
+    )
     beyond = np.array([point.unknowns[4] for point in small]) - hopf(PAPER).k
-    assert np.log(beyond[-1] / beyond[0]) / np.log(size[-1] / size[0]) == pytest.approx(2.0, abs=0.02)
+    assert np.log(beyond[-1] / beyond[0]) / np.log(size[-1] / size[0]) == pytest.approx(
+        2.0, abs=0.02
+    )
     assert np.pi / small[0].unknowns[3] == pytest.approx(hopf(PAPER).omega, rel=1e-3)
 
 
@@ -155,7 +195,10 @@ def test_both_branches_end_at_the_merging_from_their_own_side_without_bifurcatio
     branch = rotations(PAPER, "k", 1.0, 4.0)[0]
     assert types(swinging) == types(branch) == []
     assert [way.end for way in branch.ways] == [MERGING, RANGE]
-    swing, roll = swinging.ways[0].points[-1].unknowns[4] / K_MERGE - 1, branch.ways[0].points[-1].unknowns[4] / K_MERGE - 1
+    swing, roll = (
+        swinging.ways[0].points[-1].unknowns[4] / K_MERGE - 1,
+        branch.ways[0].points[-1].unknowns[4] / K_MERGE - 1,
+    )
     assert -1e-7 < swing < 0.0 < roll < 1e-7
     assert branch.ways[1].points[-1].unknowns[4] == pytest.approx(4.0, rel=1e-12)
 
@@ -178,7 +221,9 @@ def test_dry_friction_makes_the_rotations_end_in_a_fold_above_a_homoclinic_end()
     assert (fold.type, down.end) == (FOLD, MERGING)
     assert K_MERGE < fold.point.unknowns[4] < end.k
     assert down.points[-1].unknowns[4] == pytest.approx(end.k, rel=1e-6)
-    assert all(branch.shooting.path(point.unknowns)[:, OMEGA, 0].min() > 0.0 for point in down.points)
+    assert all(
+        branch.shooting.path(point.unknowns)[:, OMEGA, 0].min() > 0.0 for point in down.points
+    )
     # Below the fold nothing goes on rolling, above it does.
     for factor, goes_on in ((0.999, False), (1.001, True)):
         wheel = dry._replace(k=float(factor * fold.point.unknowns[4]))
@@ -200,7 +245,9 @@ def test_a_circle_is_followed_around_and_its_folds_are_located():
 
     curve = Curve(circle, np.ones(2))
     points = []
-    for length, point in curve.follow(Point(np.array([0.0, -1.0]), np.array([1.0, 0.0])), 1e-4, 0.2):
+    for length, point in curve.follow(
+        Point(np.array([0.0, -1.0]), np.array([1.0, 0.0])), 1e-4, 0.2
+    ):
         if points and points[-1].tangent[1] * point.tangent[1] < 0.0:
             fold = curve.locate(points[-1], length, lambda at: at.tangent[1])
             assert abs(fold.unknowns[1]) == pytest.approx(1.0, abs=1e-12)
@@ -216,7 +263,9 @@ def test_a_curve_that_ceases_to_exist_is_said_to_be_lost():
         return unknowns[:1].copy(), np.array([[1.0, 0.0]])
 
     with pytest.raises(NotDone, match="followed"):
-        for _, point in Curve(half, np.ones(2)).follow(Point(np.zeros(2), np.array([0.0, 1.0])), 1e-6, 0.1):
+        for _, point in Curve(half, np.ones(2)).follow(
+            Point(np.zeros(2), np.array([0.0, 1.0])), 1e-6, 0.1
+        ):
             assert point.unknowns[1] <= 1.0
 
 
@@ -234,7 +283,12 @@ class Flipping(Shooting):
 
 def test_a_multiplier_minus_one_of_the_reduced_map_is_a_pitchfork():
     curve = Curve(Flipping(PAPER, FORTH_AND_BACK), np.ones(5))
-    found = follow(curve, Point(np.array([1.0, 0.0, 1.0, 0.1, 0.5]), np.array([0.0, 0.0, 0.0, 0.0, 1.0])), 0.1, 20.0)
+    found = follow(
+        curve,
+        Point(np.array([1.0, 0.0, 1.0, 0.1, 0.5]), np.array([0.0, 0.0, 0.0, 0.0, 1.0])),
+        0.1,
+        20.0,
+    )
     (special,) = found.specials
     assert (special.type, found.end) == (PITCHFORK, LOST)
     assert special.point.unknowns[4] == pytest.approx(1.0, abs=1e-12)
@@ -246,8 +300,12 @@ def test_a_multiplier_minus_one_of_the_reduced_map_is_a_pitchfork():
 def test_a_wheel_that_is_turned_has_the_papers_potentials_in_either_direction():
     phi = np.linspace(0.0, 2 * np.pi, 9)
     for omega, tau_s in ((9.8, 0.25), (0.3, 1.0)):
-        assert driven(phi, omega, tau_s) == pytest.approx(np.array(potentials(phi, omega, tau_s)), abs=1e-9)
-        assert np.array(potentials(-phi, -omega, tau_s)) == pytest.approx(np.array(potentials(phi, omega, tau_s)) * [[1], [-1]])
+        assert driven(phi, omega, tau_s) == pytest.approx(
+            np.array(potentials(phi, omega, tau_s)), abs=1e-9
+        )
+        assert np.array(potentials(-phi, -omega, tau_s)) == pytest.approx(
+            np.array(potentials(phi, omega, tau_s)) * [[1], [-1]]
+        )
 
 
 def test_the_constant_velocity_formula_balances_the_papers_force_and_begins_at_its_k_c():
@@ -263,7 +321,9 @@ def test_rotations_approach_the_formula_as_k_grows():
     off = []
     for k in (4.0, 8.0, 40.0):
         wheel = PAPER._replace(k=k)
-        off.append(constant_velocity(wheel) / (np.pi / 2 / rotation(wheel, turned(wheel)).unknowns[3]) - 1)
+        off.append(
+            constant_velocity(wheel) / (np.pi / 2 / rotation(wheel, turned(wheel)).unknowns[3]) - 1
+        )
     assert off[0] > off[1] > 0.05 > off[2] > 0.0
 
 

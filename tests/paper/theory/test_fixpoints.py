@@ -42,7 +42,14 @@ def test_even_ones_have_the_polynomial_that_can_be_derived_by_hand(wheel):
     """I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S), and -1/tau."""
     a, tau, k, inertia, friction, _ = wheel
     saturation = target_position(1.0, a)
-    by_hand = np.roots([inertia * tau, inertia + friction * tau, friction - k * saturation * tau, k * (a / 2 - saturation)])
+    by_hand = np.roots(
+        [
+            inertia * tau,
+            inertia + friction * tau,
+            friction - k * saturation * tau,
+            k * (a / 2 - saturation),
+        ]
+    )
     expected = np.sort_complex(np.append(by_hand, -1 / tau))
     scale = np.abs(expected).max()
     for n in (0, 2, 4, 6):
@@ -66,7 +73,9 @@ def test_odd_ones_are_saddles_and_even_ones_stable_just_below_the_hopf_line(whee
 def test_the_jacobian_is_that_of_the_rates_anywhere(wheel):
     state = (0.3, -0.7, 1.1, 2.3)
     exact = jacobian_at(state, wheel)
-    assert exact == pytest.approx(jacobian_by_differences(state, wheel), rel=1e-5, abs=1e-6 * np.abs(exact).max())
+    assert exact == pytest.approx(
+        jacobian_by_differences(state, wheel), rel=1e-5, abs=1e-6 * np.abs(exact).max()
+    )
 
 
 @pytest.mark.parametrize("k", [1.4, 1.85, 8.0])
@@ -74,7 +83,9 @@ def test_disturbances_grow_in_time_as_the_eigenvalues_say(k):
     wheel = Wheel(k=k)
     for phi in ANGLES[:2]:
         found = fixpoint(phi, wheel)
-        assert growth_by_time_course(found, wheel) == pytest.approx(found.eigenvalues[0].real, abs=1e-6)
+        assert growth_by_time_course(found, wheel) == pytest.approx(
+            found.eigenvalues[0].real, abs=1e-6
+        )
 
 
 @given(WHEELS)
@@ -86,7 +97,10 @@ def test_the_closed_form_is_where_eigenvalues_cross_the_axis(wheel):
 
 
 def test_the_papers_estimate_is_the_limit_of_little_friction_or_fast_neurons():
-    ratios = [estimate(wheel) / hopf(wheel).k for wheel in (Wheel(tau_s=tau_s) for tau_s in (1e-4, 1e-3, 1e-2, 0.25))]
+    ratios = [
+        estimate(wheel) / hopf(wheel).k
+        for wheel in (Wheel(tau_s=tau_s) for tau_s in (1e-4, 1e-3, 1e-2, 0.25))
+    ]
     assert ratios == sorted(ratios, reverse=True)
     assert ratios[0] == pytest.approx(1.0, abs=1e-3)
     # f / I = 10/s: at the paper's tau the estimate is far off.
@@ -134,7 +148,16 @@ def test_where_there_is_no_hopf_bifurcation_one_is_told_so(change):
         hopf(Wheel()._replace(**change))
 
 
-@pytest.mark.parametrize("change", [{"tau_s": 0.0}, {"inertia": -1.0}, {"k": float("nan")}, {"a": 1e4}, {"friction": float("inf")}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"tau_s": 0.0},
+        {"inertia": -1.0},
+        {"k": float("nan")},
+        {"a": 1e4},
+        {"friction": float("inf")},
+    ],
+)
 def test_constants_of_no_wheel_are_refused_by_name(change):
     with pytest.raises(WrongUse, match=next(iter(change))):
         Wheel()._replace(**change).checked()

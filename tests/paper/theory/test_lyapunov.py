@@ -1,4 +1,7 @@
-"""Exponents against eigenvalues, symmetries and a second algorithm; kinds of attractors; transients against lives made up."""
+"""Exponents against eigenvalues, symmetries and a second algorithm; kinds of attractors.
+
+Transients against lives made up.
+"""
 
 import json
 
@@ -11,14 +14,26 @@ from host.perform.run import perform
 from host.runs.claims import Claim
 from host.runs.contract import Setting
 from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL, settled, starts, watch
-from host.theory.analysis.tangent import divergence, growth, kaplan_yorke, pair_growth, smooth_mean, tangent_rates
+from host.theory.analysis.tangent import (
+    divergence,
+    growth,
+    kaplan_yorke,
+    pair_growth,
+    smooth_mean,
+    tangent_rates,
+)
 from host.theory.analysis.transients import crisis, lives, sample
 from host.theory.model.symbolic import jacobian_at
 from host.theory.model.turning import begun_rolling
 from host.theory.model.wheel import PHI, Wheel, rates, resting
 from host.theory.studies.route import rolling_end
 
-RESTING, SWINGING, ROLLING, CHAOTIC = Wheel(k=1.4), Wheel(k=1.65), Wheel(k=8.0), Wheel(k=15.0, tau_s=1.0)
+RESTING, SWINGING, ROLLING, CHAOTIC = (
+    Wheel(k=1.4),
+    Wheel(k=1.65),
+    Wheel(k=8.0),
+    Wheel(k=15.0, tau_s=1.0),
+)
 OPTIONS = {"a": 4.0, "tau": 1.0, "k": 15.0, "f": 0.5, "I": 0.05, "seconds": 2000.0}
 
 
@@ -68,7 +83,9 @@ def test_along_a_cycle_one_exponent_is_0_and_the_others_are_negative():
 
 def test_the_sum_of_the_exponents_is_the_divergence_at_every_moment(chaotic):
     states, parameters = chaotic
-    assert divergence(CHAOTIC) == pytest.approx(-2 / CHAOTIC.tau_s - CHAOTIC.friction / CHAOTIC.inertia, abs=1e-12)
+    assert divergence(CHAOTIC) == pytest.approx(
+        -2 / CHAOTIC.tau_s - CHAOTIC.friction / CHAOTIC.inertia, abs=1e-12
+    )
     sums = growth(states, parameters, 10.0, 4).rates.sum(axis=1)
     assert np.abs(sums - divergence(CHAOTIC)).max() < 1e-6
 
@@ -93,20 +110,29 @@ def test_vectors_in_the_mirror_grow_alike():
     state, parameters = starts(1, _chance()), CHAOTIC.columns(1)
     vector = _chance().normal(size=(1, 4, 1))
     plain, other = (
-        growth(sign * state, parameters, 4.0, vectors=vector * sign.reshape(1, 4, 1)).rates for sign in (np.ones((4, 1)), mirror)
+        growth(sign * state, parameters, 4.0, vectors=vector * sign.reshape(1, 4, 1)).rates
+        for sign in (np.ones((4, 1)), mirror)
     )
     assert other == pytest.approx(plain, rel=1e-6)
 
 
 @pytest.mark.parametrize(
     ("exponents", "dimension"),
-    [((-1.0, -2.0), 0.0), ((0.0, -1.0, -2.0), 1.0), ((0.0, 0.0, -1.0), 2.0), ((0.906, 0.0, -14.572), 2.0622), ((1.0, -0.5), 2.0)],
+    [
+        ((-1.0, -2.0), 0.0),
+        ((0.0, -1.0, -2.0), 1.0),
+        ((0.0, 0.0, -1.0), 2.0),
+        ((0.906, 0.0, -14.572), 2.0622),
+        ((1.0, -0.5), 2.0),
+    ],
 )
 def test_dimensions(exponents, dimension):
     assert kaplan_yorke(np.array(exponents)) == pytest.approx(dimension, abs=1e-4)
 
 
-@pytest.mark.parametrize(("wheel", "kind"), [(RESTING, REST), (SWINGING, BACK), (ROLLING, ROLL), (CHAOTIC, CHAOS)])
+@pytest.mark.parametrize(
+    ("wheel", "kind"), [(RESTING, REST), (SWINGING, BACK), (ROLLING, ROLL), (CHAOTIC, CHAOS)]
+)
 def test_kinds_at_the_papers_points(wheel, kind):
     parameters = wheel.columns(16)
     seen = watch(settled(starts(16, _chance()), parameters, 150.0), parameters, 100.0)
@@ -164,7 +190,14 @@ def test_a_crisis_is_found_where_lives_have_no_bound():
 
 def test_rolling_ends_where_its_damping_does():
     rows = [
-        {"k": k, "kind": "rolling" if k < 5.2 else "chaotic", "apart": 1e-9, "pair": 0.1 * (k - 5.1), "exponent_2": 0.0, "exponent_3": 0.0}
+        {
+            "k": k,
+            "kind": "rolling" if k < 5.2 else "chaotic",
+            "apart": 1e-9,
+            "pair": 0.1 * (k - 5.1),
+            "exponent_2": 0.0,
+            "exponent_3": 0.0,
+        }
         for k in np.arange(4.0, 6.0, 0.02).tolist()
     ]
     found = rolling_end(rows)
@@ -186,7 +219,9 @@ def test_wheels_that_are_too_fast_are_refused(wrong):
 
 
 def test_longer_runs_are_more_pieces_of_the_same_length():
-    points = [cell for cell in study.cells({**OPTIONS, "seconds": 5000.0}) if cell["part"] == "point"]
+    points = [
+        cell for cell in study.cells({**OPTIONS, "seconds": 5000.0}) if cell["part"] == "point"
+    ]
     assert [cell["batch"] for cell in points] == [0, 1, 2]
     assert sum(cell["seconds"] for cell in points) == pytest.approx(5000.0)
 
@@ -214,7 +249,9 @@ def small(monkeypatch):
     monkeypatch.setattr("host.theory.analysis.transients.SEARCH_S", 60.0)
 
 
-@pytest.mark.parametrize(("options", "kind"), [({"k": 8.0, "tau": 0.25}, "rolling"), ({"k": 0.0}, "at rest")])
+@pytest.mark.parametrize(
+    ("options", "kind"), [({"k": 8.0, "tau": 0.25}, "rolling"), ({"k": 0.0}, "at rest")]
+)
 def test_where_there_is_no_chaos_the_study_says_so(small, options, kind):
     summary = perform("lyapunov", 3, out="here", seconds=50.0, **options)
     numbers = summary["numbers"]
@@ -222,7 +259,9 @@ def test_where_there_is_no_chaos_the_study_says_so(small, options, kind):
     assert len(numbers["exponents"]) == len(numbers["standard_errors"]) == 4
     assert numbers["exponents"][0] == pytest.approx(0.0, abs=0.05)
     assert numbers["exponents"] == sorted(numbers["exponents"], reverse=True)
-    assert sum(numbers["exponents"]) == pytest.approx(numbers["accuracy"]["sum_of_exponents_exact"], abs=1e-4)
+    assert sum(numbers["exponents"]) == pytest.approx(
+        numbers["accuracy"]["sum_of_exponents_exact"], abs=1e-4
+    )
     assert summary["claims"] == []
     json.dumps(summary, allow_nan=False)
 

@@ -15,14 +15,28 @@ from host.theory.model.turning import begun_rolling, constant_velocity, turning
 from host.theory.model.wheel import OMEGA, PHI, Wheel
 from host.theory.studies import phase_diagram, portrait
 
-OPTIONS = {"a": 4.0, "f": 0.5, "I": 0.05, "points": 10, "k_to": 20.0, "tau_to": 1.5, "start": "sweep", "transient": 60.0, "seconds": 40.0}
+OPTIONS = {
+    "a": 4.0,
+    "f": 0.5,
+    "I": 0.05,
+    "points": 10,
+    "k_to": 20.0,
+    "tau_to": 1.5,
+    "start": "sweep",
+    "transient": 60.0,
+    "seconds": 40.0,
+}
 
 
 @pytest.fixture(scope="module")
 def diagram():
     """A coarse diagram's rows, and what they come to."""
     setting = Setting(1, OPTIONS)
-    rows = [{**cell, **row} for cell in phase_diagram.cells(OPTIONS) for row in phase_diagram.simulate(cell, setting)]
+    rows = [
+        {**cell, **row}
+        for cell in phase_diagram.cells(OPTIONS)
+        for row in phase_diagram.simulate(cell, setting)
+    ]
     return rows, phase_diagram.report(rows, setting)
 
 
@@ -36,13 +50,22 @@ def test_every_point_is_there_once_each_way(diagram):
     rows, _ = diagram
     for panel in ("plane", "inset"):
         for way in ("up", "down"):
-            points = [(row["tau"], row["k"]) for row in rows if row["panel"] == panel and row["way"] == way]
+            points = [
+                (row["tau"], row["k"])
+                for row in rows
+                if row["panel"] == panel and row["way"] == way
+            ]
             assert len(points) == len(set(points)) == OPTIONS["points"] ** 2
 
 
 def test_the_four_phases_are_where_the_paper_has_them(diagram):
     rows, _ = diagram
-    expected = {("plane", 0.08, 1.0): "S", ("plane", 0.2, 9.0): "LLM", ("plane", 1.4, 15.0): "C", ("inset", 0.12, 3.2): "FB"}
+    expected = {
+        ("plane", 0.08, 1.0): "S",
+        ("plane", 0.2, 9.0): "LLM",
+        ("plane", 1.4, 15.0): "C",
+        ("inset", 0.12, 3.2): "FB",
+    }
     for (panel, tau, k), name in expected.items():
         row = at(rows, panel, "up", tau, k)
         assert phase_diagram.phase(row, critical_k(Wheel(tau_s=row["tau"]))) == name, row
@@ -55,7 +78,10 @@ def test_far_from_the_line_a_wheel_rests_exactly_below_it(diagram):
             continue
         line = critical_k(Wheel(tau_s=row["tau"]))
         if row["way"] == "up" and not 0.8 < row["k"] / line < 1.2:
-            rests = abs(row["omega_mean"]) < phase_diagram.STILL and row["omega_std"] < phase_diagram.STILL
+            rests = (
+                abs(row["omega_mean"]) < phase_diagram.STILL
+                and row["omega_std"] < phase_diagram.STILL
+            )
             assert rests == (row["k"] < line), row
 
 
@@ -83,14 +109,20 @@ def test_points_out_of_chaos_do_not_depend_on_the_step(diagram):
 def test_a_cell_done_twice_is_the_same_bits():
     options = {**OPTIONS, "points": 6, "transient": 5.0, "seconds": 5.0}
     cell = {"panel": "plane", "first": 0, "end": 6}
-    assert phase_diagram.simulate(cell, Setting(1, options)) == phase_diagram.simulate(cell, Setting(2, options))
+    assert phase_diagram.simulate(cell, Setting(1, options)) == phase_diagram.simulate(
+        cell, Setting(2, options)
+    )
 
 
 @pytest.mark.parametrize("change", [{"f": 0.0}, {"a": 0.0}, {"I": 1e-3}])
 def test_degenerate_wheels_have_a_diagram_without_gaps(change):
     options = {**OPTIONS, **change, "points": 4, "start": "rest", "transient": 2.0, "seconds": 2.0}
     setting = Setting(1, options)
-    rows = [{**cell, **row} for cell in phase_diagram.cells(options) for row in phase_diagram.simulate(cell, setting)]
+    rows = [
+        {**cell, **row}
+        for cell in phase_diagram.cells(options)
+        for row in phase_diagram.simulate(cell, setting)
+    ]
     found = phase_diagram.report(rows, setting)
     assert np.isfinite([row["omega_std"] for row in rows]).all()
     assert sum(found.numbers["shares"]["plane, rest"].values()) == pytest.approx(1.0)
@@ -99,9 +131,14 @@ def test_degenerate_wheels_have_a_diagram_without_gaps(change):
 def test_the_state_of_a_turning_wheel_is_that_of_its_equations():
     """Eq. x-t solves tau dx/dt = x_a - x along phi = omega t."""
     wheel, omega, step = Wheel(), 5.0, 1e-5
-    before, now, after = (turning(np.array([omega * t]), np.array([omega]), wheel)[:, 0] for t in (0.7 - step, 0.7, 0.7 + step))
+    before, now, after = (
+        turning(np.array([omega * t]), np.array([omega]), wheel)[:, 0]
+        for t in (0.7 - step, 0.7, 0.7 + step)
+    )
     for row, seen in ((0, np.cos(0.7 * omega)), (1, np.sin(0.7 * omega))):
-        assert (after[row] - before[row]) / (2 * step) == pytest.approx((seen - now[row]) / wheel.tau_s, abs=1e-8)
+        assert (after[row] - before[row]) / (2 * step) == pytest.approx(
+            (seen - now[row]) / wheel.tau_s, abs=1e-8
+        )
     assert begun_rolling(wheel.columns(1))[OMEGA] == [constant_velocity(wheel)]
 
 
@@ -141,7 +178,10 @@ def test_wheels_on_either_side_of_a_stable_manifold_have_other_fates():
     wheel = Wheel(k=1.65)
     phi, omega = portrait.stable_manifolds(wheel, 1.2)
     assert len(phi) > 100
-    fates = {tuple(portrait.fates(phi + dx, omega + dy, wheel)) for dx, dy in ((1e-6, 0.0), (-1e-6, 0.0), (0.0, 1e-6), (0.0, -1e-6))}
+    fates = {
+        tuple(portrait.fates(phi + dx, omega + dy, wheel))
+        for dx, dy in ((1e-6, 0.0), (-1e-6, 0.0), (0.0, 1e-6), (0.0, -1e-6))
+    }
     sides = np.array(list(fates))
     assert (np.ptp(sides, axis=0) > 0).all()
     # A well's neighbour is the fate beyond its saddle, which lies on the edge.

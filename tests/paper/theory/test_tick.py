@@ -23,16 +23,25 @@ from robot.params import Params
 WHEEL = Wheel()
 OPTIONS = {"a": 4.0, "tau": 0.25, "f": 0.5, "I": 0.05, "tick": 0.03, "latency": 0.0}
 NEW, OLD = Clock(), Clock(fresh=False)
-CLOCKS = [Clock(tick_s, latency_s, fresh) for tick_s, latency_s in ((0.03, 0.0), (0.03, 0.012), (0.08, 0.08)) for fresh in (True, False)]
+CLOCKS = [
+    Clock(tick_s, latency_s, fresh)
+    for tick_s, latency_s in ((0.03, 0.0), (0.03, 0.012), (0.08, 0.08))
+    for fresh in (True, False)
+]
 
 
 def random_states(count, seed=3):
     rng = np.random.default_rng(seed)
-    return rng.uniform([[-1.0], [-1.0], [-4.0], [-9.0], [-5.0]], [[1.0], [1.0], [4.0], [9.0], [5.0]], (5, count))
+    return rng.uniform(
+        [[-1.0], [-1.0], [-4.0], [-9.0], [-5.0]], [[1.0], [1.0], [4.0], [9.0], [5.0]], (5, count)
+    )
 
 
 def by_hand(wheel, clock):
-    """The Jacobian at rest of (x2, phi, omega) without latency, worked out on paper: x1 decouples at phi = 0."""
+    """The Jacobian at rest of (x2, phi, omega) without latency, worked out on paper.
+
+    X1 decouples at phi = 0.
+    """
     part, slope = clock.tick_s / wheel.tau_s, float(target_position(1.0, wheel.a))
     keep = np.exp(-wheel.friction * clock.tick_s / wheel.inertia)
     ahead = wheel.inertia / wheel.friction * (1 - keep)
@@ -40,18 +49,31 @@ def by_hand(wheel, clock):
     acting = stepped if clock.fresh else np.array([1.0, 0.0, 0.0])
     force = wheel.k * slope * np.array([0.0, 1.0, 0.0]) - wheel.k * wheel.a / 2 * acting
     moved = np.array([0.0, 1.0, ahead]) + (clock.tick_s - ahead) / wheel.friction * force
-    return np.array([stepped, moved, np.array([0.0, 0.0, keep]) + (1 - keep) / wheel.friction * force])
+    return np.array(
+        [stepped, moved, np.array([0.0, 0.0, keep]) + (1 - keep) / wheel.friction * force]
+    )
 
 
 @pytest.mark.parametrize("seconds", [1e-6, 0.003, 0.0099, 0.0101, 0.2, 30.0])
 def test_a_coast_is_the_solution_of_its_equation(seconds):
     ahead, pushed, kept, gained = coast(seconds, 0.05, 0.5)
-    solved = solve_ivp(lambda _, y: [y[1], (2.0 - 0.5 * y[1]) / 0.05], (0, seconds), [0.3, -3.0], "DOP853", rtol=1e-12, atol=1e-14)
-    assert [0.3 - 3.0 * ahead + 2.0 * pushed, -3.0 * kept + 2.0 * gained] == pytest.approx(solved.y[:, -1].tolist(), rel=1e-10)
+    solved = solve_ivp(
+        lambda _, y: [y[1], (2.0 - 0.5 * y[1]) / 0.05],
+        (0, seconds),
+        [0.3, -3.0],
+        "DOP853",
+        rtol=1e-12,
+        atol=1e-14,
+    )
+    assert [0.3 - 3.0 * ahead + 2.0 * pushed, -3.0 * kept + 2.0 * gained] == pytest.approx(
+        solved.y[:, -1].tolist(), rel=1e-10
+    )
 
 
 def test_without_friction_a_coast_is_a_parabola():
-    assert coast(0.2, 0.05, 0.0) == pytest.approx((0.2, 0.2**2 / 2 / 0.05, 1.0, 0.2 / 0.05), rel=1e-15)
+    assert coast(0.2, 0.05, 0.0) == pytest.approx(
+        (0.2, 0.2**2 / 2 / 0.05, 1.0, 0.2 / 0.05), rel=1e-15
+    )
 
 
 @pytest.mark.parametrize("clock", CLOCKS)
@@ -59,13 +81,19 @@ def test_a_quarter_turn_and_a_mirror_change_nothing(clock):
     states, parameters = random_states(50), Wheel(k=8.0).columns(50)
     turned = np.array([-states[1], states[0], states[2] + pi / 2, states[3], states[4]])
     ended, turned_ended = (sampled.advance(of, parameters, clock, 20) for of in (states, turned))
-    assert np.array([turned_ended[1], -turned_ended[0], turned_ended[2] - pi / 2, *turned_ended[3:]]) == pytest.approx(ended, abs=1e-9)
+    assert np.array(
+        [turned_ended[1], -turned_ended[0], turned_ended[2] - pi / 2, *turned_ended[3:]]
+    ) == pytest.approx(ended, abs=1e-9)
     signs = np.array([[1.0], [-1.0], [-1.0], [-1.0], [-1.0]])
-    assert sampled.advance(signs * states, parameters, clock, 20) * signs == pytest.approx(ended, abs=1e-9)
+    assert sampled.advance(signs * states, parameters, clock, 20) * signs == pytest.approx(
+        ended, abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("clock", [clock for clock in CLOCKS if clock.fresh])
-@pytest.mark.parametrize("request_", [None, {"mode": POSITION, "ticks": 5}, {"mode": PHASE, "ticks": 4, "shift": -2.0}])
+@pytest.mark.parametrize(
+    "request_", [None, {"mode": POSITION, "ticks": 5}, {"mode": PHASE, "ticks": 4, "shift": -2.0}]
+)
 def test_the_map_is_what_the_robots_own_wheel_does(clock, request_):
     wheel, state = Wheel(k=8.0), random_states(1)
     kick = request_ and parse({"id": "test", **request_}, (1, 1), Params(), 7)
@@ -83,7 +111,12 @@ def test_with_ever_shorter_ticks_the_map_becomes_the_continuous_model():
     true = Continuous().averages(states[:4], WHEEL.columns(20), 0.5).states
     for fresh in (True, False):
         coarse, fine = (
-            np.abs(sampled.advance(states, WHEEL.columns(20), Clock(0.5 / ticks, 0.0, fresh), ticks)[:4] - true).max()
+            np.abs(
+                sampled.advance(states, WHEEL.columns(20), Clock(0.5 / ticks, 0.0, fresh), ticks)[
+                    :4
+                ]
+                - true
+            ).max()
             for ticks in (2000, 4000)
         )
         assert fine < 0.01
@@ -97,23 +130,30 @@ def test_the_jacobian_is_that_of_the_map(clock, number):
     aside = np.repeat(np.array(state)[:, None], 10, axis=1)
     aside[np.arange(10) % 5, np.arange(10)] += np.repeat([1e-5, -1e-5], 5)
     ended = sampled.advance(aside, WHEEL.columns(10), clock, 1)
-    assert (ended[:, :5] - ended[:, 5:]) / 2e-5 == pytest.approx(jacobian(state, WHEEL, clock), abs=2e-8)
+    assert (ended[:, :5] - ended[:, 5:]) / 2e-5 == pytest.approx(
+        jacobian(state, WHEEL, clock), abs=2e-8
+    )
 
 
 @pytest.mark.parametrize("clock", [NEW, OLD, Clock(0.1), Clock(0.001, 0.0, fresh=False)])
 def test_multipliers_at_rest_are_those_worked_out_on_paper(clock):
     expected = [0.0, 1 - clock.tick_s / WHEEL.tau_s, *np.linalg.eigvals(by_hand(WHEEL, clock))]
-    assert np.sort_complex(onset.multipliers(WHEEL, clock)) == pytest.approx(np.sort_complex(np.array(expected)), abs=1e-9)
+    assert np.sort_complex(onset.multipliers(WHEEL, clock)) == pytest.approx(
+        np.sort_complex(np.array(expected)), abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("clock", [NEW, OLD, Clock(0.1), Clock(0.001, 0.0, fresh=False)])
 def test_rest_loses_its_stability_where_a_pair_leaves_the_unit_circle(clock):
     k_c = onset.critical_k(WHEEL, clock)
-    # Schur and Cohn's condition on the cubic z^3 + c2 z^2 + c1 z + c0 for a pair on the unit circle.
+    # Schur and Cohn's condition on the cubic z^3 + c2 z^2 + c1 z + c0 for a pair on the unit
+    # circle.
     _, c2, c1, c0 = np.poly(by_hand(WHEEL._replace(k=k_c), clock))
     assert 1 - c1 + c0 * c2 - c0**2 == pytest.approx(0.0, abs=1e-12)
     assert abs(onset.leading(WHEEL._replace(k=k_c), clock)) == pytest.approx(1.0, abs=1e-13)
-    below, above = (abs(onset.leading(WHEEL._replace(k=k_c * factor), clock)) for factor in (1 - 1e-6, 1 + 1e-6))
+    below, above = (
+        abs(onset.leading(WHEEL._replace(k=k_c * factor), clock)) for factor in (1 - 1e-6, 1 + 1e-6)
+    )
     assert below < 1.0 < above
 
 
@@ -127,7 +167,10 @@ def test_a_small_swing_fades_below_that_k_and_grows_above(clock):
 def test_without_a_tick_k_c_is_the_hopf_bifurcations_to_first_order(tau_s):
     wheel = WHEEL._replace(tau_s=tau_s)
     for fresh in (True, False):
-        near, nearer = (onset.critical_k(wheel, Clock(tau_s * share, 0.0, fresh)) / hopf(wheel).k - 1 for share in (1e-3, 5e-4))
+        near, nearer = (
+            onset.critical_k(wheel, Clock(tau_s * share, 0.0, fresh)) / hopf(wheel).k - 1
+            for share in (1e-3, 5e-4)
+        )
         assert near / nearer == pytest.approx(2.0, abs=0.01)
         assert 2 * nearer - near == pytest.approx(0.0, abs=1e-5)
         assert (near > 0) == fresh
@@ -136,18 +179,28 @@ def test_without_a_tick_k_c_is_the_hopf_bifurcations_to_first_order(tau_s):
 def test_the_two_orders_move_k_c_in_opposite_directions_and_latency_lowers_it():
     k_hopf = hopf(WHEEL).k
     shift = {
-        (tick_s, fresh): onset.critical_k(WHEEL, Clock(tick_s, 0.0, fresh)) / k_hopf - 1 for tick_s in (0.03, 0.04) for fresh in (0, 1)
+        (tick_s, fresh): onset.critical_k(WHEEL, Clock(tick_s, 0.0, fresh)) / k_hopf - 1
+        for tick_s in (0.03, 0.04)
+        for fresh in (0, 1)
     }
     assert [shift[0.03, 1], shift[0.04, 1]] == pytest.approx([0.1159, 0.1608], abs=1e-4)
     assert [shift[0.03, 0], shift[0.04, 0]] == pytest.approx([-0.0793, -0.1027], abs=1e-4)
     for fresh in (True, False):
-        late = [onset.critical_k(WHEEL, Clock(0.03, latency_s, fresh)) for latency_s in (0.0, 0.01, 0.02, 0.03)]
+        late = [
+            onset.critical_k(WHEEL, Clock(0.03, latency_s, fresh))
+            for latency_s in (0.0, 0.01, 0.02, 0.03)
+        ]
         assert late == sorted(late, reverse=True)
 
 
 def test_a_new_force_that_acts_a_whole_tick_late_is_an_old_one_but_for_where_it_pulls():
-    # With a latency of a tick, F of (x_n+1, phi_n) acts one tick later; k_c then lies between the two orders without latency.
-    assert onset.critical_k(WHEEL, OLD) < onset.critical_k(WHEEL, Clock(0.03, 0.03)) < onset.critical_k(WHEEL, NEW)
+    # With a latency of a tick, F of (x_n+1, phi_n) acts one tick later; k_c then lies between the
+    # two orders without latency.
+    assert (
+        onset.critical_k(WHEEL, OLD)
+        < onset.critical_k(WHEEL, Clock(0.03, 0.03))
+        < onset.critical_k(WHEEL, NEW)
+    )
 
 
 def test_where_there_is_no_k_c_none_is_told():
@@ -173,12 +226,19 @@ def test_rolling_begins_and_ends_where_wheels_say_so(model):
 
 
 def test_no_end_of_a_motion_is_told_where_there_is_none():
-    assert onset.rolling_ends(Sampled(NEW), WHEEL, 8.0, 4.0, 30.0) is None  # it rolls all the way down
+    assert (
+        onset.rolling_ends(Sampled(NEW), WHEEL, 8.0, 4.0, 30.0) is None
+    )  # it rolls all the way down
     assert onset.rolling_ends(Sampled(NEW), WHEEL, 1.5, 0.5, 30.0) is None  # it never rolls
-    assert onset.swinging_ends(Sampled(NEW), WHEEL, 1.0, 1.9, 30.0) is None  # it swings all the way up
+    assert (
+        onset.swinging_ends(Sampled(NEW), WHEEL, 1.0, 1.9, 30.0) is None
+    )  # it swings all the way up
 
 
-@pytest.mark.parametrize("clock", [Clock(0.0), Clock(float("inf")), Clock(0.03, 0.04), Clock(0.03, -0.01), Clock(float("nan"))])
+@pytest.mark.parametrize(
+    "clock",
+    [Clock(0.0), Clock(float("inf")), Clock(0.03, 0.04), Clock(0.03, -0.01), Clock(float("nan"))],
+)
 def test_a_clock_that_cannot_go_is_refused(clock):
     with pytest.raises(WrongUse):
         clock.checked()
@@ -206,7 +266,11 @@ def short_run():
         patch.setattr(study, "FOLLOWED", 100.0)
         patch.setattr(study, "PATIENCE", 300_000)
         setting = Setting(1, OPTIONS)
-        rows = [{**cell, **row} for cell in study.cells(OPTIONS) for row in study.simulate(cell, setting)]
+        rows = [
+            {**cell, **row}
+            for cell in study.cells(OPTIONS)
+            for row in study.simulate(cell, setting)
+        ]
         return rows, study.report(rows, setting)
 
 
@@ -225,11 +289,20 @@ def test_the_study_says_how_accurate_it_is(short_run):
 
 def test_the_growth_rate_is_zero_at_k_c_and_the_continuous_ones_between(short_run):
     rows, findings = short_run
-    growth = {order: [row for row in study.part_of(rows, "growth") if row["order"] == order] for order in ("continuous", "new", "old")}
+    growth = {
+        order: [row for row in study.part_of(rows, "growth") if row["order"] == order]
+        for order in ("continuous", "new", "old")
+    }
     for order, line in growth.items():
         k_c = findings.numbers[order]["k_c"]
-        assert all((row["growth_per_s"] > 0) == (row["k"] > k_c) for row in line if row["k"] not in (0.0, k_c))
-    fast, middle, slow = (growth[order][-1]["growth_per_s"] for order in ("old", "continuous", "new"))
+        assert all(
+            (row["growth_per_s"] > 0) == (row["k"] > k_c)
+            for row in line
+            if row["k"] not in (0.0, k_c)
+        )
+    fast, middle, slow = (
+        growth[order][-1]["growth_per_s"] for order in ("old", "continuous", "new")
+    )
     assert fast > middle > slow
 
 
@@ -251,7 +324,14 @@ def test_the_figure_shows_both_orders_beside_the_continuous_model(short_run):
 
 def test_a_tick_too_long_for_the_neurons_is_drawn_and_told_as_such(short_run):
     rows = short_run[0]
-    gone = {"k_c": None, "modulus": None, "angle": None, "k_rolls": None, "k_stops": None, "hz": None}
+    gone = {
+        "k_c": None,
+        "modulus": None,
+        "angle": None,
+        "k_rolls": None,
+        "k_stops": None,
+        "hz": None,
+    }
     rows = [{**row, **gone} if row["part"] in ("point", "tick", "latency") else row for row in rows]
     told = study.report(rows, Setting(1, OPTIONS))
     assert told.numbers["new"]["k_c"] is None

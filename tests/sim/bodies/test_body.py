@@ -41,11 +41,19 @@ def train():
     return body
 
 
-@pytest.mark.parametrize(("name", "k", "drag"), [("snake2019", 2.0, 0.002), ("snake2019", 2.0, 0.005), ("paper", 0.5, 0.1)])
+@pytest.mark.parametrize(
+    ("name", "k", "drag"),
+    [("snake2019", 2.0, 0.002), ("snake2019", 2.0, 0.005), ("paper", 0.5, 0.1)],
+)
 def test_a_car_rolls_at_the_speed_that_theory_gives(name, k, drag):
     own = preset(name).with_drag(drag)
     assert (
-        own.a * k * own.wheel_radius * own.tau / (4 * (own.body_drag * own.wheel_radius**2 / 2 + own.wheel_drag * own.wheel_radius)) > 8.0
+        own.a
+        * k
+        * own.wheel_radius
+        * own.tau
+        / (4 * (own.body_drag * own.wheel_radius**2 / 2 + own.wheel_drag * own.wheel_radius))
+        > 8.0
     )
     expected = rolling_speed(own, k)
     for start in (0.97, 1.03):
@@ -111,17 +119,28 @@ def test_torques_are_those_of_one_rod_and_neurons_those_of_the_robot():
         named.wheels = ("car0_left", "car1_right")
         body.kick(named)
     body.run(0.3)
-    phi, x, target, torque = (column(body, ending) for ending in ("_phi_rad", "_x", "_target", "_torque_nm"))
+    phi, x, target, torque = (
+        column(body, ending) for ending in ("_phi_rad", "_x", "_target", "_torque_nm")
+    )
     params = Params()
     params.a, params.tau_s, params.k, params.rods = own.a, own.tau, 0.5, 1
     for index, name in enumerate(body.wheels):
         wheel = Wheel("left")
         for step in range(300):
             wheel.phi = phi[step, index]
-            kick = next((kick for kick in (quenched, frozen) if kick.acts_at(step) and name in ("car0_left", "car1_right")), None)
+            kick = next(
+                (
+                    kick
+                    for kick in (quenched, frozen)
+                    if kick.acts_at(step) and name in ("car0_left", "car1_right")
+                ),
+                None,
+            )
             wheel.step(step, 0.001, params, kick)
             assert x[step + 1, index] == pytest.approx(wheel.x1, rel=1e-12, abs=1e-15)
-            assert torque[step + 1, index] == pytest.approx(own.wheel_radius * wheel.force, rel=1e-9, abs=1e-15)
+            assert torque[step + 1, index] == pytest.approx(
+                own.wheel_radius * wheel.force, rel=1e-9, abs=1e-15
+            )
             expected = 0.03 * 0.5 * sin(wheel.phi) * (target[step + 1, index] - cos(wheel.phi))
             assert torque[step + 1, index] == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
@@ -147,7 +166,9 @@ def test_a_train_reverses_at_walls_as_a_whole_and_the_measures_say_so(train):
 
 
 def test_the_order_parameter_is_that_of_signs():
-    assert order(np.array([[5.0, 6.0, -1.0, 1.0], [0.1, 0.0, -0.2, 0.3], [-9.0, -9.0, -9.0, -9.0]])) == pytest.approx([0.5, 0.0, 1.0])
+    assert order(
+        np.array([[5.0, 6.0, -1.0, 1.0], [0.1, 0.0, -0.2, 0.3], [-9.0, -9.0, -9.0, -9.0]])
+    ) == pytest.approx([0.5, 0.0, 1.0])
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -183,7 +204,9 @@ def test_slopes_take_their_angle():
 def test_boxes_and_hills_come_from_the_seed():
     for scene in ("octagon", "hills"):
         one, same, other = (spec_of(Asked(scene=scene, seed=seed)).compile() for seed in (1, 1, 2))
-        fields = [(model.body_pos.tobytes(), model.hfield_data.tobytes()) for model in (one, same, other)]
+        fields = [
+            (model.body_pos.tobytes(), model.hfield_data.tobytes()) for model in (one, same, other)
+        ]
         assert fields[0] == fields[1] != fields[2]
 
 
@@ -191,9 +214,19 @@ def test_words_make_kicks_of_wheels_and_wrong_words_are_refused():
     wheels = ("car0_left", "car0_right", "car1_left", "car1_right")
     assert push_of("t=5,mode=membrane,wheel=all", wheels).wheels == wheels
     assert push_of("t=5,mode=membrane,wheel=left", wheels).wheels == ("car0_left", "car1_left")
-    assert push_of("t=1, mode=phase, wheel=car1, shift=-pi/2, seconds=0.2", wheels).wheels == ("car1_left", "car1_right")
-    kick = push_of("t=1,mode=phase,wheel=car1_left,seconds=0.2", wheels).kicks(1000, 0.001, [-3.0])[0]
-    assert (kick.begin, kick.ticks, kick.wheels, kick.values[0]) == (1000, 200, ("car1_left",), -3 * pi / 4)
+    assert push_of("t=1, mode=phase, wheel=car1, shift=-pi/2, seconds=0.2", wheels).wheels == (
+        "car1_left",
+        "car1_right",
+    )
+    kick = push_of("t=1,mode=phase,wheel=car1_left,seconds=0.2", wheels).kicks(1000, 0.001, [-3.0])[
+        0
+    ]
+    assert (kick.begin, kick.ticks, kick.wheels, kick.values[0]) == (
+        1000,
+        200,
+        ("car1_left",),
+        -3 * pi / 4,
+    )
     for words, reason in (
         ("mode=phase", "time"),
         ("t=1,mode=phase,wheel=car7", "car7"),

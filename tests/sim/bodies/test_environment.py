@@ -16,7 +16,15 @@ from host.errors import WrongUse
 from host.experiments.bodies import train_goal
 from host.figures.bodies.train_goal import draw
 from host.runs.contract import Setting
-from robot.kicks import MEMBRANE, NO_PULSE, PHASE, POSITION, PULSE_BETA, PULSE_SHIFT, reversing_shift
+from robot.kicks import (
+    MEMBRANE,
+    NO_PULSE,
+    PHASE,
+    POSITION,
+    PULSE_BETA,
+    PULSE_SHIFT,
+    reversing_shift,
+)
 from sim_motor.bodies.environment import ID, JOINT_RAD_S, KICKS, WHEEL_RAD_S, Train
 from sim_motor.bodies.presets import preset
 
@@ -29,7 +37,9 @@ check_env(gymnasium.make("sim_motor.bodies.environment:{ID}", cars=2, decision_s
 
 def test_gymnasiums_own_check_has_nothing_to_say_not_even_of_pictures():
     command = [sys.executable, "-W", "error", "-c", CHECK]
-    done = subprocess.run(command, env={**os.environ, "MUJOCO_GL": "egl"}, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, env={**os.environ, "MUJOCO_GL": "egl"}, capture_output=True, text=True, check=False
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
@@ -47,12 +57,21 @@ def test_a_kick_acts_on_its_wheel_only_and_as_long_as_was_said():
         train.step(kicks(train))
     own = train._body.neurons
     x, omega = own.x1.copy(), train._body.omega.copy()
-    _, _, _, _, info = train.step(kicks(train, car0_left=MEMBRANE, car1_right=POSITION, car2_left=PHASE, car2_right=PHASE))
+    _, _, _, _, info = train.step(
+        kicks(train, car0_left=MEMBRANE, car1_right=POSITION, car2_left=PHASE, car2_right=PHASE)
+    )
     assert info["kicks"] == 4
     # A step of 1 ms moves a potential towards what it sees, a 50th of the way.
     assert own.x1 == pytest.approx(x * (-1, 1, 1, 1, 1, 1), abs=2 / 50)
     assert abs(x[0]) > 0.1
-    assert own.pulse.tolist() == [NO_PULSE, NO_PULSE, NO_PULSE, PULSE_BETA, PULSE_SHIFT, PULSE_SHIFT]
+    assert own.pulse.tolist() == [
+        NO_PULSE,
+        NO_PULSE,
+        NO_PULSE,
+        PULSE_BETA,
+        PULSE_SHIFT,
+        PULSE_SHIFT,
+    ]
     assert own.value[4:].tolist() == [reversing_shift(np.sign(speed)) for speed in omega[4:]]
     assert own.ticks[3:].tolist() == [250] * 3
     assert own.begin[3:].tolist() == [300] * 3
@@ -76,7 +95,9 @@ def test_it_sees_what_the_wheels_and_joints_do_and_nothing_of_the_world():
         abs=1e-6,
     )
     assert np.abs(seen).max(initial=0.0) < 1.0
-    assert info["cars"].tolist() == [[state[f"car{car}_{what}"] for what in ("x_m", "y_m", "yaw_rad")] for car in range(3)]
+    assert info["cars"].tolist() == [
+        [state[f"car{car}_{what}"] for what in ("x_m", "y_m", "yaw_rad")] for car in range(3)
+    ]
     assert info["direction"] == np.sign(body.omega.mean())
 
 
@@ -98,11 +119,22 @@ def test_reset_takes_a_scene_and_phases_and_refuses_what_it_does_not_know():
     seen, info = train.reset(seed=1, options={"phases": [0.0, pi / 2], "scene": "walls"})
     assert seen[:4] == pytest.approx([0.0, 1.0, 1.0, 0.0])
     assert info["time_s"] == 0.0
-    assert any(train._body.model.geom(geom).name.startswith("wall") for geom in range(train._body.model.ngeom))
-    for options, words in (({"sceen": "flat"}, "sceen"), ({"scene": "moon"}, "moon"), ({"phases": [0.0]}, "2 angles")):
+    assert any(
+        train._body.model.geom(geom).name.startswith("wall")
+        for geom in range(train._body.model.ngeom)
+    )
+    for options, words in (
+        ({"sceen": "flat"}, "sceen"),
+        ({"scene": "moon"}, "moon"),
+        ({"phases": [0.0]}, "2 angles"),
+    ):
         with pytest.raises(ValueError, match=words):
             train.reset(options=options)
-    for wrong, words in (({"preset": "lego"}, "lego"), ({"decision_s": float("nan")}, "nan"), ({"kick_s": 11.0}, "to 10")):
+    for wrong, words in (
+        ({"preset": "lego"}, "lego"),
+        ({"decision_s": float("nan")}, "nan"),
+        ({"kick_s": 11.0}, "to 10"),
+    ):
         with pytest.raises(ValueError, match=words):
             Train(**wrong)
     with pytest.raises(ValueError, match="0 to 3"):
@@ -145,7 +177,9 @@ def test_a_plan_turns_to_its_goal_whatever_the_kicks_are_called():
     mirrored = true[:, [ON, RIGHT, LEFT]]
     for bearing, choice, other in ((0.0, ON, ON), (0.7, LEFT, RIGHT), (-0.7, RIGHT, LEFT)):
         for start in ((0.0, 0.0, 0.0), (5.0, -2.0, 2.5)):
-            goal = np.array([start[0] + 3.0 * cos(start[2] + bearing), start[1] + 3.0 * sin(start[2] + bearing)])
+            goal = np.array(
+                [start[0] + 3.0 * cos(start[2] + bearing), start[1] + 3.0 * sin(start[2] + bearing)]
+            )
             assert plan(true, start, ON, goal) == choice
             assert plan(mirrored, start, ON, goal) == other
 
@@ -159,7 +193,9 @@ def test_a_plan_that_is_followed_ends_at_goals_all_around():
             turn = np.array([[cos(pose[2]), sin(pose[2])], [-sin(pose[2]), cos(pose[2])]])
             way = pose[:2] + step[:, :2] @ turn
             nearest = min(nearest, np.hypot(*(way - goal).T).min())
-            assert seen_from(pose, np.column_stack([way, pose[2] + step[:, 2]])) == pytest.approx(step)
+            assert seen_from(pose, np.column_stack([way, pose[2] + step[:, 2]])) == pytest.approx(
+                step
+            )
             pose = np.array([*way[-1], pose[2] + step[-1, 2]])
         assert nearest < 0.2
 
@@ -170,12 +206,16 @@ def test_every_choice_is_tried_after_every_other():
     assert ALL_PAIRS[-1] == ON
 
 
-def test_a_train_learns_what_kicks_do_and_drives_to_a_goal_which_one_that_is_not_kicked_misses(monkeypatch):
+def test_a_train_learns_what_kicks_do_and_drives_to_a_goal_which_one_that_is_not_kicked_misses(
+    monkeypatch,
+):
     monkeypatch.setattr(train_goal, "ROUNDS", 1)
     monkeypatch.setattr(train_goal, "LIMIT_S", 20.0)
     setting = Setting(1, {"goals": 1})
     cells = [{"goal": 2, "way": way} for way in (train_goal.PLANNED, train_goal.NONE)]
-    planned, left_alone = ({**cell, **row} for cell in cells for row in train_goal.simulate(cell, setting))
+    planned, left_alone = (
+        {**cell, **row} for cell in cells for row in train_goal.simulate(cell, setting)
+    )
     assert planned["goal_m"] == left_alone["goal_m"]
     assert np.hypot(*planned["goal_m"]) == pytest.approx(3.0)
     course = np.array(planned["course"])

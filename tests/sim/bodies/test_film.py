@@ -1,4 +1,7 @@
-"""Films: of a simulated body, by a camera that follows it, and of a wheel's rods. Needs EGL (libegl1) or OSMesa, but no display."""
+"""Films: of a simulated body, by a camera that follows it, and of a wheel's rods.
+
+Needs EGL (libegl1) or OSMesa, but no display.
+"""
 
 import json
 import os
@@ -30,8 +33,22 @@ def read(path):
     """All pictures of a film, (pictures, height, width, 3)."""
     folder = path.parent / "pictures"
     folder.mkdir()
-    subprocess.run([get_ffmpeg_exe(), "-loglevel", "error", "-i", path, "-fps_mode", "passthrough", folder / "%05d.png"], check=True)
-    return np.array([np.asarray(Image.open(picture).convert("RGB")) for picture in sorted(folder.iterdir())]).astype(int)
+    subprocess.run(
+        [
+            get_ffmpeg_exe(),
+            "-loglevel",
+            "error",
+            "-i",
+            path,
+            "-fps_mode",
+            "passthrough",
+            folder / "%05d.png",
+        ],
+        check=True,
+    )
+    return np.array(
+        [np.asarray(Image.open(picture).convert("RGB")) for picture in sorted(folder.iterdir())]
+    ).astype(int)
 
 
 def yellow(pictures):
@@ -45,7 +62,12 @@ def test_a_film_has_a_picture_for_each_moment_and_shows_what_moves(tmp_path, end
     with Film(path, car.model, 1, size=SMALL, fps=10) as watch:
         car.run(0.505, lambda _: watch(car.data))
     seen = read(path)
-    assert seen.shape == (6, SMALL[1], SMALL[0], 3)  # begun at the first call, after 5 ms; then every 0.1 s
+    assert seen.shape == (
+        6,
+        SMALL[1],
+        SMALL[0],
+        3,
+    )  # begun at the first call, after 5 ms; then every 0.1 s
     assert (yellow(seen).sum(axis=(1, 2)) > 20).all()
     assert np.abs(np.diff(seen, axis=0)).max(axis=(1, 2, 3)).min() > 50
 
@@ -65,7 +87,9 @@ def test_the_camera_follows_smoothly_and_keeps_the_whole_train_in_the_picture():
     def watch(time_s):
         if round(time_s * 1000) % 80 == 0:
             rows, columns = np.nonzero(yellow(camera.picture(train.data)))
-            edges.append((rows.min(), SMALL[1] - rows.max(), columns.min(), SMALL[0] - columns.max()))
+            edges.append(
+                (rows.min(), SMALL[1] - rows.max(), columns.min(), SMALL[0] - columns.max())
+            )
             looked.append(camera._view.lookat.copy())
 
     train.run(4.0, watch)
@@ -90,7 +114,13 @@ def test_a_run_that_is_interrupted_leaves_a_film_that_plays(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "word"), [("car.avi", "'.avi'|car.avi"), ("car", "car"), ("nowhere/car.mp4", "nowhere"), ("d.gif", "d.gif")]
+    ("name", "word"),
+    [
+        ("car.avi", "'.avi'|car.avi"),
+        ("car", "car"),
+        ("nowhere/car.mp4", "nowhere"),
+        ("d.gif", "d.gif"),
+    ],
 )
 def test_a_film_that_cannot_be_written_is_refused_before_anything_runs(tmp_path, name, word):
     (tmp_path / "d.gif").mkdir()
@@ -130,7 +160,9 @@ def test_where_nothing_can_draw_it_says_what_to_install(tmp_path, name, value):
     """Tried in a process of its own, as MuJoCo looks at these variables when it is loaded."""
     environment = {**os.environ, "MUJOCO_GL": "egl", name: value}
     command = [sys.executable, "-c", NO_GL, str(tmp_path / "car.mp4")]
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True
+    )
     assert "no film can be made here" in done.stdout
     assert "MUJOCO_GL" in done.stdout
     assert "libegl1" in done.stdout
@@ -186,7 +218,9 @@ def test_live_keeps_to_real_time_and_ends_with_its_window(monkeypatch):
     car = body_of(Asked(seed=3))
     with film.live(car.model, car.data) as watch:
         car.run(60.0, lambda _: watch(car.data))
-    assert car.time_s == pytest.approx(30 * 0.02, abs=0.03)  # every fourth record of 5 ms is the first after 1/60 s
+    assert car.time_s == pytest.approx(
+        30 * 0.02, abs=0.03
+    )  # every fourth record of 5 ms is the first after 1/60 s
     assert clock.now - 100.0 == pytest.approx(car.time_s, abs=0.03)
 
 
@@ -197,7 +231,9 @@ def log(tmp_path_factory):
     environment = {**os.environ, "KICK_TOKEN": str(folder / "token"), "PYTHONPATH": str(ROOT)}
     environment.pop("KICK_BRICK", None)
     command = [sys.executable, "-m", "host", "rods", "--out", "rods.gif", "--seed", "1", "--json"]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=True
+    )
     result = json.loads(done.stdout)
     assert result["reversed"]
     return Log.load(folder / result["log"]), folder / result["film"]
@@ -214,12 +250,19 @@ def test_the_film_of_the_rods_plays_and_is_small(log):
 def test_the_rods_that_are_shown_make_the_robots_torque(log, side):
     robot, tick_s = log[0], 0.03
     k, zero_s = robot.info["params"]["k"], robot.records[robot.kicks()[0][0]].t_s
-    inside = [record for record in robot.records if WINDOW_S[0] < record.t_s - zero_s < WINDOW_S[1] - tick_s]
+    inside = [
+        record
+        for record in robot.records
+        if WINDOW_S[0] < record.t_s - zero_s < WINDOW_S[1] - tick_s
+    ]
     assert len(inside) > 30
     for record in inside:
         at_s = record.t_s - zero_s
         shown = course(robot, side, (max(WINDOW_S[0], at_s), at_s + 1e-3), 1e-3)
-        forces = [rod_force(target, actual, k) for target, actual in zip(shown.targets[:, 0], shown.actual[:, 0], strict=True)]
+        forces = [
+            rod_force(target, actual, k)
+            for target, actual in zip(shown.targets[:, 0], shown.actual[:, 0], strict=True)
+        ]
         torque = motor_torque(tangential_force(*forces, *shown.actual[:, 0]))
         assert torque == pytest.approx(getattr(record, side + "_torque"), abs=1e-9)
         assert shown.torque[0] == getattr(record, side + "_torque")
@@ -231,7 +274,9 @@ def test_a_kick_shows_the_neurons_another_place_only_while_it_acts(log):
     assert np.array_equal(altered, (shown.t_s > -1e-9) & (shown.t_s < shown.kick_s - 1e-9))
     turned = np.arctan2(shown.seen[1], shown.seen[0])[altered] - shown.phi[altered]
     assert np.cos(turned) == pytest.approx(np.cos(3 * np.pi / 4))
-    assert shown.phi[0] < shown.phi[np.searchsorted(shown.t_s, 0.0)] > shown.phi[-1]  # forward, then backward
+    assert (
+        shown.phi[0] < shown.phi[np.searchsorted(shown.t_s, 0.0)] > shown.phi[-1]
+    )  # forward, then backward
 
 
 def test_pictures_of_the_rods_change_with_the_wheel_and_repeat_to_the_pixel(log):

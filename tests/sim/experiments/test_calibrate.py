@@ -1,4 +1,7 @@
-"""Calibration against robots whose constants are known: what is found is true, as sharp as is said, and enough to simulate the robot."""
+"""Calibration against robots whose constants are known.
+
+What is found is true, as sharp as is said, and enough to simulate the robot.
+"""
 
 import tomllib
 from dataclasses import replace
@@ -11,7 +14,15 @@ import pytest
 from host.client.robot import Robot, connect
 from host.errors import NotDone, WrongUse
 from host.experiments.robot import calibrate
-from host.experiments.robot.identification import Drive, Traits, break_away, constants_of, identify, middle, traits
+from host.experiments.robot.identification import (
+    Drive,
+    Traits,
+    break_away,
+    constants_of,
+    identify,
+    middle,
+    traits,
+)
 from host.figures.robot.calibrate import draw
 from host.link.sim import SimLink
 from host.logs.log import Log
@@ -62,7 +73,9 @@ def drive(brick, **changes):
         robot.start()
         log = Log(robot.info())
         robot.add_tap(log)
-        rows = calibrate.trial(calibrate.cells(SETTING.options, batch=False)[0], robot, log, SETTING)
+        rows = calibrate.trial(
+            calibrate.cells(SETTING.options, batch=False)[0], robot, log, SETTING
+        )
         return rows, robot.status()
 
 
@@ -82,7 +95,10 @@ def odd(own_file):
     """Odd robots, each with its rows and what was found."""
     bricks = [SimBrick(seed, motor="odd") for seed in (1, 2)]
     rows = [drive(brick)[0] for brick in bricks]
-    return [(brick, one, calibrate.report(one, SETTING)) for brick, one in zip(bricks, rows, strict=True)]
+    return [
+        (brick, one, calibrate.report(one, SETTING))
+        for brick, one in zip(bricks, rows, strict=True)
+    ]
 
 
 def test_constants_are_recovered_within_their_intervals(odd):
@@ -116,7 +132,10 @@ def closed_loop(constants):
     result = batch.run(400, 300, 7, motors=(constants,), params=params, kick=kick, record=400)
     phi, duty = result.records[:, :, 0], np.abs(result.records[:, :, 5])
     speed = np.abs(phi[:, 160] - phi[:, 110]) / (result.times[:, 160] - result.times[:, 110])
-    return np.array([speed.mean() / (2 * pi), duty[:, 110:160].mean(), np.nanmean(result.settled_s)]), result.reversed.mean()
+    return (
+        np.array([speed.mean() / (2 * pi), duty[:, 110:160].mean(), np.nanmean(result.settled_s)]),
+        result.reversed.mean(),
+    )
 
 
 def test_the_entry_makes_a_robot_that_behaves_as_the_one_measured(odd, own_file):
@@ -124,7 +143,9 @@ def test_the_entry_makes_a_robot_that_behaves_as_the_one_measured(odd, own_file)
     own_file.write_text(ODD + findings.files["motors.toml"])
     with connect("sim://?motor=mine", 1) as robot:
         assert robot.status()["battery_v"] == pytest.approx(8.1)
-    (measured, share), (mine, share_mine), (published, _) = (closed_loop(load(name)) for name in ("odd", "mine", "pybricks"))
+    (measured, share), (mine, share_mine), (published, _) = (
+        closed_loop(load(name)) for name in ("odd", "mine", "pybricks")
+    )
     assert np.all(np.abs(mine / measured - 1) < [0.005, 0.005, 0.04])
     assert np.all(np.abs(published / measured - 1) > [0.05, 0.01, 0.1])
     assert abs(share_mine - share) < 0.08
@@ -148,7 +169,10 @@ def test_a_disturbance_that_no_model_knows_widens_the_intervals(odd):
     for side in WHEELS:
         assert 0.4 < rough["rms_deg"][side] < 1.0
         for name in ("speed_per_v", "time_constant_s"):
-            widths = [float(np.diff(numbers["intervals"][side][name])[0]) for numbers in (rough, odd[0][2].numbers)]
+            widths = [
+                float(np.diff(numbers["intervals"][side][name])[0])
+                for numbers in (rough, odd[0][2].numbers)
+            ]
             assert widths[0] > 1.2 * widths[1]
 
 
@@ -188,17 +212,24 @@ def ramp(duty_of_motion):
 
 
 @pytest.mark.parametrize(("moved", "interval"), [((9, 9), (8, 9)), ((7, 11), (6, 11))])
-def test_break_away_lies_between_the_last_duty_that_held_and_the_first_that_did_not(moved, interval):
+def test_break_away_lies_between_the_last_duty_that_held_and_the_first_that_did_not(
+    moved, interval
+):
     ramps = [ramp(duty) for duty in moved]
     duties, angles = (np.concatenate(parts) for parts in zip(*ramps, strict=True))
     stretches = np.repeat([3, 8], len(ramps[0][0]))
-    assert break_away(Drive(np.arange(len(duties)) * 0.02, angles, -duties, stretches), [3, 8]) == interval
+    assert (
+        break_away(Drive(np.arange(len(duties)) * 0.02, angles, -duties, stretches), [3, 8])
+        == interval
+    )
 
 
 @pytest.mark.parametrize("polarity", [1, -1])
 def test_the_middle_of_a_reading_is_where_the_angle_is_on_average(polarity):
     angles = np.linspace(-8, 8, 4001)
-    readings = np.array([polarity * encoder(0, float(polarity * angle), 0.0, 720.0) * pi / 180 for angle in angles])
+    readings = np.array(
+        [polarity * encoder(0, float(polarity * angle), 0.0, 720.0) * pi / 180 for angle in angles]
+    )
     off = np.degrees(middle(readings, polarity) - angles)
     assert np.abs(off).max() < 0.76  # the count around zero is the widest: one and a half degrees
     for part in (angles > 0.05, angles < -0.05):
@@ -208,7 +239,16 @@ def test_the_middle_of_a_reading_is_where_the_angle_is_on_average(polarity):
 @pytest.mark.parametrize("name", names())
 def test_traits_say_all_that_constants_do_except_for_what_is_published(name):
     constants = load(name)
-    other = replace(constants, emf_constant=0.6, viscous=0.1, kinetic=0.1, static=0.2, motor_inertia=0.01, backlash=0.3, latency_s=0.1)
+    other = replace(
+        constants,
+        emf_constant=0.6,
+        viscous=0.1,
+        kinetic=0.1,
+        static=0.2,
+        motor_inertia=0.01,
+        backlash=0.3,
+        latency_s=0.1,
+    )
     back = constants_of(traits(constants, 7.9), other, 7.9)
     assert (back.latency_s, back.battery_v) == pytest.approx((constants.latency_s, 7.9))
     assert np.allclose(back.scalars(), constants.scalars())
@@ -216,7 +256,9 @@ def test_traits_say_all_that_constants_do_except_for_what_is_published(name):
 
 
 def entry_of(changes, lack=()):
-    values = {key: row[0] for key, row in tomllib.loads(ODD)["odd"].items() if key not in lack} | changes
+    values = {
+        key: row[0] for key, row in tomllib.loads(ODD)["odd"].items() if key not in lack
+    } | changes
     return "[odd]\n" + "\n".join(f'{key} = [{value}, "", ""]' for key, value in values.items())
 
 
@@ -224,7 +266,10 @@ def entry_of(changes, lack=()):
     ("text", "words"),
     [
         ("[odd]\n" * 2, "cannot be read: Cannot declare"),
-        ("[other]", "no motor 'odd': published are pybricks, nxt_unroller, and your own in .*: other"),
+        (
+            "[other]",
+            "no motor 'odd': published are pybricks, nxt_unroller, and your own in .*: other",
+        ),
         (entry_of({}, lack=["inertia"]), "lacks inertia"),
         (entry_of({"latencyy": 0.1}), "nobody knows, latencyy"),
         (entry_of({"resistance": 0.0}), r"no \[value, unit, source\] that can be, in resistance"),

@@ -1,4 +1,7 @@
-"""Simulations spread over a Dask cluster of two worker processes: the same results, whatever becomes of a worker."""
+"""Simulations spread over a Dask cluster of two worker processes.
+
+The same results, whatever becomes of a worker.
+"""
 
 import csv
 import os
@@ -21,19 +24,25 @@ KICKS = 36 * 30
 @pytest.fixture(scope="module")
 def cluster():
     """Two processes of one thread each."""
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+    ) as cluster:
         yield cluster
 
 
 @pytest.mark.timeout(300)  # three processes compile the batch, perhaps beside other work
 def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
     monkeypatch.setattr("host.figures.robot.kick_map.draw", lambda rows, findings: Figure())
-    there = perform("kick-map", kicks=KICKS, seed=3, out=tmp_path, scheduler=cluster.scheduler_address)
+    there = perform(
+        "kick-map", kicks=KICKS, seed=3, out=tmp_path, scheduler=cluster.scheduler_address
+    )
     setting = Setting(3, {"kicks": KICKS})
     cells = kick_map.cells(setting.options, batch=True)
     here = [{**cell, **row} for cell in cells for row in kick_map.simulate(cell, setting)]
     with Path(there["table"]).open(encoding="utf-8", newline="") as table:
-        assert list(csv.DictReader(table)) == [{name: str(value) for name, value in row.items()} for row in here]
+        assert list(csv.DictReader(table)) == [
+            {name: str(value) for name, value in row.items()} for row in here
+        ]
     assert there["numbers"] == kick_map.report(here, setting).numbers
     assert there["numbers"]["kicks"] > 0.9 * KICKS
 
@@ -47,7 +56,10 @@ def test_a_study_of_the_model_has_the_same_numbers_from_a_cluster(cluster, tmp_p
 
 @pytest.fixture
 def scramble():
-    """A simulation that takes a while, which no compiler shortens; defined in here, so that it travels to workers as it is."""
+    """A simulation that takes a while, which no compiler shortens.
+
+    Defined in here, so that it travels to workers as it is.
+    """
 
     def scramble(cell, setting):
         number = setting.seed_of(cell)
@@ -74,7 +86,9 @@ def test_nothing_is_lost_with_a_worker_that_is_killed(cluster, scramble):
 
 
 def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
-    with LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0") as brief:
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
+    ) as brief:
         results = spread(brief.scheduler_address, scramble, CELLS, SETTING)
         next(results)
     with pytest.raises(NoLink, match="was lost"):
@@ -89,4 +103,6 @@ def test_no_scheduler_is_told_in_words(monkeypatch):
 
 def test_a_robot_is_not_spread(tmp_path):
     with pytest.raises(WrongUse, match="--scheduler"):
-        perform("kick-map", "tcp://127.0.0.1:1", kicks=36, out=tmp_path, scheduler="tcp://127.0.0.1:1")
+        perform(
+            "kick-map", "tcp://127.0.0.1:1", kicks=36, out=tmp_path, scheduler="tcp://127.0.0.1:1"
+        )

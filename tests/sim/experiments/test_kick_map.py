@@ -9,7 +9,16 @@ import pytest
 from host.client.robot import connect
 from host.experiments.robot import kick_map
 from host.kicking import planning
-from host.kicking.kick_map import KINDS, LENGTHS, PHASE_BINS, bin_edges_rad, count, lengths, phase_bin, tally
+from host.kicking.kick_map import (
+    KINDS,
+    LENGTHS,
+    PHASE_BINS,
+    bin_edges_rad,
+    count,
+    lengths,
+    phase_bin,
+    tally,
+)
 from host.kicking.planning import Plan, choose, reversal
 from host.logs.log import Log
 from host.perform.run import perform
@@ -26,7 +35,10 @@ def rows(mode, sign, ticks, rates, before=1, tried=100):
     """A map's rows; rates: one for all phases, or by the bin."""
     by_bin = [rates] * PHASE_BINS if isinstance(rates, (int, float)) else rates
     kick = {"mode": mode, "sign": sign, "ticks": ticks, "before": before, "tried": tried}
-    return [{**kick, "phase": number, "reversed": round(tried * rate)} for number, rate in enumerate(by_bin)]
+    return [
+        {**kick, "phase": number, "reversed": round(tried * rate)}
+        for number, rate in enumerate(by_bin)
+    ]
 
 
 # Where a kick meets a wheel.
@@ -39,7 +51,10 @@ def test_the_batch_tells_the_angle_that_the_kicks_first_tick_read():
 
 
 def test_every_count_of_the_encoder_has_its_bin_forward_and_backward():
-    """Whole counts in double precision, any number of turns away: ten of them in each bin, none on its edge."""
+    """Whole counts in double precision, any number of turns away.
+
+    Ten of them in each bin, none on its edge.
+    """
     for turn in (-1000, -1, 0, 1, 1000):
         bins = [phase_bin((360 * turn + degree) * pi / 180) for degree in range(360)]
         assert bins == [degree // 10 for degree in range(360)]
@@ -65,7 +80,11 @@ def test_a_map_counts_every_wheel_that_ran_and_depends_on_its_seed_alone():
 
 def test_success_has_the_quarter_turn_symmetry_of_two_rods_and_not_of_chance():
     """At 8 ticks inverted positions reverse at some phases only, and again a quarter turn on."""
-    found = [{"ticks": 8, **row} for row in tally(POSITION, 0, 8, 8000, 4, params=Params()) if row["before"] == 1]
+    found = [
+        {"ticks": 8, **row}
+        for row in tally(POSITION, 0, 8, 8000, 4, params=Params())
+        if row["before"] == 1
+    ]
     share = kick_map.share(kick_map.counts(found))[LENGTHS.index(8)]
     assert share.max() > 0.9
     assert share.min() < 0.02
@@ -74,8 +93,14 @@ def test_success_has_the_quarter_turn_symmetry_of_two_rods_and_not_of_chance():
 
 
 def test_the_two_directions_mirror_each_other():
-    made = tally(PHASE, 1, 9, 4000, 5, params=Params()), tally(PHASE, -1, 9, 4000, 5, params=Params())
-    rates = [np.divide(*count(row for row in found if row["before"] == before)) for found, before in zip(made, (1, -1), strict=True)]
+    made = (
+        tally(PHASE, 1, 9, 4000, 5, params=Params()),
+        tally(PHASE, -1, 9, 4000, 5, params=Params()),
+    )
+    rates = [
+        np.divide(*count(row for row in found if row["before"] == before))
+        for found, before in zip(made, (1, -1), strict=True)
+    ]
     assert rates == pytest.approx([0.47, 0.47], abs=0.06)
 
 
@@ -109,27 +134,44 @@ def test_the_wait_is_until_the_first_tick_in_the_window():
     assert Plan(PHASE, 4).wait_ticks(0.0, 0.0) == 1
 
 
-@pytest.mark.parametrize("nothing", [[], rows(POSITION, 0, 3, 0.5), rows(POSITION, 0, 3, [1.0] * 2 + [0.0] * 34)])
+@pytest.mark.parametrize(
+    "nothing", [[], rows(POSITION, 0, 3, 0.5), rows(POSITION, 0, 3, [1.0] * 2 + [0.0] * 34)]
+)
 def test_where_nothing_is_sure_nothing_is_planned(nothing):
     assert choose(nothing, 1) is None
 
 
 @pytest.mark.parametrize(
     ("changes", "mode", "blind_ticks", "dips_to"),
-    [({}, POSITION, 8, 0.4), ({"k": 2.0}, POSITION, 3, 0.7), ({"tick_s": 0.02}, POSITION, 3, 0.05), ({"tick_s": 0.05}, PHASE, 7, 0.1)],
+    [
+        ({}, POSITION, 8, 0.4),
+        ({"k": 2.0}, POSITION, 3, 0.7),
+        ({"tick_s": 0.02}, POSITION, 3, 0.05),
+        ({"tick_s": 0.05}, PHASE, 7, 0.1),
+    ],
 )
-def test_the_planned_kick_reverses_from_any_phase_where_a_blind_one_dips(changes, mode, blind_ticks, dips_to):
+def test_the_planned_kick_reverses_from_any_phase_where_a_blind_one_dips(
+    changes, mode, blind_ticks, dips_to
+):
     """Borne out by wheels, motors and chances that the plan has not seen, forward and backward."""
     params = Params()
     params.apply(params.check({"k": 8.0, **changes}))
     plans = {before: reversal(before, params.values()) for before in (1, -1)}
     for before, plan in plans.items():
         sign = round((plan.shift_rad or 0.0) / (3 * pi / 4))
-        seen = [row for row in tally(plan.mode, sign, plan.ticks, 1000, 77, params=params) if row["before"] == before]
+        seen = [
+            row
+            for row in tally(plan.mode, sign, plan.ticks, 1000, 77, params=params)
+            if row["before"] == before
+        ]
         met = [row for row in seen if plan.meets(sum(bin_edges_rad(row["phase"])) / 2)]
         done, tried = count(met)
         assert done >= 0.99 * tried > 300
-        blind = [row for row in tally(mode, before * (mode == PHASE), blind_ticks, 400, 78, params=params) if row["before"] == before]
+        blind = [
+            row
+            for row in tally(mode, before * (mode == PHASE), blind_ticks, 400, 78, params=params)
+            if row["before"] == before
+        ]
         done, tried = count(blind)
         assert done <= dips_to * tried
 
@@ -160,15 +202,25 @@ def test_kept_plans_that_cannot_be_read_are_made_anew(monkeypatch, damage):
 # The experiment.
 
 
-def test_the_experiment_tries_what_was_asked_in_chunks_and_reports_the_best_beside_the_blind(tmp_path):
-    assert sum(cell["kicks"] for cell in kick_map.cells({"kicks": 2000000}, batch=True)) == pytest.approx(2000000, abs=36)
+def test_the_experiment_tries_what_was_asked_in_chunks_and_reports_the_best_beside_the_blind(
+    tmp_path,
+):
+    assert sum(
+        cell["kicks"] for cell in kick_map.cells({"kicks": 2000000}, batch=True)
+    ) == pytest.approx(2000000, abs=36)
     summary = perform("kick-map", kicks=36 * 300, out=tmp_path, seed=2)
     assert json.loads(json.dumps(summary["numbers"])) == summary["numbers"]
-    assert {claim["id"]: claim["measured"] for claim in summary["claims"]} == {"R9": 1.0, "R10": 1.0}
+    assert {claim["id"]: claim["measured"] for claim in summary["claims"]} == {
+        "R9": 1.0,
+        "R10": 1.0,
+    }
     for claim in summary["claims"]:  # four kicks at a phase, all of which reversed
         assert not claim["holds"]
         assert "decide nothing" in claim["note"]
-    maps = {(entry["mode"], entry["sign"], entry["before"]): entry for entry in summary["numbers"]["maps"]}
+    maps = {
+        (entry["mode"], entry["sign"], entry["before"]): entry
+        for entry in summary["numbers"]["maps"]
+    }
     assert len(maps) == 6
     for entry in maps.values():
         assert entry["best"]["window_deg"] is None

@@ -5,7 +5,17 @@ import pytest
 
 from host.logs.motion import settling_of
 from robot import controller, kicks
-from robot.kicks import DIRECTION_TICKS, JUMP, MEMBRANE, PHASE, POSITION, PULSE_BETA, PULSE_SHIFT, WHEELS, Kick
+from robot.kicks import (
+    DIRECTION_TICKS,
+    JUMP,
+    MEMBRANE,
+    PHASE,
+    POSITION,
+    PULSE_BETA,
+    PULSE_SHIFT,
+    WHEELS,
+    Kick,
+)
 from robot.loop import Loop
 from robot.params import Params
 from robot.record import unpack
@@ -42,7 +52,9 @@ def run_loop(seed, request, changes, motor):
         if tick == BEGIN:
             loop.kick({"id": "k", **request})
         loop.tick()
-    events = {event["event"]: event for event in map(loop.blackbox.event, range(loop.blackbox.next_event))}
+    events = {
+        event["event"]: event for event in map(loop.blackbox.event, range(loop.blackbox.next_event))
+    }
     start = batch.Start(states, np.array(events["start"]["x"]))
     return brick, start, unpack(loop.blackbox.read(0, TICKS)), Kick(**events["kick"]["kick"])
 
@@ -55,12 +67,20 @@ def run_batch(brick, start, records, kick, changes):
         kick.values = (batch.PHASE_SHIFT,) * 2
     constants = tuple(motor.constants for motor in brick.motors)
     times = np.array([record.t_s for record in records])
-    return batch.run(2, TICKS, 0, params=params, kick=kick, motors=constants, start=start, times=times, record=2)
+    return batch.run(
+        2, TICKS, 0, params=params, kick=kick, motors=constants, start=start, times=times, record=2
+    )
 
 
-@pytest.mark.parametrize("request_", REQUESTS, ids=lambda request: "-".join(str(value) for value in request.values()))
 @pytest.mark.parametrize(
-    ("seed", "changes", "motor"), [(1, {"k": 8.0}, "pybricks"), (2, {"k": 2.0, "rods": 1, "max_duty_pct": 100.0}, "nxt_unroller")]
+    "request_", REQUESTS, ids=lambda request: "-".join(str(value) for value in request.values())
+)
+@pytest.mark.parametrize(
+    ("seed", "changes", "motor"),
+    [
+        (1, {"k": 8.0}, "pybricks"),
+        (2, {"k": 2.0, "rods": 1, "max_duty_pct": 100.0}, "nxt_unroller"),
+    ],
 )
 def test_a_wheel_in_a_batch_equals_the_robots_loop(request_, seed, changes, motor):
     brick, start, records, kick = run_loop(seed, request_, changes, motor)
@@ -72,7 +92,10 @@ def test_a_wheel_in_a_batch_equals_the_robots_loop(request_, seed, changes, moto
 
 
 def test_a_phase_kick_takes_its_sign_from_each_wheel():
-    """Among enough seeds some robot turns on the spot: there the loop gives the wheels opposite shifts, and so does the batch."""
+    """Among enough seeds some robot turns on the spot.
+
+    There the loop gives the wheels opposite shifts, and so does the batch.
+    """
     for seed in range(20):
         brick, start, records, kick = run_loop(seed, {"mode": "phase"}, {"k": 8.0}, "pybricks")
         if kick.values[0] != kick.values[1]:
@@ -84,12 +107,17 @@ def test_a_phase_kick_takes_its_sign_from_each_wheel():
 
 
 def phase_kick(ticks):
-    return Kick("phase", PHASE, WHEELS, ticks, pulse=PULSE_SHIFT, values=(batch.PHASE_SHIFT,) * 2, begin=150)
+    return Kick(
+        "phase", PHASE, WHEELS, ticks, pulse=PULSE_SHIFT, values=(batch.PHASE_SHIFT,) * 2, begin=150
+    )
 
 
 def test_kicks_of_3_to_5_ticks_reverse_and_of_one_do_not():
     """R8 to R10, for a single wheel."""
-    position = {ticks: Kick("p", POSITION, WHEELS, ticks, pulse=PULSE_BETA, values=(1.0, 1.0), begin=150) for ticks in (1, 4)}
+    position = {
+        ticks: Kick("p", POSITION, WHEELS, ticks, pulse=PULSE_BETA, values=(1.0, 1.0), begin=150)
+        for ticks in (1, 4)
+    }
     assert batch.run(200, 300, 1, kick=Kick("m", MEMBRANE, WHEELS, 1, begin=150)).reversed.all()
     assert batch.run(200, 300, 2, kick=phase_kick(4)).reversed.mean() >= 0.95
     assert batch.run(200, 300, 3, kick=position[4]).reversed.mean() >= 0.95

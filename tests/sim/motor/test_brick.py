@@ -1,4 +1,7 @@
-"""The simulated brick behind the robot's seams: time, latency, encoder, refusals, and that looking changes nothing."""
+"""The simulated brick behind the robot's seams.
+
+Time, latency, encoder, refusals, and that looking changes nothing.
+"""
 
 from math import nan, pi
 
@@ -167,7 +170,12 @@ def test_angles_are_whole_degrees_and_two_milliseconds_old_at_most():
 
 
 def test_it_starts_at_rest_at_any_phase():
-    angles = np.array([[motor.angle_rad() for motor in SimBrick(seed, clock=HandClock()).motors] for seed in range(100)]).ravel()
+    angles = np.array(
+        [
+            [motor.angle_rad() for motor in SimBrick(seed, clock=HandClock()).motors]
+            for seed in range(100)
+        ]
+    ).ravel()
     assert np.all((angles >= 0) & (angles < 2 * pi))
     assert np.all(np.histogram(angles, bins=8, range=(0, 2 * pi))[0] > 10)
     brick = SimBrick(3, clock=HandClock())
@@ -207,7 +215,9 @@ def test_the_battery_sags_under_load():
     for motor in brick.motors:
         motor.write_duty(100)
     at(brick, 0.02)
-    starting = load().battery_v - load().source_resistance * sum(truth.current for truth in brick.truth())
+    starting = load().battery_v - load().source_resistance * sum(
+        truth.current for truth in brick.truth()
+    )
     assert brick.battery.voltage_v() == pytest.approx(starting)
     assert starting < at(brick, 2.0).battery.voltage_v() < load().battery_v
 
@@ -221,7 +231,16 @@ def test_a_fuller_battery_runs_faster():
     assert speeds[1] / speeds[0] == pytest.approx(8 / 6, rel=0.05)
 
 
-@pytest.mark.parametrize("wrong", [{"battery_v": 0.0}, {"battery_v": nan}, {"battery_v": 84.0}, {"motor": "none"}, {"mount": (1, 2)}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"battery_v": 0.0},
+        {"battery_v": nan},
+        {"battery_v": 84.0},
+        {"motor": "none"},
+        {"mount": (1, 2)},
+    ],
+)
 def test_a_brick_that_cannot_be_is_refused(wrong):
     with pytest.raises(ValueError, match=r"give more than|there is no motor|mount is 1 or -1"):
         SimBrick(1, **wrong)
@@ -249,7 +268,10 @@ def run_loop(seed, ticks):
 
 
 def test_a_seed_gives_the_same_record_bit_for_bit_and_another_gives_another():
-    records = [loop.blackbox.read(0, 400) for _, loop in (run_loop(5, 400), run_loop(5, 400), run_loop(6, 400))]
+    records = [
+        loop.blackbox.read(0, 400)
+        for _, loop in (run_loop(5, 400), run_loop(5, 400), run_loop(6, 400))
+    ]
     assert records[0] == records[1] != records[2]
 
 

@@ -28,7 +28,11 @@ from sim_motor.motor import (
 )
 
 ROBOTS = {name: load(name) for name in names()}
-ARRAYS = {constants: (constants.tables(), constants.scalars()) for robot in ROBOTS.values() for constants in (robot, robot.bare())}
+ARRAYS = {
+    constants: (constants.tables(), constants.scalars())
+    for robot in ROBOTS.values()
+    for constants in (robot, robot.bare())
+}
 NOMINAL_V = 7.5
 
 
@@ -43,7 +47,14 @@ def at_rest(gap=0.0, angle=0.0):
 
 def push(constants, state, substeps, duty, battery_v=NOMINAL_V, torque=0.0):
     """Advance a state in place and return it."""
-    advance_in_place(state, substeps, duty, battery_v, torque, *(ARRAYS.get(constants) or (constants.tables(), constants.scalars())))
+    advance_in_place(
+        state,
+        substeps,
+        duty,
+        battery_v,
+        torque,
+        *(ARRAYS.get(constants) or (constants.tables(), constants.scalars())),
+    )
     return state
 
 
@@ -56,7 +67,10 @@ def stored(constants, state):
     """Energy (J) of a wheel; the inductor's is scaled by Kt/Ke, as the torque constant of a motor with iron losses is below Ke."""
     coil = constants.inductance * constants.torque_constant / constants.emf_constant
     inertias = constants.motor_inertia, constants.wheel_inertia, coil
-    return 0.5 * sum(weight * state[index] ** 2 for weight, index in zip(inertias, (SPEED, WHEEL_SPEED, CURRENT), strict=True))
+    return 0.5 * sum(
+        weight * state[index] ** 2
+        for weight, index in zip(inertias, (SPEED, WHEEL_SPEED, CURRENT), strict=True)
+    )
 
 
 @st.composite
@@ -97,7 +111,8 @@ def test_holds_against_its_published_stall_torque(name, stall):
     motor = ROBOTS[name].bare()
     friction = motor.static
     beaten, winning = (
-        push(motor, at_rest(), 3000, 100, 8.0, torque)[SPEED] for torque in (-stall - 1.1 * friction, -stall + 1.1 * friction)
+        push(motor, at_rest(), 3000, 100, 8.0, torque)[SPEED]
+        for torque in (-stall - 1.1 * friction, -stall + 1.1 * friction)
     )
     assert beaten < 0 < winning
     assert push(motor, at_rest(), 3000, 100, 8.0, -stall)[SPEED] == 0.0
@@ -145,7 +160,13 @@ def test_a_substep_is_the_exact_solution(robot):
     def rate(y):
         _, speed, current = y
         torque = c.torque_constant * current - c.viscous * speed - friction
-        return np.array([speed, torque / inertia, (NOMINAL_V * duty / 100 - c.emf_constant * speed - ohms * current) / c.inductance])
+        return np.array(
+            [
+                speed,
+                torque / inertia,
+                (NOMINAL_V * duty / 100 - c.emf_constant * speed - ohms * current) / c.inductance,
+            ]
+        )
 
     state = np.array([0.0, 0.0, 3.0, 0.4, c.backlash / 2, 3.0])
     y, h = np.array([0.0, 3.0, 0.4]), 1e-5
@@ -207,7 +228,10 @@ def test_duty_8_leaves_the_robots_wheel_where_it_is_and_9_moves_it(gap, name, si
 
 
 def test_what_moves_keeps_moving_where_what_rests_stays(robot):
-    """Static friction exceeds kinetic: duty 7 does not start a wheel, but does not stop it either."""
+    """Static friction exceeds kinetic.
+
+    Duty 7 does not start a wheel, but does not stop it either.
+    """
     moving, resting = push(robot, at_rest(), 400, 20), at_rest()
     push(robot, moving, 5000, 7)
     push(robot, resting, 5000, 7)
@@ -236,19 +260,33 @@ def test_friction_and_impacts_create_no_energy(data, name, duty):
         energy = left
 
 
-@given(data=st.data(), name=st.sampled_from(names()), duties=st.lists(st.integers(-100, 100), min_size=1, max_size=6))
+@given(
+    data=st.data(),
+    name=st.sampled_from(names()),
+    duties=st.lists(st.integers(-100, 100), min_size=1, max_size=6),
+)
 def test_energy_comes_from_the_battery_only(data, name, duties):
-    """What a driven motor stores is at most what the supply put in: (Kt/Ke) V times the charge, from the circuit's own balance."""
+    """What a driven motor stores is at most what the supply put in.
+
+    (Kt/Ke) V times the charge, from the circuit's own balance.
+    """
     robot = ROBOTS[name]
     state = data.draw(moving(robot))
     energy, supplied = stored(robot, state), 0.0
     for duty in duties:
-        volts, ohms = NOMINAL_V * duty / 100, robot.resistance + 2 * robot.source_resistance * (duty / 100) ** 2
+        volts, ohms = (
+            NOMINAL_V * duty / 100,
+            robot.resistance + 2 * robot.source_resistance * (duty / 100) ** 2,
+        )
         for _ in range(30):
             before = state.copy()
             push(robot, state, 1, duty)
             turned = state[ANGLE] - before[ANGLE]
-            charge = (volts * SUBSTEP_S - robot.inductance * (state[CURRENT] - before[CURRENT]) - robot.emf_constant * turned) / ohms
+            charge = (
+                volts * SUBSTEP_S
+                - robot.inductance * (state[CURRENT] - before[CURRENT])
+                - robot.emf_constant * turned
+            ) / ohms
             supplied += robot.torque_constant / robot.emf_constant * volts * charge
     # A microjoule for events within a substep, at which the charge is not exactly known.
     assert stored(robot, state) <= energy + supplied + 1e-6
@@ -270,7 +308,11 @@ def test_after_a_reversal_the_encoder_moves_three_degrees_before_the_wheel(robot
     assert 2.5 < free <= 3.0
 
 
-@given(data=st.data(), name=st.sampled_from(names()), duties=st.lists(st.integers(-100, COAST), min_size=1, max_size=8))
+@given(
+    data=st.data(),
+    name=st.sampled_from(names()),
+    duties=st.lists(st.integers(-100, COAST), min_size=1, max_size=8),
+)
 def test_the_wheel_stays_within_its_play(data, name, duties):
     robot = ROBOTS[name]
     state = data.draw(moving(robot))
@@ -302,7 +344,10 @@ def test_braking_parts_the_wheel_from_the_motor_and_brings_it_to_the_other_end(r
 
 
 def test_a_load_holds_drives_and_stops_the_wheel(robot):
-    """In coast a load must overcome the gearing's static friction; a torque above the motor's stops a running wheel and turns it back."""
+    """In coast a load must overcome the gearing's static friction.
+
+    A torque above the motor's stops a running wheel and turns it back.
+    """
     hold = robot.static + robot.rolling
     end = -robot.backlash / 2  # the wheel pushes the motor forward
     assert push(robot, at_rest(end), 1000, COAST, torque=0.95 * hold)[SPEED] == 0.0
@@ -342,12 +387,22 @@ def test_the_encoder_is_sampled_every_other_millisecond():
 
 @given(st.integers(0, 10**9))
 def test_a_time_on_the_grid_is_its_own_substep(substep):
-    for time_s in (substep / 1000, np.nextafter(substep / 1000, -1), np.nextafter(substep / 1000, 1e9)):
+    for time_s in (
+        substep / 1000,
+        np.nextafter(substep / 1000, -1),
+        np.nextafter(substep / 1000, 1e9),
+    ):
         assert substep_at(time_s) == substep_from(time_s) == substep
-    assert substep_from((substep + 0.5) / 1000) == substep_at((substep + 0.5) / 1000) + 1 == substep + 1
+    assert (
+        substep_from((substep + 0.5) / 1000)
+        == substep_at((substep + 0.5) / 1000) + 1
+        == substep + 1
+    )
 
 
 def test_rolling_friction_is_the_wheels_share_of_the_weight(robot):
     table = data()["robot"]
     weight = table["mass"][0] / 2 * GRAVITY
-    assert robot.rolling == pytest.approx(table["rolling_resistance"][0] * weight * table["wheel_radius"][0])
+    assert robot.rolling == pytest.approx(
+        table["rolling_resistance"][0] * weight * table["wheel_radius"][0]
+    )

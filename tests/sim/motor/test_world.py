@@ -1,4 +1,7 @@
-"""The robot's body between walls: what physics demands of it, and that a brick without walls is what it was."""
+"""The robot's body between walls.
+
+What physics demands of it, and that a brick without walls is what it was.
+"""
 
 from math import hypot, pi
 
@@ -90,7 +93,13 @@ def test_the_body_goes_where_its_wheels_roll():
     brick, places = driven(Scene(100.0, grip=2.0), (50, 50), 2.0)
     rolled = np.mean([truth.wheel_angle for truth in brick.truth()]) * RADIUS
     assert hypot(places[-1].x, places[-1].y) == pytest.approx(rolled, rel=0.02)
-    assert abs(places[-1].speed_y * np.cos(places[-1].heading) - places[-1].speed_x * np.sin(places[-1].heading)) < 1e-4
+    assert (
+        abs(
+            places[-1].speed_y * np.cos(places[-1].heading)
+            - places[-1].speed_x * np.sin(places[-1].heading)
+        )
+        < 1e-4
+    )
 
 
 def test_a_robot_that_turns_on_the_spot_stays_there():
@@ -98,7 +107,9 @@ def test_a_robot_that_turns_on_the_spot_stays_there():
     assert places[-1].heading > 4 * pi
     assert max(hypot(place.x, place.y) for place in places) < 0.02
     left, right = brick.truth()
-    assert places[-1].turn == pytest.approx((right.wheel_speed - left.wheel_speed) * RADIUS / TRACK, rel=0.02)
+    assert places[-1].turn == pytest.approx(
+        (right.wheel_speed - left.wheel_speed) * RADIUS / TRACK, rel=0.02
+    )
 
 
 # The floor.
@@ -119,7 +130,9 @@ def test_a_tyre_holds_with_no_more_than_its_grip_and_against_its_slip(slip):
         force = tyre_force(stretch, *slip, 2.4, (ROBOT["tyre_stiffness"], ROBOT["tyre_damping"]))
         assert hypot(*force) <= 2.4 * (1 + 1e-12)
         assert all(part * way >= 0 for part, way in zip(force, slip, strict=True))
-    assert hypot(*force) == pytest.approx(min(2.4, 0.3 * ROBOT["tyre_stiffness"] * hypot(*slip)), rel=0.01)
+    assert hypot(*force) == pytest.approx(
+        min(2.4, 0.3 * ROBOT["tyre_stiffness"] * hypot(*slip)), rel=0.01
+    )
 
 
 def test_on_ice_a_moving_body_keeps_its_momentum():
@@ -149,7 +162,9 @@ def test_a_wall_gives_back_what_its_damping_leaves():
     # A damped spring that lets go where its force is zero; both corners push the whole mass.
     ratio = 2 * 40.0 / (2 * np.sqrt(2 * 20000.0 * MASS))
     root = np.sqrt(1 - ratio**2)
-    assert speeds[2] / 0.4 == pytest.approx(np.exp(-ratio / root * (pi - np.arctan2(2 * ratio * root, 1 - 2 * ratio**2))), rel=0.02)
+    assert speeds[2] / 0.4 == pytest.approx(
+        np.exp(-ratio / root * (pi - np.arctan2(2 * ratio * root, 1 - 2 * ratio**2))), rel=0.02
+    )
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.3, -0.8])
@@ -164,7 +179,10 @@ def test_halving_the_steps_changes_a_rebound_by_less_than_a_per_cent_of_the_impa
 def test_the_stiffest_wall_and_the_widest_bumper_throw_no_robot(bumper):
     _, places = driven(Scene(0.6, grip=1.0, stiffness=100000.0, bumper=bumper), (85, 85), 3.0)
     length = ROBOT["body_length"] / 2
-    reach = [abs(place.x) + length * abs(np.cos(place.heading)) + bumper / 2 * abs(np.sin(place.heading)) for place in places]
+    reach = [
+        abs(place.x) + length * abs(np.cos(place.heading)) + bumper / 2 * abs(np.sin(place.heading))
+        for place in places
+    ]
     assert max(reach) < 0.302
     assert max(hypot(place.speed_x, place.speed_y) for place in places) < 0.4
 
@@ -181,7 +199,9 @@ def test_at_a_smooth_wall_the_tyres_spin_and_on_a_rough_floor_the_motors_stall()
 def test_looking_more_often_changes_no_bit():
     def run(glances):
         brick = SimBrick(7, clock=HandClock(), scene=Scene(0.6))
-        for tick, (left, right) in enumerate(np.random.default_rng(0).integers(-100, 101, (60, 2)).tolist()):
+        for tick, (left, right) in enumerate(
+            np.random.default_rng(0).integers(-100, 101, (60, 2)).tolist()
+        ):
             for glance in np.linspace(0, 0.03, glances):
                 brick.clock.time = tick * 0.03 + glance
                 brick.motors[tick % 2].angle_rad()

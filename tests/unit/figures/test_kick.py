@@ -1,4 +1,7 @@
-"""The kick figure shows what the log holds: every curve, every kick where it acted, gaps as gaps, in letters one can read."""
+"""The kick figure shows what the log holds.
+
+Every curve, every kick where it acted, gaps as gaps, in letters one can read.
+"""
 
 import struct
 import subprocess
@@ -16,7 +19,12 @@ from host.logs.log import Log
 from tests.fakes import Rig
 
 ROOT = Path(__file__).resolve().parents[3]
-PAPER = {"left_x1": "saddlebrown", "left_x2": "darkorange", "right_x1": "mediumblue", "right_x2": "deepskyblue"}
+PAPER = {
+    "left_x1": "saddlebrown",
+    "left_x2": "darkorange",
+    "right_x1": "mediumblue",
+    "right_x2": "deepskyblue",
+}
 
 
 @pytest.fixture
@@ -27,7 +35,14 @@ def drawn(monkeypatch, tmp_path):
         figures = []
         save = Figure.savefig
         with monkeypatch.context() as patch:
-            patch.setattr(Figure, "savefig", lambda figure, *args, **kwargs: (figures.append(figure), save(figure, *args, **kwargs)))
+            patch.setattr(
+                Figure,
+                "savefig",
+                lambda figure, *args, **kwargs: (
+                    figures.append(figure),
+                    save(figure, *args, **kwargs),
+                ),
+            )
             draw(log, tmp_path / "kick.png", "A kick", window)
         return figures[0]
 
@@ -48,7 +63,11 @@ def kicked(tick=0):
 
 def curve(axes, color):
     """The data of the one line of a colour."""
-    [line] = [line for line in axes.lines if to_hex(line.get_color()) == to_hex(color) and len(line.get_xdata()) > 2]
+    [line] = [
+        line
+        for line in axes.lines
+        if to_hex(line.get_color()) == to_hex(color) and len(line.get_xdata()) > 2
+    ]
     return np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
 
 
@@ -74,13 +93,20 @@ def test_every_kick_in_the_window_is_marked_and_named_and_no_other(drawn):
         return {text.get_text() for text in figure.axes[0].texts}
 
     def marked(figure, number):
-        crimson = [patch for patch in figure.axes[number].patches if to_hex(patch.get_facecolor()) == to_hex("crimson")]
+        crimson = [
+            patch
+            for patch in figure.axes[number].patches
+            if to_hex(patch.get_facecolor()) == to_hex("crimson")
+        ]
         return [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in crimson]
 
     figure = drawn(log)
     zero_s = log.records[50].t_s
     assert names(figure) == {"phase kick, 4 ticks", "membrane kick, 1 tick, left wheel"}
-    expected = [(0.0, log.records[54].t_s - zero_s), (log.records[70].t_s - zero_s, log.records[71].t_s - zero_s)]
+    expected = [
+        (0.0, log.records[54].t_s - zero_s),
+        (log.records[70].t_s - zero_s, log.records[71].t_s - zero_s),
+    ]
     for number in (0, 1):
         assert np.allclose(marked(figure, number), expected, atol=1e-12)
     early = drawn(log, (-1.0, 0.3))
@@ -122,9 +148,14 @@ def test_names_of_kicks_close_to_each_other_do_not_overlap(drawn):
     figure = drawn(rig.log())
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
     assert len(boxes) == 4
-    assert not any(one.overlaps(other) for number, one in enumerate(boxes) for other in boxes[:number])
+    assert not any(
+        one.overlaps(other) for number, one in enumerate(boxes) for other in boxes[:number]
+    )
     frame = figure.bbox
-    assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 and frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in boxes)
+    assert all(
+        frame.x0 <= box.x0 and box.x1 <= frame.x1 and frame.y0 <= box.y0 and box.y1 <= frame.y1
+        for box in boxes
+    )
 
 
 def test_a_gap_is_no_curve(drawn):

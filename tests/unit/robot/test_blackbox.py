@@ -37,7 +37,10 @@ def state_before(journal, tick):
 
 
 class BlackBoxMachine(RuleBasedStateMachine):
-    """Ticks and events in any order; the box may forget, but what it tells must be what happened."""
+    """Ticks and events in any order.
+
+    The box may forget, but what it tells must be what happened.
+    """
 
     def __init__(self):
         super().__init__()
@@ -82,7 +85,9 @@ class BlackBoxMachine(RuleBasedStateMachine):
     def the_oldest_tick_is_no_older_than_the_ring_and_no_younger_than_the_journal_makes_it(self):
         floor = max(0, self.ticks - CAPACITY)
         dropped = self.journal[: max(0, len(self.journal) - JOURNAL)]
-        assert floor <= self.box.oldest_tick <= max([floor, *(event["tick"] + 1 for event in dropped)])
+        assert (
+            floor <= self.box.oldest_tick <= max([floor, *(event["tick"] + 1 for event in dropped)])
+        )
 
     @invariant()
     def what_can_be_read_is_what_was_written(self):
@@ -92,7 +97,10 @@ class BlackBoxMachine(RuleBasedStateMachine):
             assert len(piece) in (STRUCT.size, 2 * STRUCT.size, 3 * STRUCT.size)
             read += piece
             tick += len(piece) // STRUCT.size
-        expected = [STRUCT.pack(number, *fields(number)) for number in range(self.box.oldest_tick, self.ticks)]
+        expected = [
+            STRUCT.pack(number, *fields(number))
+            for number in range(self.box.oldest_tick, self.ticks)
+        ]
         assert read == b"".join(expected)
         assert self.box.read(self.ticks, 3) == b""
 

@@ -15,7 +15,13 @@ TANH_1 = 0.76159415595576489
 
 angles = st.floats(-20.0, 20.0)
 potentials = st.floats(-1.0, 1.0)
-steps = st.tuples(st.floats(0.003, 0.09), st.floats(0.5, 10.0), st.floats(0.1, 5.0), st.floats(0.0, 20.0), st.sampled_from((1, 2)))
+steps = st.tuples(
+    st.floats(0.003, 0.09),
+    st.floats(0.5, 10.0),
+    st.floats(0.1, 5.0),
+    st.floats(0.0, 20.0),
+    st.sampled_from((1, 2)),
+)
 
 
 def near(expected):
@@ -24,7 +30,9 @@ def near(expected):
 
 def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
     """A tick of a wheel whose neurons see its true angle."""
-    return controller.step_wheel(x1, x2, *2 * controller.actual_positions(phi), dt_s, a, tau_s, k, rods)
+    return controller.step_wheel(
+        x1, x2, *2 * controller.actual_positions(phi), dt_s, a, tau_s, k, rods
+    )
 
 
 @pytest.mark.parametrize(
@@ -33,14 +41,37 @@ def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
         (controller.actual_positions(pi / 6), (sqrt(3) / 2, 0.5)),
         (controller.actual_positions(-pi / 2), (0.0, -1.0)),
         # 2 y - 1, and the hyperbolic tangent of a x / 2.
-        ((controller.target_position(1.0, 4.0), controller.target_position(0.0, 9.0)), (2 * RATE_AT_1 - 1, 0.0)),
-        ((controller.target_position(0.5, 4.0), controller.target_position(-0.25, 8.0)), (TANH_1, -TANH_1)),
+        (
+            (controller.target_position(1.0, 4.0), controller.target_position(0.0, 9.0)),
+            (2 * RATE_AT_1 - 1, 0.0),
+        ),
+        (
+            (controller.target_position(0.5, 4.0), controller.target_position(-0.25, 8.0)),
+            (TANH_1, -TANH_1),
+        ),
         ((controller.rod_force(0.5, -0.25, 8.0),), (6.0,)),
-        ((controller.membrane_rate(0.25, 0.75, 0.25), controller.membrane_rate(1.0, -1.0, 2.0)), (2.0, -1.0)),
-        # At phi = 0 only the second rod turns the wheel, and a pull upwards turns it backward; at a quarter turn only the first.
-        ((controller.tangential_force(5.0, 3.0, 1.0, 0.0), controller.tangential_force(5.0, 3.0, 0.0, 1.0)), (-3.0, 5.0)),
+        (
+            (controller.membrane_rate(0.25, 0.75, 0.25), controller.membrane_rate(1.0, -1.0, 2.0)),
+            (2.0, -1.0),
+        ),
+        # At phi = 0 only the second rod turns the wheel, and a pull upwards turns it backward; at a
+        # quarter turn only the first.
+        (
+            (
+                controller.tangential_force(5.0, 3.0, 1.0, 0.0),
+                controller.tangential_force(5.0, 3.0, 0.0, 1.0),
+            ),
+            (-3.0, 5.0),
+        ),
         ((controller.tangential_force(2.0, -4.0, sqrt(3) / 2, 0.5),), (1.0 + 2.0 * sqrt(3),)),
-        ((controller.motor_torque(1.0), controller.motor_torque(0.0), controller.motor_torque(-1.0)), (TANH_1, 0.0, -TANH_1)),
+        (
+            (
+                controller.motor_torque(1.0),
+                controller.motor_torque(0.0),
+                controller.motor_torque(-1.0),
+            ),
+            (TANH_1, 0.0, -TANH_1),
+        ),
     ],
 )
 def test_each_equation_gives_what_a_hand_computes(computed, expected):
@@ -48,8 +79,9 @@ def test_each_equation_gives_what_a_hand_computes(computed, expected):
 
 
 def test_a_whole_tick_gives_what_a_hand_computes():
-    # At phi = 0 both neurons are pulled by dt/tau = 1/4 of the way to (1, 0): x1 = 0.2 + 0.8/4 = 0.4, x2 = 0.4 - 0.4/4 = 0.3.
-    # F_tan = -F_2 = -k (x_t2 - 0) with x_t2 = tanh(a x2 / 2) = tanh(0.3) = 0.29131261245159090 for a = 2.
+    # At phi = 0 both neurons are pulled by dt/tau = 1/4 of the way to (1, 0): x1 = 0.2 + 0.8/4 =
+    # 0.4, x2 = 0.4 - 0.4/4 = 0.3. F_tan = -F_2 = -k (x_t2 - 0) with x_t2 = tanh(a x2 / 2) =
+    # tanh(0.3) = 0.29131261245159090 for a = 2.
     x1, x2, force, torque = step(0.2, 0.4, 0.0, dt_s=0.0625, a=2.0, k=2.0)
     assert x1 == near(0.4)
     assert x2 == near(0.3)
@@ -59,7 +91,10 @@ def test_a_whole_tick_gives_what_a_hand_computes():
 
 
 def test_the_rods_act_on_the_new_potentials():
-    """One step with dt = tau brings x1 from 0 to cos(phi); the old x1 would give a force of -k/2."""
+    """One step with dt = tau brings x1 from 0 to cos(phi).
+
+    The old x1 would give a force of -k/2.
+    """
     x1, _, force, _ = step(0.0, 0.0, pi / 4, dt_s=0.25, rods=1)
     assert x1 == near(sqrt(0.5))
     # tanh(2 sqrt(1/2)) = tanh(1.4142135623730951) = 0.88838556158566054
@@ -69,7 +104,9 @@ def test_the_rods_act_on_the_new_potentials():
 def test_what_the_neurons_see_does_not_reach_the_projection():
     """With dt -> 0 the neurons do not move, and then nothing they see may change the force."""
     forces = {
-        controller.step_wheel(0.3, -0.6, cos(0.7), sin(0.7), seen_1, seen_2, 0.0, 4.0, 0.25, 8.0, 2)[2]
+        controller.step_wheel(
+            0.3, -0.6, cos(0.7), sin(0.7), seen_1, seen_2, 0.0, 4.0, 0.25, 8.0, 2
+        )[2]
         for seen_1 in (-1.0, 0.2, 1.0)
         for seen_2 in (-0.8, 0.9)
     }
@@ -78,7 +115,10 @@ def test_what_the_neurons_see_does_not_reach_the_projection():
 
 @given(potentials, potentials, angles, steps)
 def test_a_quarter_turn_of_everything_changes_no_force_on_two_rods(x1, x2, phi, parameters):
-    """(x1, x2, phi) -> (-x2, x1, phi + pi/2) is a rotation of the wheel with its rods: the two rods are alike."""
+    """(x1, x2, phi) -> (-x2, x1, phi + pi/2) is a rotation of the wheel with its rods.
+
+    The two rods are alike.
+    """
     dt_s, a, tau_s, k, _ = parameters
     x1_new, x2_new, force, torque = step(x1, x2, phi, dt_s, a, tau_s, k)
     turned = step(-x2, x1, phi + pi / 2, dt_s, a, tau_s, k)
@@ -94,7 +134,10 @@ def test_a_mirrored_wheel_is_driven_the_other_way(x1, x2, phi, parameters):
 
 @given(potentials, potentials, angles, steps)
 def test_one_rod_is_the_first_of_the_two(x1, x2, phi, parameters):
-    """The second rod's share is -F_2 cos(phi); without it the first neuron's force is left, and both neurons go on."""
+    """The second rod's share is -F_2 cos(phi).
+
+    Without it the first neuron's force is left, and both neurons go on.
+    """
     *first, _ = parameters
     alone, both = step(x1, x2, phi, *first, 1), step(x1, x2, phi, *first, 2)
     assert alone[:2] == both[:2]
@@ -115,7 +158,10 @@ def test_nothing_grows_without_bound(x1, x2, phi, parameters):
 
 @pytest.mark.parametrize("omega", [0.5, 12.0, -6.0])
 def test_m9_the_potentials_of_a_constantly_turning_wheel_approach_the_closed_form(omega):
-    """Eq. x-t, and the Euler step is of first order: a tenth of the step is a tenth of the error."""
+    """Eq. x-t, and the Euler step is of first order.
+
+    A tenth of the step is a tenth of the error.
+    """
     tau_s = 0.25
 
     def error(dt_s):

@@ -1,4 +1,7 @@
-"""robot.health asks the robot's program on this machine; here the program runs in a thread of the test."""
+"""robot.health asks the robot's program on this machine.
+
+Here the program runs in a thread of the test.
+"""
 
 import socket
 import threading
@@ -75,14 +78,22 @@ def test_a_robot_in_fault_has_a_program_that_is_well(capsys, monkeypatch, tmp_pa
     (tmp_path / "token").chmod(0o600)
     with robot() as (port, loop):
         loop.safety.fault("the cable is out")
-        monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")])
+        monkeypatch.setattr(
+            "sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")]
+        )
         assert main() == health.IN_FAULT
-    assert capsys.readouterr().out == "fault (the cable is out); mend that, then `kickctl clear` and `kickctl start`\n"
+    assert (
+        capsys.readouterr().out
+        == "fault (the cable is out); mend that, then `kickctl clear` and `kickctl start`\n"
+    )
 
 
 def test_a_program_that_takes_connections_and_says_nothing_hangs(monkeypatch):
     monkeypatch.setattr(health, "PATIENCE_S", 0.1)
-    with listening() as listener, pytest.raises(Unwell, match=r"it hangs, without a word for 0\.1 s"):
+    with (
+        listening() as listener,
+        pytest.raises(Unwell, match=r"it hangs, without a word for 0\.1 s"),
+    ):
         examine(listener.getsockname()[1], TOKEN)
 
 
@@ -111,12 +122,17 @@ def test_what_is_no_robot_of_this_release_is_not(answers, words):
         examine(port, TOKEN)
 
 
-@pytest.mark.parametrize("answers", [wire.encode(wire.HELLO, b"[]"), wire.encode(wire.HELLO, b"{}"), hello(nonce="x"), b""])
+@pytest.mark.parametrize(
+    "answers",
+    [wire.encode(wire.HELLO, b"[]"), wire.encode(wire.HELLO, b"{}"), hello(nonce="x"), b""],
+)
 def test_any_trouble_is_a_line_and_a_status(capsys, monkeypatch, tmp_path, answers):
     (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
     (tmp_path / "token").chmod(0o600)
     with program(answers) as port:
-        monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")])
+        monkeypatch.setattr(
+            "sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "token")]
+        )
         assert main() == 1
     out = capsys.readouterr().out
     assert out.startswith("the robot's program at port " + str(port) + " is not well: ")
@@ -126,6 +142,8 @@ def test_any_trouble_is_a_line_and_a_status(capsys, monkeypatch, tmp_path, answe
 def test_nobody_there(capsys, monkeypatch, tmp_path):
     with listening() as listener:
         port = listener.getsockname()[1]
-    monkeypatch.setattr("sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "none")])
+    monkeypatch.setattr(
+        "sys.argv", ["health", "--port", str(port), "--token", str(tmp_path / "none")]
+    )
     assert main() == 1
     assert "token" in capsys.readouterr().out

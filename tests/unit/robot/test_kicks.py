@@ -8,17 +8,38 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.errors import Refused
-from robot.kicks import MODES, PULSED, REST_TRAVEL_RAD, WHEELS, Kick, direction, parse, pulse_weight, reversing_shift
+from robot.kicks import (
+    MODES,
+    PULSED,
+    REST_TRAVEL_RAD,
+    WHEELS,
+    Kick,
+    direction,
+    parse,
+    pulse_weight,
+    reversing_shift,
+)
 from robot.params import TABLE, Params
 from robot.wheel import Wheel
 
 FIELDS = ("id", "mode", "wheel", "ticks", "shape", "shift", "param", "value", "variable", "delta")
 
 scalars = st.one_of(
-    st.none(), st.booleans(), st.integers(), st.integers(-10, 10010), st.floats(), st.floats(-10.0, 10.0), st.text(max_size=70)
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.integers(-10, 10010),
+    st.floats(),
+    st.floats(-10.0, 10.0),
+    st.text(max_size=70),
 )
-words = st.sampled_from((*MODES, *WHEELS, "both", "rectangular", "smooth", *sorted(PULSED), *TABLE, "x1", "x2"))
-json_like = st.recursive(scalars | words, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(), inner, max_size=3))
+words = st.sampled_from(
+    (*MODES, *WHEELS, "both", "rectangular", "smooth", *sorted(PULSED), *TABLE, "x1", "x2")
+)
+json_like = st.recursive(
+    scalars | words,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(), inner, max_size=3),
+)
 wild = st.dictionaries(st.sampled_from(FIELDS) | st.text(max_size=5), json_like, max_size=8)
 # Requests that often enough are sound, so that what is accepted is tried as well.
 likely = st.fixed_dictionaries(
@@ -35,7 +56,12 @@ likely = st.fixed_dictionaries(
     },
 )
 pulses = st.fixed_dictionaries(
-    {"id": st.just("k"), "mode": st.just("pulse"), "param": st.sampled_from(sorted(PULSED)), "value": st.floats(-7.0, 60.0)},
+    {
+        "id": st.just("k"),
+        "mode": st.just("pulse"),
+        "param": st.sampled_from(sorted(PULSED)),
+        "value": st.floats(-7.0, 60.0),
+    },
     optional={"shape": st.just("smooth"), "ticks": st.integers(1, 120)},
 )
 
@@ -44,7 +70,11 @@ def ask(**request):
     return parse({"id": "k", **request}, (1, 1), Params(), 3)
 
 
-@given(wild | likely | pulses, st.tuples(*[st.sampled_from((-1, 0, 1))] * 2), st.sampled_from((0.03, 0.09)))
+@given(
+    wild | likely | pulses,
+    st.tuples(*[st.sampled_from((-1, 0, 1))] * 2),
+    st.sampled_from((0.03, 0.09)),
+)
 def test_any_request_is_refused_or_gives_a_kick_that_runs(request, directions, dt_s):
     params = Params()
     params.apply({"a": 50.0})
@@ -88,8 +118,14 @@ def test_a_kick_as_data_is_the_kick(request):
         ({"mode": "phase", "wheel": "middle"}, "usage"),
         ({"mode": "phase", "wheel": None}, "usage"),
         ({"mode": "phase", "shape": "round"}, "usage"),
-        *(({"mode": "phase", "ticks": ticks}, "range") for ticks in (0, -1, 10001, 2.0, True, "3", None, nan, inf, 10**30)),
-        *(({"mode": "phase", "shift": shift}, "range") for shift in (nan, inf, -inf, 6.3, "1", True, [])),
+        *(
+            ({"mode": "phase", "ticks": ticks}, "range")
+            for ticks in (0, -1, 10001, 2.0, True, "3", None, nan, inf, 10**30)
+        ),
+        *(
+            ({"mode": "phase", "shift": shift}, "range")
+            for shift in (nan, inf, -inf, 6.3, "1", True, [])
+        ),
         ({"mode": "membrane", "ticks": 2}, "usage"),
         ({"mode": "jump", "variable": "x1", "delta": 1, "shape": "smooth"}, "usage"),
         ({"mode": "position", "shift": 1.0}, "usage"),
@@ -117,14 +153,25 @@ def test_what_is_wrong_is_refused(request_, code):
 
 
 def test_the_defaults_are_the_papers():
-    assert (ask(mode="phase").ticks, ask(mode="position").ticks, ask(mode="membrane").ticks) == (4, 3, 1)
+    assert (ask(mode="phase").ticks, ask(mode="position").ticks, ask(mode="membrane").ticks) == (
+        4,
+        3,
+        1,
+    )
     assert ask(mode="phase").wheels == ("left", "right")
     assert ask(mode="phase").begin == 3
     assert not ask(mode="phase").smooth
 
 
 @pytest.mark.parametrize(
-    ("directions", "signs"), [((1, 1), (1, 1)), ((-1, -1), (-1, -1)), ((1, -1), (1, -1)), ((-1, 1), (-1, 1)), ((0, -1), (1, -1))]
+    ("directions", "signs"),
+    [
+        ((1, 1), (1, 1)),
+        ((-1, -1), (-1, -1)),
+        ((1, -1), (1, -1)),
+        ((-1, 1), (-1, 1)),
+        ((0, -1), (1, -1)),
+    ],
 )
 def test_a_phase_kick_takes_each_wheels_sign_from_its_direction(directions, signs):
     """A positive shift takes forward to backward (R10)."""

@@ -51,7 +51,12 @@ def test_the_histogram_sorts_by_its_edges():
     rig.run(5)
     edges = (*LATENESS_EDGES_S, "more")
     assert len(rig.loop.lateness) == len(edges)
-    assert {edges[index]: count for index, count in enumerate(rig.loop.lateness) if count} == {0.0001: 2, 0.002: 1, 0.005: 1, 0.05: 1}
+    assert {edges[index]: count for index, count in enumerate(rig.loop.lateness) if count} == {
+        0.0001: 2,
+        0.002: 1,
+        0.005: 1,
+        0.05: 1,
+    }
 
 
 def test_an_hour_of_late_ticks_does_not_drift():
@@ -64,7 +69,9 @@ def test_an_hour_of_late_ticks_does_not_drift():
 def test_delta_t_is_measured_and_clamped_and_the_clamp_is_counted():
     rig = Rig(lates=[0.0, 0.01, 0.0, 3.5 * PERIOD, 0.0291])
     rig.run(6)
-    assert [record.dt_s / PERIOD for record in rig.records] == pytest.approx([1, 4 / 3, 2 / 3, 3, 1.47, 0.1], abs=1e-2)
+    assert [record.dt_s / PERIOD for record in rig.records] == pytest.approx(
+        [1, 4 / 3, 2 / 3, 3, 1.47, 0.1], abs=1e-2
+    )
     assert rig.loop.clamped == 2
 
 
@@ -111,7 +118,11 @@ def test_a_tick_reads_steps_limits_writes_and_records_in_this_order():
     right = step_wheel(right_1, right_2, *2 * (cos(1.9), sin(1.9)), PERIOD, 4.0, 0.25, 8.0, 2)
     assert (record.left_x1, record.left_x2, record.left_force, record.left_torque) == left
     assert (record.right_x1, record.right_x2, record.right_force, record.right_torque) == right
-    assert rig.duties == (record.left_duty_pct, record.right_duty_pct) == (round(85 * left[3]), round(85 * right[3]))
+    assert (
+        rig.duties
+        == (record.left_duty_pct, record.right_duty_pct)
+        == (round(85 * left[3]), round(85 * right[3]))
+    )
     assert rig.motors[0].done == ["read", "write"]
 
 
@@ -201,7 +212,9 @@ def test_a_motor_fault_stops_both_motors_and_latches(what, side):
     assert (rig.last.left_duty_pct, rig.last.right_duty_pct) == (0, 0)
     assert rig.last.left_force == rig.last.right_torque == 0.0
     assert rig.loop.safety.reason == "cannot " + what
-    assert [(event["reason"], event["tick"]) for event in rig.events if event["event"] == "fault"] == [("cannot " + what, 4)]
+    assert [
+        (event["reason"], event["tick"]) for event in rig.events if event["event"] == "fault"
+    ] == [("cannot " + what, 4)]
     rig.motors[side].fails = set()
     rig.run(2)
     assert rig.last.state == FAULT

@@ -25,7 +25,9 @@ def test_the_applied_tick_is_the_one_in_whose_record_the_kick_shows():
         tick = kicked(rig, mode, **details)
         assert tick == rig.loop.blackbox.next_tick
         rig.run(ticks + 3)
-        assert [record.tick for record in rig.records_from(tick - 1) if record.kick] == list(range(tick, tick + ticks))
+        assert [record.tick for record in rig.records_from(tick - 1) if record.kick] == list(
+            range(tick, tick + ticks)
+        )
         assert rig.events[-1]["tick"] == tick
         assert rig.events[-1]["kick"]["begin"] == tick
 
@@ -39,7 +41,9 @@ def test_a_kick_changes_its_tick_and_none_before():
         rig.run(2)
     assert one.records[5].left_x1 == other.records[5].left_x1
     assert one.records[6].left_x1 != other.records[6].left_x1
-    assert [record.right_x1 for record in one.records] == [record.right_x1 for record in other.records]
+    assert [record.right_x1 for record in one.records] == [
+        record.right_x1 for record in other.records
+    ]
 
 
 def test_a_repeated_id_is_answered_and_not_repeated():
@@ -110,7 +114,9 @@ def test_the_sign_of_a_phase_kick_is_the_wheels_direction_even_in_the_first_tick
         rig = running(left=Motor(5.0, turn), right=Motor(-5.0, -turn))
         rig.run(ticks)
         kicked(rig, "phase")
-        assert rig.events[-1]["kick"]["values"] == pytest.approx([sign * 3 * pi / 4, -sign * 3 * pi / 4])
+        assert rig.events[-1]["kick"]["values"] == pytest.approx(
+            [sign * 3 * pi / 4, -sign * 3 * pi / 4]
+        )
 
 
 def test_a_wheel_that_was_turned_around_has_no_direction_from_before():
@@ -130,14 +136,25 @@ def test_parameters_change_all_or_none_and_from_the_next_tick_on():
     rig = running()
     rig.run(2)
     before = rig.fingerprint()
-    for wrong in ({"k": 1.0, "a": -1.0}, {"k": 1.0, "speed": 2.0}, {"k": 1.0, "polarity_left": -1}, {}, None):
+    for wrong in (
+        {"k": 1.0, "a": -1.0},
+        {"k": 1.0, "speed": 2.0},
+        {"k": 1.0, "polarity_left": -1},
+        {},
+        None,
+    ):
         with pytest.raises(Refused):
             rig.loop.set_params(wrong)
         assert rig.fingerprint() == before
     assert rig.loop.set_params({"k": 0.0, "a": 5.0}) == 2
     rig.run(1)
     assert [record.left_force == 0.0 for record in rig.records] == [False, False, True]
-    assert rig.events[-1] == {"event": "params", "tick": 2, "number": 1, "set": {"k": 0.0, "a": 5.0}}
+    assert rig.events[-1] == {
+        "event": "params",
+        "tick": 2,
+        "number": 1,
+        "set": {"k": 0.0, "a": 5.0},
+    }
 
 
 def test_a_held_robot_still_runs_as_far_as_polarity_goes():
@@ -160,7 +177,9 @@ def test_the_period_of_a_kick_cannot_change_under_it():
 # The lease
 
 
-@pytest.mark.parametrize(("policy", "state"), [("stop", STOPPED), ("hold", HELD), ("continue", RUNNING)])
+@pytest.mark.parametrize(
+    ("policy", "state"), [("stop", STOPPED), ("hold", HELD), ("continue", RUNNING)]
+)
 def test_what_happens_when_the_controller_falls_silent(policy, state):
     rig = running()
     rig.loop.set_params({"link_loss": policy})

@@ -32,7 +32,13 @@ def test_ready_at_once_then_alive_twice_in_each_period_then_the_end(systemd):
     assert said(systemd) == []
     notify.serve(rig.loop)
     assert said(systemd) == ["READY=1", "WATCHDOG=1"]
-    for time, expected in ((0.5, []), (0.99, []), (1.0, ["WATCHDOG=1"]), (1.5, []), (9.0, ["WATCHDOG=1"])):
+    for time, expected in (
+        (0.5, []),
+        (0.99, []),
+        (1.0, ["WATCHDOG=1"]),
+        (1.5, []),
+        (9.0, ["WATCHDOG=1"]),
+    ):
         rig.clock.time = time
         notify.serve(rig.loop)
         assert said(systemd) == expected, time

@@ -11,10 +11,18 @@ from robot.errors import Refused
 from robot.params import LONGEST_STEP_TICKS, TABLE, Params, check_value, describe
 
 values = st.one_of(
-    st.none(), st.booleans(), st.integers(), st.floats(), st.floats(0.0, 100.0), st.text(max_size=9), st.lists(st.integers())
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.floats(0.0, 100.0),
+    st.text(max_size=9),
+    st.lists(st.integers()),
 )
 changes = st.dictionaries(
-    st.sampled_from((*TABLE, "speed", "")), values | st.sampled_from((1, -1, 2, "stop", "hold", 0.05, 8.0)), max_size=4
+    st.sampled_from((*TABLE, "speed", "")),
+    values | st.sampled_from((1, -1, 2, "stop", "hold", 0.05, 8.0)),
+    max_size=4,
 )
 
 
@@ -36,13 +44,19 @@ def test_a_change_is_refused_or_leaves_sound_values_and_checking_changes_nothing
     assert dict(params.values()) == before
     params.apply(checked)
     after = params.values()
-    assert {name: type(value) for name, value in after.items()} == {name: type(value) for name, value in before.items()}
+    assert {name: type(value) for name, value in after.items()} == {
+        name: type(value) for name, value in before.items()
+    }
     for name, row in TABLE.items():
-        assert after[name] in row.choices if row.choices else row.minimum <= after[name] <= row.maximum
+        assert (
+            after[name] in row.choices if row.choices else row.minimum <= after[name] <= row.maximum
+        )
     assert after["tau_s"] >= LONGEST_STEP_TICKS * after["tick_s"]
 
 
-@pytest.mark.parametrize("row", [row for row in TABLE.values() if row.choices is None], ids=lambda row: row.name)
+@pytest.mark.parametrize(
+    "row", [row for row in TABLE.values() if row.choices is None], ids=lambda row: row.name
+)
 @pytest.mark.parametrize("value", [nan, inf, -inf, True, "8", None, [8], 10**400])
 def test_a_number_out_of_range_or_of_another_kind_is_refused(row, value):
     with pytest.raises(Refused) as refused:
@@ -50,7 +64,9 @@ def test_a_number_out_of_range_or_of_another_kind_is_refused(row, value):
     assert refused.value.code == "range"
 
 
-@pytest.mark.parametrize("row", [row for row in TABLE.values() if row.choices is None], ids=lambda row: row.name)
+@pytest.mark.parametrize(
+    "row", [row for row in TABLE.values() if row.choices is None], ids=lambda row: row.name
+)
 def test_the_ends_of_a_range_belong_to_it(row):
     assert check_value(row.name, row.minimum) == row.minimum
     assert check_value(row.name, row.maximum) == row.maximum
@@ -60,7 +76,15 @@ def test_the_ends_of_a_range_belong_to_it(row):
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("rods", 3), ("rods", True), ("rods", 1.5), ("polarity_left", 0), ("link_loss", "run"), ("link_loss", ["stop"])]
+    ("name", "value"),
+    [
+        ("rods", 3),
+        ("rods", True),
+        ("rods", 1.5),
+        ("polarity_left", 0),
+        ("link_loss", "run"),
+        ("link_loss", ["stop"]),
+    ],
 )
 def test_a_choice_that_is_none_is_refused(name, value):
     with pytest.raises(Refused):

@@ -54,7 +54,9 @@ def test_a_low_battery_is_told_once_until_it_has_been_charged():
     assert power.warning()
 
 
-@pytest.mark.parametrize(("volts", "scale"), [(7.5, 1.0), (6.25, 1.2), (8.2, 0.91), (1.0, 2.0), (90.0, 0.5)])
+@pytest.mark.parametrize(
+    ("volts", "scale"), [(7.5, 1.0), (6.25, 1.2), (8.2, 0.91), (1.0, 2.0), (90.0, 0.5)]
+)
 def test_the_scale_makes_up_for_the_voltage_within_bounds(volts, scale):
     assert Power(Cells(volts)).duty_scale() == scale
 
@@ -62,7 +64,12 @@ def test_the_scale_makes_up_for_the_voltage_within_bounds(volts, scale):
 @pytest.mark.parametrize("battery", [None, Cells(None)])
 def test_what_is_unknown_is_neither_low_nor_made_up_for(battery):
     power = Power(battery)
-    assert (power.latest_v, power.exhaustion(), power.warning(), power.duty_scale()) == (None, "", "", 1.0)
+    assert (power.latest_v, power.exhaustion(), power.warning(), power.duty_scale()) == (
+        None,
+        "",
+        "",
+        1.0,
+    )
 
 
 def test_a_reading_that_fails_leaves_what_was_known():
@@ -84,7 +91,9 @@ def test_the_robot_warns_of_a_low_battery_and_stops_at_an_empty_one():
     rig.loop.start()
     rig.run(BATTERY_TICKS)
     assert STATES[rig.last.state] == "running"
-    assert [event["reason"] for event in events(rig, "battery")] == ["the battery is low (6.4 V): charge it"]
+    assert [event["reason"] for event in events(rig, "battery")] == [
+        "the battery is low (6.4 V): charge it"
+    ]
     cells.volts = 5.9
     rig.run(2 * BATTERY_TICKS)
     assert STATES[rig.last.state] == "stopped"

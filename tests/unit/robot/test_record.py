@@ -43,7 +43,11 @@ def test_the_table_describes_the_bytes():
 def test_what_a_log_needs_for_a_replay_is_kept_in_full():
     exact = {channel.name for channel in CHANNELS if channel.code == "d"}
     assert {"t_s", "dt_s"} <= exact
-    assert {side + name for side in ("left_", "right_") for name in ("phi_rad", "x1", "x2", "force", "torque")} <= exact
+    assert {
+        side + name
+        for side in ("left_", "right_")
+        for name in ("phi_rad", "x1", "x2", "force", "torque")
+    } <= exact
 
 
 def test_every_state_and_mode_has_its_number():

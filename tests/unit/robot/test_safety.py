@@ -93,7 +93,18 @@ def test_the_way_through_the_states():
     for step in ("start", "hold", "resume", "stop", "start", "fault", "stop", "clear", "start"):
         getattr(safety, step)(*([] if step in ("start", "clear") else ["why"]))
         states.append(safety.state)
-    assert states == [IDLE, RUNNING, HELD, RUNNING, STOPPED, RUNNING, FAULT, FAULT, STOPPED, RUNNING]
+    assert states == [
+        IDLE,
+        RUNNING,
+        HELD,
+        RUNNING,
+        STOPPED,
+        RUNNING,
+        FAULT,
+        FAULT,
+        STOPPED,
+        RUNNING,
+    ]
 
 
 def test_only_one_holds_the_lease():
@@ -142,26 +153,59 @@ def test_the_words_of_every_refusal():
     nothing = {"code": "state", "message": "there is no fault to clear", "hint": ""}
     assert refusal(safety.clear) == nothing
     safety.start()
-    runs = {"code": "state", "message": "the robot runs already", "hint": "stop it first to start anew"}
+    runs = {
+        "code": "state",
+        "message": "the robot runs already",
+        "hint": "stop it first to start anew",
+    }
     assert refusal(safety.start) == runs
     safety.hold("away")
     assert refusal(safety.start) == runs
     safety.fault("its cable came off")
-    fault = {"code": "fault", "message": "the robot is in fault: its cable came off", "hint": "mend the cause, then clear the fault"}
+    fault = {
+        "code": "fault",
+        "message": "the robot is in fault: its cable came off",
+        "hint": "mend the cause, then clear the fault",
+    }
     assert refusal(safety.start) == fault
-    assert refusal(lease.require, "a") == {"code": "lease", "message": "you do not control the robot", "hint": "take the lease first"}
+    assert refusal(lease.require, "a") == {
+        "code": "lease",
+        "message": "you do not control the robot",
+        "hint": "take the lease first",
+    }
     lease.take("a", "Ann", 0.0)
-    other = {"code": "lease", "message": "'Ann' controls the robot", "hint": "wait until it lets go; anyone may stop the robot"}
+    other = {
+        "code": "lease",
+        "message": "'Ann' controls the robot",
+        "hint": "wait until it lets go; anyone may stop the robot",
+    }
     assert refusal(lease.take, "b", "Bob", 0.0) == other
 
 
 def test_the_reason_of_every_state():
     safety = Safety()
     reasons = [safety.reason]
-    for step, *why in (["start"], ["hold", "away"], ["resume", "back"], ["stop", "enough"], ["fault", "broken"], ["stop", "no"], ["clear"]):
+    for step, *why in (
+        ["start"],
+        ["hold", "away"],
+        ["resume", "back"],
+        ["stop", "enough"],
+        ["fault", "broken"],
+        ["stop", "no"],
+        ["clear"],
+    ):
         getattr(safety, step)(*why)
         reasons.append(safety.reason)
-    assert reasons == ["not started yet", "started", "away", "back", "enough", "broken", "broken", "fault cleared"]
+    assert reasons == [
+        "not started yet",
+        "started",
+        "away",
+        "back",
+        "enough",
+        "broken",
+        "broken",
+        "fault cleared",
+    ]
 
 
 def test_the_lease_knows_its_holder_and_forgets_it():

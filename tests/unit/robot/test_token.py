@@ -39,7 +39,18 @@ def test_a_token_that_others_can_touch_is_refused(tmp_path, mode):
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"\n", b"00" * 31, b"00" * 33, b"0" * 63, b"zz" * 32, b"\xff\xfe\x00", b"00" * 32 + b"\n" + b"00" * 40, b"\x00" * 64]
+    "content",
+    [
+        b"",
+        b"\n",
+        b"00" * 31,
+        b"00" * 33,
+        b"0" * 63,
+        b"zz" * 32,
+        b"\xff\xfe\x00",
+        b"00" * 32 + b"\n" + b"00" * 40,
+        b"\x00" * 64,
+    ],
 )
 def test_what_is_no_token_is_refused(tmp_path, content):
     path = tmp_path / "token"

@@ -1,4 +1,7 @@
-"""The watchdog process over a tree of plain files: whatever ends or stops the loop's process, the motors are told to stop."""
+"""The watchdog process over a tree of plain files.
+
+Whatever ends or stops the loop's process, the motors are told to stop.
+"""
 
 import os
 import signal
@@ -31,7 +34,10 @@ def tree(tmp_path):
 def stopped(tree):
     """Whether every motor has been told to stop, with a stored duty of 0."""
     motors = list((tree / "tacho-motor").iterdir())
-    return all((motor / "command").read_text() == "stop" and (motor / "duty_cycle_sp").read_text() == "0" for motor in motors)
+    return all(
+        (motor / "command").read_text() == "stop" and (motor / "duty_cycle_sp").read_text() == "0"
+        for motor in motors
+    )
 
 
 def run(tree):
@@ -54,7 +60,8 @@ def eventually(condition):
 def alive(pid):
     """Whether there is such a process, other than one that waits to be buried."""
     try:
-        with open("/proc/{}/stat".format(pid)) as file:  # noqa: PTH123, UP032 - as Python 3.5 has it
+        # As Python 3.5 has it.
+        with open("/proc/{}/stat".format(pid)) as file:  # noqa: PTH123, UP032
             return file.read().rpartition(")")[2].split()[0] != "Z"
     except FileNotFoundError:
         return False
@@ -85,7 +92,9 @@ def loop_process(tree, end):
     """A process that feeds its watchdog until it comes to its end."""
     environment = dict(os.environ, PYTHONPATH=robot.__path__[0] + "/..")
     command = [sys.executable, "-c", _LOOP, str(tree), end]
-    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
 
 
 @pytest.mark.parametrize("end", ["segv", "raise", "hang"])
@@ -152,7 +161,11 @@ def test_a_program_that_takes_long_to_start_is_not_taken_for_dead(tree):
 def test_the_watchdog_leaves_motors_alone_while_it_is_fed(tree):
     one, other = socket.socketpair()
     stops = []
-    watching = threading.Thread(target=lambda: watch(other, lambda reason: stops.append(reason) or True, silence_s=PATIENCE_S))
+    watching = threading.Thread(
+        target=lambda: watch(
+            other, lambda reason: stops.append(reason) or True, silence_s=PATIENCE_S
+        )
+    )
     watching.start()
     for _ in range(100):
         one.send(b".")
@@ -163,7 +176,9 @@ def test_the_watchdog_leaves_motors_alone_while_it_is_fed(tree):
     assert stops == ["the loop's process has died"]
 
 
-@pytest.mark.parametrize(("end", "words"), [("segv", "the loop's process has died; motors stopped"), ("leave", "")])
+@pytest.mark.parametrize(
+    ("end", "words"), [("segv", "the loop's process has died; motors stopped"), ("leave", "")]
+)
 def test_the_watchdog_says_why_it_stopped_the_motors_unless_the_loop_took_leave(tree, end, words):
     with loop_process(tree, end) as process:
         said = process.communicate()[1].decode()
@@ -217,7 +232,9 @@ def test_motors_that_do_not_obey_while_the_loop_is_silent_are_told_again_until_t
 
 def test_motors_that_do_not_obey_when_the_loop_is_dead_are_told_again_until_they_do():
     told = []
-    link, thread = watching(lambda reason: told.append(reason) or len(told) >= 3, silence_s=PATIENCE_S)
+    link, thread = watching(
+        lambda reason: told.append(reason) or len(told) >= 3, silence_s=PATIENCE_S
+    )
     link.close()
     thread.join(PATIENCE_S)
     assert told == [DEAD] * 3
@@ -248,7 +265,9 @@ def test_words_that_nobody_takes_do_not_keep_the_watchdog_from_its_work(tree, wh
     error = os.open("/dev/full", os.O_WRONLY) if where == "full" else os.dup(writer)
     command = [sys.executable, "-c", _LOOP, str(tree), "live"]
     environment = dict(os.environ, PYTHONPATH=robot.__path__[0] + "/..")
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=error) as process:
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=error
+    ) as process:
         watchdog = int(process.stdout.readline())
         time.sleep(0.3)
         process.send_signal(signal.SIGSTOP)

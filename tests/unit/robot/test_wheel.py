@@ -1,4 +1,7 @@
-"""A wheel's ticks under a kick: what it changes, when, on which wheel, and what it must leave alone."""
+"""A wheel's ticks under a kick.
+
+What it changes, when, on which wheel, and what it must leave alone.
+"""
 
 from itertools import product
 from math import cos, pi, sin
@@ -32,7 +35,9 @@ def stepped(kick, tick=5, side="left", phi=PHI, dt_s=DT):
 
 
 def expected(x1=0.4, x2=-0.3, seen=PHI, sign=1.0, a=4.0, tau_s=0.25, k=8.0):
-    return step_wheel(x1, x2, cos(PHI), sin(PHI), sign * cos(seen), sign * sin(seen), DT, a, tau_s, k, 2)
+    return step_wheel(
+        x1, x2, cos(PHI), sin(PHI), sign * cos(seen), sign * sin(seen), DT, a, tau_s, k, 2
+    )
 
 
 def test_without_a_kick_the_neurons_see_the_wheel_as_it_is():
@@ -63,16 +68,24 @@ def test_what_each_kick_does_to_a_tick(kick, result):
 
 @pytest.mark.parametrize("mode", ["membrane", "position", "phase", "pulse", "jump"])
 def test_a_kick_acts_in_its_ticks_and_on_its_wheel_only(mode):
-    details = {"pulse": {"param": "k", "value": 0.5, "ticks": 3}, "jump": {"variable": "x1", "delta": 0.1}}.get(mode, {})
+    details = {
+        "pulse": {"param": "k", "value": 0.5, "ticks": 3},
+        "jump": {"variable": "x1", "delta": 0.1},
+    }.get(mode, {})
     kick = make(mode, wheel="right", **details)
     acted = [tick for tick in range(20) if stepped(kick, tick, "right") != stepped(None)]
     assert acted == list(range(5, 5 + kick.ticks))
     assert all(stepped(kick, tick, "left") == stepped(None) for tick in range(20))
 
 
-@pytest.mark.parametrize("kick", [make("position"), make("phase"), make("pulse", param="beta", value=1.0)])
+@pytest.mark.parametrize(
+    "kick", [make("position"), make("phase"), make("pulse", param="beta", value=1.0)]
+)
 def test_a_kick_alters_what_neurons_see_and_never_the_projection(kick):
-    """Neurons that cannot move (dt = 0) hide whatever is done to their sight; a kick of the projection would show in the force."""
+    """Neurons that cannot move (dt = 0) hide whatever is done to their sight.
+
+    A kick of the projection would show in the force.
+    """
     assert stepped(kick, dt_s=0.0) == stepped(None, dt_s=0.0)
     assert stepped(kick) != stepped(None)
 
@@ -88,7 +101,10 @@ def test_the_neurons_step_before_they_act():
 
 
 def test_a_membrane_kick_acts_before_the_step_of_its_tick():
-    """A wheel at rest at its fixpoint: inverted first, then drawn back by dt/tau; inverted last it would be exactly opposite."""
+    """A wheel at rest at its fixpoint: inverted first, then drawn back by dt/tau.
+
+    Inverted last it would be exactly opposite.
+    """
     made = wheel(x1=1.0, x2=0.0, phi=0.0)
     made.step(5, DT, Params(), make("membrane"))
     assert made.x1 == pytest.approx(-1.0 + 2.0 * DT / 0.25)
@@ -122,7 +138,9 @@ def test_jumps_cannot_carry_a_potential_out_of_the_range_of_the_exponential():
     params = Params()
     params.apply({"a": 50.0, "tau_s": 10.0})
     for tick in range(200):
-        made.step(tick, DT, params, Kick("k", "jump", ("left",), 1, variable="x1", delta=-2.0, begin=tick))
+        made.step(
+            tick, DT, params, Kick("k", "jump", ("left",), 1, variable="x1", delta=-2.0, begin=tick)
+        )
     assert -10.0 <= made.x1 <= -9.0
 
 

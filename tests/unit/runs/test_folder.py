@@ -14,7 +14,11 @@ CELLS = [{"ticks": ticks, "mode": "phase"} for ticks in range(3)]
 
 def keep(study, *numbers):
     for number in numbers:
-        study.keep(CELLS[number], [{"value": 0.1 * number, "none": None}], ["a fault"] if number == 1 else [])
+        study.keep(
+            CELLS[number],
+            [{"value": 0.1 * number, "none": None}],
+            ["a fault"] if number == 1 else [],
+        )
 
 
 @pytest.fixture
@@ -32,7 +36,10 @@ def again(study):
 
 def test_rows_stand_in_the_order_of_the_cells_not_of_the_work(study):
     keep(study, 2, 0, 1)
-    expected = [{"ticks": number, "mode": "phase", "value": 0.1 * number, "none": None} for number in range(3)]
+    expected = [
+        {"ticks": number, "mode": "phase", "value": 0.1 * number, "none": None}
+        for number in range(3)
+    ]
     assert study.rows(CELLS) == expected
     with again(study) as back:
         assert back.rows(CELLS) == expected
@@ -99,4 +106,7 @@ def test_the_table_has_a_line_for_each_row_and_every_column(study):
     study.keep(CELLS[0], [{"one": 1}, {"other": 2.5}], [])
     with study.write_table("toy", study.rows(CELLS[:1])).open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert rows == [{"ticks": "0", "mode": "phase", "one": "1", "other": ""}, {"ticks": "0", "mode": "phase", "one": "", "other": "2.5"}]
+    assert rows == [
+        {"ticks": "0", "mode": "phase", "one": "1", "other": ""},
+        {"ticks": "0", "mode": "phase", "one": "", "other": "2.5"},
+    ]

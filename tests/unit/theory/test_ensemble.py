@@ -1,4 +1,7 @@
-"""The engine for many wheels of the analytic model: its mathematics against `math`, its numbers against exact solutions and scipy."""
+"""The engine for many wheels of the analytic model.
+
+Its mathematics against `math`, its numbers against exact solutions and scipy.
+"""
 
 import math
 from functools import partial
@@ -76,7 +79,14 @@ def test_states_agree_with_scipy():
     seconds = 1.0
     found = advance(starts(len(WHEELS)), columns(WHEELS), seconds, 4.0)
     for i, wheel in enumerate(WHEELS):
-        theirs = solve_ivp(lambda _, y, wheel=wheel: rates(*y, *wheel), (0.0, seconds), START, "DOP853", rtol=3e-14, atol=1e-14)
+        theirs = solve_ivp(
+            lambda _, y, wheel=wheel: rates(*y, *wheel),
+            (0.0, seconds),
+            START,
+            "DOP853",
+            rtol=3e-14,
+            atol=1e-14,
+        )
         assert found[:, i] == pytest.approx(theirs.y[:, -1], rel=1e-12, abs=1e-12), wheel
 
 
@@ -88,10 +98,14 @@ def test_averages_agree_with_scipy():
         def field(_, y, wheel=wheel):
             return *rates(*y[:4], *wheel), y[3] ** 2
 
-        theirs = solve_ivp(field, (0.0, 7.0), [*START, 0.0], "DOP853", [2.0, 7.0], rtol=3e-14, atol=1e-14)
+        theirs = solve_ivp(
+            field, (0.0, 7.0), [*START, 0.0], "DOP853", [2.0, 7.0], rtol=3e-14, atol=1e-14
+        )
         gained = (theirs.y[:, 1] - theirs.y[:, 0]) / 5.0
         assert found.omega_mean[i] == pytest.approx(gained[PHI], abs=1e-11)
-        assert found.omega_std[i] == pytest.approx(math.sqrt(gained[4] - gained[PHI] ** 2), abs=1e-10)
+        assert found.omega_std[i] == pytest.approx(
+            math.sqrt(gained[4] - gained[PHI] ** 2), abs=1e-10
+        )
 
 
 def test_adams_weights_are_those_of_the_textbook():
@@ -103,7 +117,9 @@ def test_adams_weights_are_those_of_the_textbook():
 @pytest.mark.parametrize("power", range(ORDER))
 def test_adams_weights_integrate_polynomials_exactly(power):
     nodes = [-age for age in range(ORDER)]
-    integral = math.fsum(weight * node**power for weight, node in zip(weights(nodes), nodes, strict=True))
+    integral = math.fsum(
+        weight * node**power for weight, node in zip(weights(nodes), nodes, strict=True)
+    )
     assert integral == pytest.approx(1 / (power + 1), rel=1e-15 * (1 + 300 * ORDER**power))
 
 
@@ -120,8 +136,14 @@ def test_adams_weights_integrate_polynomials_exactly(power):
     ],
 )
 def test_the_longest_steps_of_adams_are_stable(wheel):
-    """Where only the method's stability limits them, he must agree with Runge and Kutta: at the same fineness, but for a hair."""
-    runge_kutta, adams = (averages(starts(1), columns([wheel]), 5.0, 5.0, fineness) for fineness in (FINE, 1.0001 * FINE))
+    """Where only the method's stability limits them, he must agree with Runge and Kutta.
+
+    At the same fineness, but for a hair.
+    """
+    runge_kutta, adams = (
+        averages(starts(1), columns([wheel]), 5.0, 5.0, fineness)
+        for fineness in (FINE, 1.0001 * FINE)
+    )
     assert adams.omega_mean[0] == pytest.approx(runge_kutta.omega_mean[0], abs=1e-8)
     assert adams.omega_std[0] == pytest.approx(runge_kutta.omega_std[0], abs=1e-8)
 
@@ -138,8 +160,13 @@ def test_a_wheel_without_springs_runs_down_as_the_formula_says():
 
 
 def test_a_wheel_that_nothing_acts_on_keeps_its_speed_for_long():
-    """And has no standard deviation: not even that of rounding, which the difference of two squares would have."""
-    found = averages(starts(1, (0.0, 0.0, 0.0, 30.0)), columns([Wheel(k=0.0, friction=0.0)]), 100.0, 100.0)
+    """And has no standard deviation.
+
+    Not even that of rounding, which the difference of two squares would have.
+    """
+    found = averages(
+        starts(1, (0.0, 0.0, 0.0, 30.0)), columns([Wheel(k=0.0, friction=0.0)]), 100.0, 100.0
+    )
     assert found.omega_mean[0] == pytest.approx(30.0, rel=1e-14)
     assert found.omega_std[0] == 0.0
     assert found.states[PHI, 0] == pytest.approx(6000.0, rel=1e-14)
@@ -160,7 +187,9 @@ def test_a_wheel_turned_by_quarters_stays_so(quarters):
     turned = START.copy()
     for _ in range(quarters):
         turned = np.array([-turned[1], turned[0], turned[PHI] + math.pi / 2, turned[OMEGA]])
-    here, there = (advance(starts(len(WHEELS), start), columns(WHEELS), 5.0) for start in (START, turned))
+    here, there = (
+        advance(starts(len(WHEELS), start), columns(WHEELS), 5.0) for start in (START, turned)
+    )
     for _ in range(quarters):
         here = np.array([-here[1], here[0], here[PHI] + math.pi / 2, here[OMEGA]])
     assert np.abs(here - there).max() < 1e-10
@@ -168,14 +197,19 @@ def test_a_wheel_turned_by_quarters_stays_so(quarters):
 
 def test_a_mirrored_wheel_stays_so():
     mirror = np.array([1.0, -1.0, -1.0, -1.0])
-    here, there = (advance(starts(len(WHEELS), start), columns(WHEELS), 5.0) for start in (START, mirror * START))
+    here, there = (
+        advance(starts(len(WHEELS), start), columns(WHEELS), 5.0)
+        for start in (START, mirror * START)
+    )
     assert np.abs(mirror[:, None] * here - there).max() < 1e-11
 
 
 def random_wheels(count):
     """Parameters (6, count) from all over the phase diagram."""
     chance = np.random.default_rng(5)
-    return columns([Wheel(tau_s=chance.uniform(0.02, 1.5), k=chance.uniform(0, 20)) for _ in range(count)])
+    return columns(
+        [Wheel(tau_s=chance.uniform(0.02, 1.5), k=chance.uniform(0, 20)) for _ in range(count)]
+    )
 
 
 def test_the_same_bits_on_any_number_of_cores():
@@ -201,11 +235,22 @@ def test_neighbours_matter_through_the_step_only():
 
 
 def test_the_default_steps_give_nine_digits_all_over_the_phase_diagram():
-    """Wheels that rest, swing and roll; from one k and tau to the next the error stays about the same."""
+    """Wheels that rest, swing and roll.
+
+    From one k and tau to the next the error stays about the same.
+    """
     parameters = columns(
-        [Wheel(tau_s=tau_s, k=k) for tau_s in (0.03, 0.1, 0.25, 0.5) for k in (0.5, 2.0, 5.0, 10.0, 20.0) if k * tau_s < 4]
+        [
+            Wheel(tau_s=tau_s, k=k)
+            for tau_s in (0.03, 0.1, 0.25, 0.5)
+            for k in (0.5, 2.0, 5.0, 10.0, 20.0)
+            if k * tau_s < 4
+        ]
     )
-    coarse, fine = (averages(starts(parameters.shape[1]), parameters, 50.0, 50.0, fineness) for fineness in (1.0, 3.0))
+    coarse, fine = (
+        averages(starts(parameters.shape[1]), parameters, 50.0, 50.0, fineness)
+        for fineness in (1.0, 3.0)
+    )
     assert np.abs(np.abs(coarse.omega_mean) - np.abs(fine.omega_mean)).max() < 5e-9
     assert np.abs(coarse.omega_std - fine.omega_std).max() < 5e-9
 
@@ -224,7 +269,9 @@ def test_no_wheels_are_no_trouble():
 @pytest.mark.parametrize("wheel", [Wheel(tau_s=1e-7), Wheel(inertia=1e-9), Wheel(k=math.nan)])
 def test_a_stiff_wheel_is_refused_by_name(wheel):
     parameters = columns([Wheel(), wheel])
-    with pytest.raises(WrongUse, match=rf"tau = {wheel.tau_s:g}, k = {wheel.k:g}, I = {wheel.inertia:g}") as refusal:
+    with pytest.raises(
+        WrongUse, match=rf"tau = {wheel.tau_s:g}, k = {wheel.k:g}, I = {wheel.inertia:g}"
+    ) as refusal:
         averages(starts(2), parameters, 10.0, 10.0)
     assert "larger tau" in refusal.value.hint
 
