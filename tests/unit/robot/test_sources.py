@@ -1,0 +1,61 @@
+"""The fingerprint of sources: what changes it, and what does not."""
+
+import os
+import shutil
+
+import pytest
+
+from robot.sources import fingerprint
+
+
+@pytest.fixture
+def room(tmp_path):
+    folder = tmp_path / "here" / "room"
+    os.makedirs(str(folder / "inner"))
+    (folder / "a.py").write_text("x = 1\n")
+    (folder / "inner" / "b.toml").write_text("y = 2\n")
+    return folder
+
+
+def test_it_is_that_of_a_copy_elsewhere(room, tmp_path):
+    shutil.copytree(str(room), str(tmp_path / "there" / "room"))
+    assert fingerprint(str(room)) == fingerprint(str(tmp_path / "there" / "room"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda room: (room / "a.py").write_text("x = 2\n"),
+        lambda room: (room / "a.py").rename(room / "c.py"),
+        lambda room: (room / "inner" / "b.toml").write_text(""),
+        lambda room: (room / "inner" / "new.py").write_text(""),
+        lambda room: (room / "inner" / "b.toml").unlink(),
+        lambda room: (room / "a.py").rename(room / "inner" / "a.py"),
+    ],
+)
+def test_every_change_of_a_source_changes_it(room, change):
+    before = fingerprint(str(room))
+    change(room)
+    assert fingerprint(str(room)) != before
+
+
+def test_what_is_no_source_does_not_change_it(room):
+    before = fingerprint(str(room))
+    (room / "inner" / "a.pyc").write_text("compiled")
+    (room / "README.md").write_text("words")
+    assert fingerprint(str(room)) == before
+
+
+def test_content_does_not_pass_from_one_file_to_the_next(room):
+    (room / "a.py").write_text("12")
+    (room / "b.py").write_text("3")
+    before = fingerprint(str(room))
+    (room / "a.py").write_text("1")
+    (room / "b.py").write_text("23")
+    assert fingerprint(str(room)) != before
+
+
+def test_folders_count_in_their_order_and_files_by_themselves(room):
+    inner = str(room / "inner")
+    assert fingerprint(str(room), inner) != fingerprint(inner, str(room))
+    assert fingerprint(str(room / "a.py")) != fingerprint(inner)
