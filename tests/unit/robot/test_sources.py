@@ -1,6 +1,5 @@
 """The fingerprint of sources: what changes it, and what does not."""
 
-import os
 import shutil
 
 import pytest
@@ -11,7 +10,7 @@ from robot.sources import fingerprint
 @pytest.fixture
 def room(tmp_path):
     folder = tmp_path / "here" / "room"
-    os.makedirs(str(folder / "inner"))
+    (folder / "inner").mkdir(parents=True)
     (folder / "a.py").write_text("x = 1\n")
     (folder / "inner" / "b.toml").write_text("y = 2\n")
     return folder
