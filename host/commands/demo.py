@@ -24,9 +24,9 @@ def run(options: argparse.Namespace) -> int:
     """
     from host.figures.robot.kick import KICK_WINDOW_S, draw
     from host.kicking import manoeuvres as showing
+    from host.kicking import robot_claims as claims
     from host.kicking.outcome import describe, kick_and_watch, title
     from host.kicking.primitives import drive
-    from host.runs import claims
     from host.util.progress import progress
 
     with (
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
         claims.break_away(log, ramp),
         claims.inversions(inversions),
     ]
-    holds = outcome.reversed and all(claim.holds for claim in report)
+    holds = outcome.reversed and all(claim.holds is not False for claim in report)
     if options.json:
         show(
             {

@@ -26,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run it; 1 if a claim does not hold."""
     from host.perform.run import perform
+    from host.runs.claims import exit_status
 
     name = options.experiment
     arguments = options_given(options, TABLE[name])
@@ -43,4 +44,4 @@ def run(options: argparse.Namespace) -> int:
         show(summary)
     else:
         tell(summary)
-    return 0 if all(claim["holds"] for claim in summary["claims"]) else 1
+    return exit_status(summary["claims"])

@@ -49,7 +49,7 @@ def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
             claim.claim,
             claim.paper,
             claim.number(),
-            "holds" if claim.holds else "DOES NOT HOLD",
+            claim.verdict.upper() if claim.holds is False else claim.verdict,
         )
     for number in skipped:
         table.add_row(number, "", "", "", "not tried")

@@ -31,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     With --json the numbers stand at the top, unless they are a list, which is all then.
     """
     from host.perform.run import perform
+    from host.runs.claims import exit_status
 
     name = options.study
     summary = perform(
@@ -47,4 +48,4 @@ def run(options: argparse.Namespace) -> int:
         show(numbers if isinstance(numbers, list) else {**summary, **numbers})
     else:
         tell(summary)
-    return 0 if all(claim["holds"] for claim in summary["claims"]) else 1
+    return exit_status(summary["claims"])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from host.client.robot import Robot
 from host.kicking.outcome import wait_settled
+from host.kicking.robot_claims import Span
 from host.logs.log import Log
-from host.runs.claims import Span
 from robot.kicks import DEFAULT_SHIFT_RAD, WHEELS
 
 STEADY_S = 2.0

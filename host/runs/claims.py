@@ -1,40 +1,27 @@
-"""Claims of the paper about the robot, measured in a log.
-
-What was claimed, what was found, and whether it holds.
-"""
+"""A claim of the paper beside what was measured, and the verdict on it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from math import pi
-from typing import Any, NamedTuple
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
-import numpy as np
-
-from host.logs.log import Log
-from host.util.intervals import fraction, spread, wilson
-from robot.kicks import WHEELS
-
-# The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
-WHEEL_RADIUS_M = 0.028
-# Slower is no locomotion.
-MOVING_HZ = 0.1
-# What the paper's 'always' was tried.
-ALWAYS = 50
-# What 'reliable' and 'fails' are of a quenched kick, for which lengths (ticks) it is to be
-# reliable, and the trials that it takes to tell.
-RELIABLE, FAILS = 0.95, 0.1
-SURE_LENGTHS = (3, 4, 5)
-LEAST_TRIALS = 20
+HOLDS, FAILS, UNDECIDED = "holds", "does not hold", "undecided"
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One row of a report: what the paper says (a range is the target), and the number that was measured, with its unit.
+    """One row of a report: what the paper says, and what was measured.
 
-    interval: where the number lies with a confidence of 95 %, None where there is no chance in it.
-    note: what the number leaves out; why, if the claim does not hold.
+    Attributes:
+        id: The number under which the project keeps the claim, such as R8.
+        claim: What is claimed.
+        paper: The paper's number; a range is the target.
+        measured: The number that was measured, in `unit`.
+        unit: The unit of `measured`; "1" for a number without one.
+        interval: Where the number lies with a confidence of 95 %; None where chance plays no part.
+        holds: Whether the claim holds; None if this run cannot decide it, because it has too few
+            trials or is not at the parameters that the claim is made for.
+        note: What the number leaves out; why the claim does not hold or is undecided.
     """
 
     id: str
@@ -43,17 +30,35 @@ class Claim:
     measured: float
     unit: str
     interval: tuple[float, float] | None
-    holds: bool
+    holds: bool | None
     note: str = ""
 
+    @property
+    def verdict(self) -> str:
+        """HOLDS, FAILS or UNDECIDED."""
+        return UNDECIDED if self.holds is None else HOLDS if self.holds else FAILS
+
+    def doubted(self, *reasons: str) -> Claim:
+        """The claim, undecided if there is a reason for that.
+
+        Args:
+            reasons: Why this run cannot decide the claim, in words that follow the note. Empty
+                ones do not count.
+        """
+        doubts = [reason for reason in reasons if reason]
+        if not doubts:
+            return self
+        return replace(self, holds=None, note="; ".join(filter(None, [self.note, *doubts])))
+
     def as_dict(self) -> dict[str, Any]:
-        """Plain data."""
-        return asdict(self)
+        """The claim as plain data, with its verdict."""
+        return {**asdict(self), "verdict": self.verdict}
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Claim:
-        """The claim as plain data."""
-        return cls(**{**data, "interval": tuple(data["interval"]) if data["interval"] else None})
+        """The claim that `as_dict` gave as plain data."""
+        fields = {name: value for name, value in data.items() if name != "verdict"}
+        return cls(**{**fields, "interval": tuple(data["interval"]) if data["interval"] else None})
 
     def number(self) -> str:
         """What was measured, with unit and interval."""
@@ -62,202 +67,21 @@ class Claim:
         return f"{self.measured:.3g}{unit}{interval}"
 
     def sentence(self) -> str:
-        """All of it, in a line."""
-        verdict = "holds" if self.holds else "DOES NOT HOLD"
+        """The claim and its verdict in one line."""
+        verdict = self.verdict.upper() if self.holds is False else self.verdict
         note = f"; {self.note}" if self.note else ""
         return f"{self.id} {verdict}: {self.claim}: {self.number()}{note} (paper: {self.paper})"
 
 
-@dataclass(frozen=True)
-class Span:
-    """The rows of a log from `first` to before `end`.
+def exit_status(claims: list[dict[str, Any]]) -> int:
+    """The exit status of a command that measured these claims, given as plain data.
 
-    A stretch of steady motion, or one attempt at something.
+    Returns:
+        1 if one of them does not hold, else 0. An undecided claim is no failure.
     """
-
-    first: int
-    end: int
+    return 1 if any(claim["holds"] is False for claim in claims) else 0
 
 
-class Steady(NamedTuple):
-    """A wheel in steady motion: turns per second (forward positive), mean |duty cycle| in %, and std(M) / mean(|M|)."""
-
-    hz: float
-    duty_pct: float
-    ripple: float
-
-
-def steady(log: Log, span: Span) -> list[Steady]:
-    """The left and the right wheel in a span of steady motion."""
-    rows = slice(span.first, span.end)
-    found = []
-    for side in WHEELS:
-        torque = log.column(side + "_torque")[rows]
-        hertz = float(log.omega(side)[rows].mean()) / (2 * pi)
-        duty = float(np.abs(log.column(side + "_duty_pct")[rows]).mean())
-        found.append(Steady(hertz, duty, float(torque.std() / np.abs(torque).mean())))
-    return found
-
-
-def coexistence(wheels: Sequence[Steady]) -> Claim:
-    """R1: from random starts both directions are reached, equally fast.
-
-    Each wheel comes from a start of its own.
-    """
-    speeds = np.array([wheel.hz for wheel in wheels])
-    forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
-    both = len(forward) > 0 and len(backward) > 0
-    asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
-    return Claim(
-        "R1",
-        "forward and backward locomotion coexist",
-        "both from random starts, speeds equal within 3 %",
-        asymmetry,
-        "1",
-        None,
-        both and asymmetry <= 0.03,
-        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward,"
-        f" {len(backward)} backward",
-    )
-
-
-def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
-    """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque."""
-    hertz = [abs(wheel.hz) for wheel in wheels]
-    mean, interval = float(np.mean(hertz)), spread(hertz)
-    duty, ripple = (
-        float(np.mean([wheel.duty_pct for wheel in wheels])),
-        max(wheel.ripple for wheel in wheels),
-    )
-    to_m_s = 2 * pi * WHEEL_RADIUS_M
-    return [
-        Claim(
-            "R2",
-            "turns per second at k = 8",
-            "1.8 to 2.3 Hz",
-            mean,
-            "Hz",
-            interval,
-            1.8 <= mean <= 2.3,
-        ),
-        Claim(
-            "R3",
-            "speed, and share of the motor's power, at k = 8",
-            "0.32 to 0.39 m/s, duty 80 to 90 %",
-            mean * to_m_s,
-            "m/s",
-            (interval[0] * to_m_s, interval[1] * to_m_s) if interval else None,
-            0.32 <= mean * to_m_s <= 0.39 and 80.0 <= duty <= 90.0,
-            f"at a duty cycle of {duty:.0f} %",
-        ),
-        Claim(
-            "R4",
-            "the torque M is quasi-stationary",
-            "std(M) / mean(|M|) < 0.1",
-            ripple,
-            "1",
-            None,
-            ripple < 0.1 and min(hertz) > MOVING_HZ,
-            f"the greatest of {len(wheels)} wheels, the slowest of which makes {min(hertz):.2f}"
-            " turns a second",
-        ),
-    ]
-
-
-def break_away(log: Log, span: Span) -> Claim:
-    """R5: at rest, the torque is raised slowly until each wheel moves.
-
-    The span begins at rest and holds the whole ramp.
-    """
-    rows = slice(span.first, span.end)
-    stalls, moves = [], []
-    for side in WHEELS:
-        phi, torque = (
-            log.column(side + "_phi_rad")[rows],
-            np.abs(log.column(side + "_torque")[rows]),
-        )
-        moved = np.flatnonzero(phi != phi[0])
-        first = int(moved[0]) if len(moved) else len(phi)
-        steps = np.flatnonzero(np.diff(torque[:first]) > _LEAST_STEP) + 1
-        last_step = int(steps[-1]) if len(steps) else first
-        stalls.append(float(torque[:last_step].max(initial=0.0)))
-        moves.append(float(torque[:first].max(initial=0.0)) if len(moved) else 1.0)
-    return Claim(
-        "R5",
-        "the motor stalls for |M| <= 0.1",
-        "no motion from rest below, motion above",
-        float(np.mean(moves)),
-        "1",
-        None,
-        all(
-            0.09 <= low <= 0.102 and 0.1 <= high <= 0.11
-            for low, high in zip(stalls, moves, strict=True)
-        ),
-        "; ".join(
-            f"{side}: rests at M = {low:.3f}, moves at {high:.3f}"
-            for side, low, high in zip(WHEELS, stalls, moves, strict=True)
-        ),
-    )
-
-
-# A ramp's steps stand out from the last bits of a torque that is settling.
-_LEAST_STEP = 1e-3
-
-
-def inversions(reversals: Sequence[bool]) -> Claim:
-    """R8: inverting the membrane potentials always reverses the robot, and that was tried often enough to say so."""
-    done, tried = sum(reversals), len(reversals)
-    few = "" if tried >= ALWAYS else f"; fewer than {ALWAYS} tries decide nothing"
-    return Claim(
-        "R8",
-        "membrane inversion is 100 % reliable",
-        f"{ALWAYS} of {ALWAYS}",
-        done / max(1, tried),
-        "1",
-        wilson(done, tried),
-        tried == done and not few,
-        f"{done} of {tried}{few}",
-    )
-
-
-def surest(found: Mapping[int, tuple[int, int]]) -> int:
-    """The one of SURE_LENGTHS with the highest rate, of (reversed, tried) by length.
-
-    The shortest of equals.
-    """
-    return max(SURE_LENGTHS, key=lambda ticks: fraction(*found[ticks]))
-
-
-def quenched(
-    number: str,
-    claim: str,
-    where: str,
-    least_sure: Mapping[int, tuple[int, int]],
-    rates: Mapping[int, float],
-    fewest: int,
-    too_few: str,
-) -> Claim:
-    """R9 and R10: a kick is reliable for one of SURE_LENGTHS even `where` it is least sure.
-
-    It fails for 1 tick, and when long.
-
-    least_sure: (reversed, tried) there, by length. rates: what part reverses, by length, from which
-    it is told where the kick fails. fewest: how many trials this rests on where there are fewest;
-    too_few: what to say after that number if it decides nothing.
-    """
-    best = surest(least_sure)
-    rate = fraction(*least_sure[best])
-    long = min(rates[ticks] for ticks in rates if ticks > SURE_LENGTHS[-1])
-    decides = fewest >= LEAST_TRIALS
-    return Claim(
-        number,
-        claim,
-        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
-        rate,
-        "1",
-        wilson(*least_sure[best]),
-        decides and rate >= RELIABLE and rates[1] <= FAILS and long <= FAILS,
-        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; of {SURE_LENGTHS[-1] + 1} to"
-        f" {max(rates)} ticks the least sure reverses {long:.0%}"
-        + ("" if decides else f"; {fewest} {too_few}"),
-    )
+def too_few(count: int, least: int, of_what: str) -> str:
+    """What to say if a claim rests on fewer trials than it takes; empty if there are enough."""
+    return "" if count >= least else f"{count} {of_what} are too few: it takes {least} to decide"

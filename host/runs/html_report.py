@@ -11,7 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from host.runs.claims import Claim
+from host.runs.claims import FAILS, HOLDS, UNDECIDED, Claim
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
@@ -19,9 +19,13 @@ table { border-collapse: collapse; width: 100%; }
 th, td { text-align: left; vertical-align: top; padding: 0.4rem 0.8rem 0.4rem 0; border-bottom: 1px solid #ccc; }
 .holds { color: #00694d; font-weight: bold; }
 .fails { color: #b04000; font-weight: bold; }
+.undecided { color: #666; }
 img { max-width: 100%; }
 dt { font-weight: bold; }
 """
+
+# The style of each verdict.
+_CLASSES = {HOLDS: "holds", FAILS: "fails", UNDECIDED: "undecided"}
 
 
 def write(
@@ -74,11 +78,7 @@ def _table(claims: Sequence[Claim], skipped: dict[str, str]) -> str:
             claim.claim,
             claim.paper,
             claim.number(),
-            (
-                '<span class="holds">holds</span>'
-                if claim.holds
-                else '<span class="fails">does not hold</span>'
-            ),
+            f'<span class="{_CLASSES[claim.verdict]}">{claim.verdict}</span>',
             claim.note,
         )
         for claim in claims

@@ -358,6 +358,7 @@ def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
         "unit",
         "interval",
         "holds",
+        "verdict",
         "note",
     }
     page = Path("results/report-R8-R10.html").read_text()

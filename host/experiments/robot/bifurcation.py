@@ -35,8 +35,9 @@ from host.errors import NotDone
 from host.kicking.manoeuvres import ramp
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
+from host.kicking.robot_claims import break_away
 from host.logs.log import Log
-from host.runs.claims import Claim, break_away
+from host.runs.claims import Claim
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import spread
 from robot.kicks import WHEELS

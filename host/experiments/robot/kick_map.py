@@ -17,8 +17,9 @@ from host.experiments.robot.reliability import kick_settled
 from host.kicking.kick_map import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, tally
 from host.kicking.outcome import DIRECTIONS, OPPOSITE
 from host.kicking.planning import choose
+from host.kicking.robot_claims import quenched, surest
 from host.logs.log import Log
-from host.runs.claims import Claim, quenched, surest
+from host.runs.claims import Claim
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import fraction, wilson
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
@@ -178,7 +179,7 @@ def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> 
         least_sure,
         {ticks: fraction(*of.sum(axis=1)) for ticks, of in zip(LENGTHS, totals, strict=True)},
         least_sure[surest(least_sure)][1],
-        "kicks there decide nothing: give more --kicks",
+        "kicks there",
     )
 
 

@@ -20,9 +20,10 @@ from host.client.robot import Robot
 from host.kicking.manoeuvres import starts
 from host.kicking.outcome import FORWARD, STOPPED, kick_and_watch, require_running
 from host.kicking.primitives import PRIMITIVES, STOP_PULSE_S, drive
+from host.kicking.robot_claims import Steady, coexistence, locomotion, steady
 from host.logs.log import Log
 from host.logs.motion import heading
-from host.runs.claims import Claim, Steady, coexistence, locomotion, steady
+from host.runs.claims import Claim
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import wilson
 from robot.kicks import DIRECTION_TICKS, PULSE, WHEELS

@@ -17,9 +17,10 @@ from host.client.robot import Robot
 from host.errors import NotDone
 from host.kicking.kick_map import request, shift_of
 from host.kicking.outcome import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
+from host.kicking.robot_claims import inversions, quenched
 from host.logs.log import Log
 from host.logs.motion import settling_s
-from host.runs.claims import Claim, inversions, quenched
+from host.runs.claims import Claim
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import fraction
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
@@ -174,5 +175,5 @@ def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | 
         },
         {ticks: max(fraction(*counts) for counts in both) for ticks, both in directions.items()},
         min(tried for both in directions.values() for _, tried in both),
-        "trials in a direction decide nothing: give more --trials",
+        "trials in a direction",
     )

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from host.client.robot import Robot
 from host.kicking.outcome import kick_and_watch
 from host.kicking.primitives import drive
+from host.kicking.robot_claims import inversions
 from host.logs.log import Log
 from host.logs.motion import settling_s
-from host.runs.claims import Claim, inversions
+from host.runs.claims import Claim
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import spread, wilson
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION, WHEELS

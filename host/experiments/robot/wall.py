@@ -26,9 +26,10 @@ from host.client.robot import Robot
 from host.experiments.robot import unattended
 from host.kicking.outcome import FORWARD
 from host.kicking.primitives import SHIFT_TOWARD
+from host.kicking.robot_claims import WHEEL_RADIUS_M
 from host.logs.log import Log
 from host.logs.motion import directions, travels
-from host.runs.claims import WHEEL_RADIUS_M, Claim
+from host.runs.claims import Claim
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import fraction, wilson
 from robot.kicks import DIRECTION_TICKS, PHASE, WHEELS

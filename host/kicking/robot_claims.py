@@ -1,0 +1,222 @@
+"""The paper's claims about the robot, as far as one log or a count of kicks settles them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from host.logs.log import Log
+from host.runs.claims import Claim, too_few
+from host.util.intervals import fraction, spread, wilson
+from robot.kicks import WHEELS
+
+# The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
+WHEEL_RADIUS_M = 0.028
+# Slower is no locomotion.
+MOVING_HZ = 0.1
+# What the paper's 'always' was tried.
+ALWAYS = 50
+# What 'reliable' and 'fails' are of a quenched kick, for which lengths (ticks) it is to be
+# reliable, and the trials that it takes to tell.
+RELIABLE, FAILS = 0.95, 0.1
+SURE_LENGTHS = (3, 4, 5)
+LEAST_TRIALS = 20
+
+
+@dataclass(frozen=True)
+class Span:
+    """The rows of a log from `first` to before `end`.
+
+    A stretch of steady motion, or one attempt at something.
+    """
+
+    first: int
+    end: int
+
+
+class Steady(NamedTuple):
+    """A wheel in steady motion: turns per second (forward positive), mean |duty cycle| in %, and std(M) / mean(|M|)."""
+
+    hz: float
+    duty_pct: float
+    ripple: float
+
+
+def steady(log: Log, span: Span) -> list[Steady]:
+    """The left and the right wheel in a span of steady motion."""
+    rows = slice(span.first, span.end)
+    found = []
+    for side in WHEELS:
+        torque = log.column(side + "_torque")[rows]
+        hertz = float(log.omega(side)[rows].mean()) / (2 * pi)
+        duty = float(np.abs(log.column(side + "_duty_pct")[rows]).mean())
+        found.append(Steady(hertz, duty, float(torque.std() / np.abs(torque).mean())))
+    return found
+
+
+def coexistence(wheels: Sequence[Steady]) -> Claim:
+    """R1: from random starts both directions are reached, equally fast.
+
+    Each wheel comes from a start of its own.
+    """
+    speeds = np.array([wheel.hz for wheel in wheels])
+    forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
+    both = len(forward) > 0 and len(backward) > 0
+    asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
+    return Claim(
+        "R1",
+        "forward and backward locomotion coexist",
+        "both from random starts, speeds equal within 3 %",
+        asymmetry,
+        "1",
+        None,
+        both and asymmetry <= 0.03,
+        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward,"
+        f" {len(backward)} backward",
+    )
+
+
+def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
+    """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque."""
+    hertz = [abs(wheel.hz) for wheel in wheels]
+    mean, interval = float(np.mean(hertz)), spread(hertz)
+    duty, ripple = (
+        float(np.mean([wheel.duty_pct for wheel in wheels])),
+        max(wheel.ripple for wheel in wheels),
+    )
+    to_m_s = 2 * pi * WHEEL_RADIUS_M
+    return [
+        Claim(
+            "R2",
+            "turns per second at k = 8",
+            "1.8 to 2.3 Hz",
+            mean,
+            "Hz",
+            interval,
+            1.8 <= mean <= 2.3,
+        ),
+        Claim(
+            "R3",
+            "speed, and share of the motor's power, at k = 8",
+            "0.32 to 0.39 m/s, duty 80 to 90 %",
+            mean * to_m_s,
+            "m/s",
+            (interval[0] * to_m_s, interval[1] * to_m_s) if interval else None,
+            0.32 <= mean * to_m_s <= 0.39 and 80.0 <= duty <= 90.0,
+            f"at a duty cycle of {duty:.0f} %",
+        ),
+        Claim(
+            "R4",
+            "the torque M is quasi-stationary",
+            "std(M) / mean(|M|) < 0.1",
+            ripple,
+            "1",
+            None,
+            ripple < 0.1 and min(hertz) > MOVING_HZ,
+            f"the greatest of {len(wheels)} wheels, the slowest of which makes {min(hertz):.2f}"
+            " turns a second",
+        ),
+    ]
+
+
+def break_away(log: Log, span: Span) -> Claim:
+    """R5: at rest, the torque is raised slowly until each wheel moves.
+
+    The span begins at rest and holds the whole ramp.
+    """
+    rows = slice(span.first, span.end)
+    stalls, moves = [], []
+    for side in WHEELS:
+        phi, torque = (
+            log.column(side + "_phi_rad")[rows],
+            np.abs(log.column(side + "_torque")[rows]),
+        )
+        moved = np.flatnonzero(phi != phi[0])
+        first = int(moved[0]) if len(moved) else len(phi)
+        steps = np.flatnonzero(np.diff(torque[:first]) > _LEAST_STEP) + 1
+        last_step = int(steps[-1]) if len(steps) else first
+        stalls.append(float(torque[:last_step].max(initial=0.0)))
+        moves.append(float(torque[:first].max(initial=0.0)) if len(moved) else 1.0)
+    return Claim(
+        "R5",
+        "the motor stalls for |M| <= 0.1",
+        "no motion from rest below, motion above",
+        float(np.mean(moves)),
+        "1",
+        None,
+        all(
+            0.09 <= low <= 0.102 and 0.1 <= high <= 0.11
+            for low, high in zip(stalls, moves, strict=True)
+        ),
+        "; ".join(
+            f"{side}: rests at M = {low:.3f}, moves at {high:.3f}"
+            for side, low, high in zip(WHEELS, stalls, moves, strict=True)
+        ),
+    )
+
+
+# A ramp's steps stand out from the last bits of a torque that is settling.
+_LEAST_STEP = 1e-3
+
+
+def inversions(reversals: Sequence[bool]) -> Claim:
+    """R8: inverting the membrane potentials always reverses the robot, and that was tried often enough to say so."""
+    done, tried = sum(reversals), len(reversals)
+    claim = Claim(
+        "R8",
+        "membrane inversion is 100 % reliable",
+        f"{ALWAYS} of {ALWAYS}",
+        done / max(1, tried),
+        "1",
+        wilson(done, tried),
+        tried == done,
+        f"{done} of {tried}",
+    )
+    # One kick that fails disproves 'always', however few there were.
+    return claim.doubted(too_few(tried, ALWAYS, "inversions")) if claim.holds else claim
+
+
+def surest(found: Mapping[int, tuple[int, int]]) -> int:
+    """The one of SURE_LENGTHS with the highest rate, of (reversed, tried) by length.
+
+    The shortest of equals.
+    """
+    return max(SURE_LENGTHS, key=lambda ticks: fraction(*found[ticks]))
+
+
+def quenched(
+    number: str,
+    claim: str,
+    where: str,
+    least_sure: Mapping[int, tuple[int, int]],
+    rates: Mapping[int, float],
+    fewest: int,
+    of_what: str,
+) -> Claim:
+    """R9 and R10: a kick is reliable for one of SURE_LENGTHS even `where` it is least sure.
+
+    It fails for 1 tick, and when long.
+
+    least_sure: (reversed, tried) there, by length. rates: what part reverses, by length, from which
+    it is told where the kick fails. fewest: how many trials this rests on where there are fewest;
+    of_what: what these are, in words.
+    """
+    best = surest(least_sure)
+    rate = fraction(*least_sure[best])
+    long = min(rates[ticks] for ticks in rates if ticks > SURE_LENGTHS[-1])
+    found = Claim(
+        number,
+        claim,
+        ">= 95 % somewhere in 3 to 5 ticks; fails for 1 tick; fails again for long kicks",
+        rate,
+        "1",
+        wilson(*least_sure[best]),
+        rate >= RELIABLE and rates[1] <= FAILS and long <= FAILS,
+        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; of {SURE_LENGTHS[-1] + 1} to"
+        f" {max(rates)} ticks the least sure reverses {long:.0%}",
+    )
+    return found.doubted(too_few(fewest, LEAST_TRIALS, of_what))
