@@ -95,7 +95,11 @@ class Log:
 
     def restarts(self) -> list[int]:
         """The index of the first record after each new beginning of the robot's program, from which ticks and t_s count anew."""
-        return [place for event, place in zip(self.events, self.places, strict=True) if event["event"] == "restart"]
+        return [
+            place
+            for event, place in zip(self.events, self.places, strict=True)
+            if event["event"] == "restart"
+        ]
 
     def missing(self) -> list[tuple[int, int]]:
         """The gaps (first, end) in the numbers of the ticks: those from first to end - 1 are not in the log."""
@@ -112,7 +116,11 @@ class Log:
 
     def kicks(self) -> list[tuple[int, Event]]:
         """(index of the record in which it begins, the kick as plain data) of every kick that began in the log."""
-        return [(place, event["kick"]) for event, place in zip(self.events, self.places, strict=True) if event["event"] == "kick"]
+        return [
+            (place, event["kick"])
+            for event, place in zip(self.events, self.places, strict=True)
+            if event["event"] == "kick"
+        ]
 
     @property
     def seconds(self) -> float:

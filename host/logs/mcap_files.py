@@ -53,8 +53,16 @@ def _ticks_schema() -> dict[str, Any]:
             properties[channel.name] = {"type": "string", "enum": list(_NAMED[channel.name])}
         else:
             properties[channel.name] = {"type": "number" if channel.code in "df" else "integer"}
-        properties[channel.name]["description"] = f"[{channel.unit}] {channel.doc.split(':')[0] if channel.name in _NAMED else channel.doc}"
-    return {"title": "tick", "description": "one tick of the robot", "type": "object", "properties": properties, "required": list(NAMES)}
+        properties[channel.name]["description"] = (
+            f"[{channel.unit}] {channel.doc.split(':')[0] if channel.name in _NAMED else channel.doc}"
+        )
+    return {
+        "title": "tick",
+        "description": "one tick of the robot",
+        "type": "object",
+        "properties": properties,
+        "required": list(NAMES),
+    }
 
 
 def _events_schema() -> dict[str, Any]:
@@ -63,7 +71,12 @@ def _events_schema() -> dict[str, Any]:
         "tick": {"type": "integer", "description": "[1] the first tick that it concerns"},
         "reason": {"type": "string", "description": "why, for people"},
     }
-    return {"title": "event", "description": "what changed the robot's course", "type": "object", "properties": properties}
+    return {
+        "title": "event",
+        "description": "what changed the robot's course",
+        "type": "object",
+        "properties": properties,
+    }
 
 
 def _to_text(value: Any) -> str:
@@ -97,16 +110,24 @@ class McapTap:
             self._file = self.path.open("xb")
         except OSError as error:
             if self.path.exists():
-                raise LogError(f"{self.path} exists already, and logs are never overwritten", "choose another name") from None
+                raise LogError(
+                    f"{self.path} exists already, and logs are never overwritten",
+                    "choose another name",
+                ) from None
             raise LogError(
-                f"{self.path} cannot be made: {error.strerror}", "choose a folder that is there, and that you may write to"
+                f"{self.path} cannot be made: {error.strerror}",
+                "choose a folder that is there, and that you may write to",
             ) from None
         self._zero_ns = _nanoseconds(info.get("clock_zero_s", 0.0))
         self._now_ns = self._chunk_ns = self._zero_ns
         self._waiting: list[Event] = []
-        self._writer: Any = Writer(self._file, compression=CompressionType.LZ4, enable_data_crcs=True)
+        self._writer: Any = Writer(
+            self._file, compression=CompressionType.LZ4, enable_data_crcs=True
+        )
         self._writer.start(library=f"kickctl {__version__}")
-        self._writer.add_metadata(METADATA, {"format": FORMAT, **{name: _to_text(value) for name, value in info.items()}})
+        self._writer.add_metadata(
+            METADATA, {"format": FORMAT, **{name: _to_text(value) for name, value in info.items()}}
+        )
         self._ticks = self._register(TICKS, "kickctl.Tick", _ticks_schema())
         self._events = self._register(EVENTS, "kickctl.Event", _events_schema())
         self._writer.flush()
@@ -155,7 +176,12 @@ class McapTap:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self.close()
 
 
@@ -189,7 +215,9 @@ def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
                 raise LogError(f"{path} is not an MCAP file", _GIVE_OURS)
             file.seek(0)
             try:
-                for item in StreamReader(file, validate_crcs=True, record_size_limit=path.stat().st_size).records:
+                for item in StreamReader(
+                    file, validate_crcs=True, record_size_limit=path.stat().st_size
+                ).records:
                     if isinstance(item, Metadata) and item.name == METADATA:
                         info = _info(path, item.metadata)
                     elif isinstance(item, Channel):
@@ -199,7 +227,10 @@ def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
             except _DAMAGE:
                 whole = False
     except OSError as error:
-        raise LogError(f"{path} cannot be read: {error.strerror}", "'kickctl log list' shows the logs there are") from None
+        raise LogError(
+            f"{path} cannot be read: {error.strerror}",
+            "'kickctl log list' shows the logs there are",
+        ) from None
     if info is None:
         raise LogError(f"{path} is an MCAP file, but holds no log of kickctl", _GIVE_OURS)
     return info, whole
@@ -207,7 +238,10 @@ def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
 
 def _info(path: Path, metadata: dict[str, str]) -> dict[str, Any]:
     if metadata.get("format") != FORMAT:
-        raise LogError(f"{path} has log format {metadata.get('format')}, not {FORMAT}", "read it with the release that wrote it")
+        raise LogError(
+            f"{path} has log format {metadata.get('format')}, not {FORMAT}",
+            "read it with the release that wrote it",
+        )
     return {name: _from_text(text) for name, text in metadata.items() if name != "format"}
 
 
@@ -237,7 +271,10 @@ def new_path(kind: str) -> Path:
     try:
         LOG_FOLDER.mkdir(exist_ok=True)
     except OSError as error:
-        raise LogError(f"the folder {LOG_FOLDER} cannot be made here: {error.strerror}", "go to a folder that you may write to") from None
+        raise LogError(
+            f"the folder {LOG_FOLDER} cannot be made here: {error.strerror}",
+            "go to a folder that you may write to",
+        ) from None
     return path
 
 
@@ -265,9 +302,17 @@ def _summarize(path: Path) -> Summary:
             info = {item.name: item.metadata for item in reader.iter_metadata()}.get(METADATA)
             if summary is not None and summary.statistics is not None and info is not None:
                 counts = summary.statistics.channel_message_counts
-                ticks = sum(counts.get(channel.id, 0) for channel in summary.channels.values() if channel.topic == TICKS)
-                seconds = (summary.statistics.message_end_time - summary.statistics.message_start_time) / 1e9
-                return Summary(path, ticks, seconds, info.get("brick", ""), info.get("started_utc", ""), "")
+                ticks = sum(
+                    counts.get(channel.id, 0)
+                    for channel in summary.channels.values()
+                    if channel.topic == TICKS
+                )
+                seconds = (
+                    summary.statistics.message_end_time - summary.statistics.message_start_time
+                ) / 1e9
+                return Summary(
+                    path, ticks, seconds, info.get("brick", ""), info.get("started_utc", ""), ""
+                )
     except (OSError, *_DAMAGE):
         pass  # without its index, the file has to be read
     extent = _Extent()
@@ -276,7 +321,14 @@ def _summarize(path: Path) -> Summary:
     except LogError as error:
         return Summary(path, 0, 0.0, "", "", str(error))
     note = "" if whole else "breaks off"
-    return Summary(path, extent.ticks, extent.seconds, str(brief.get("brick", "")), str(brief.get("started_utc", "")), note)
+    return Summary(
+        path,
+        extent.ticks,
+        extent.seconds,
+        str(brief.get("brick", "")),
+        str(brief.get("started_utc", "")),
+        note,
+    )
 
 
 class _Extent:

@@ -59,7 +59,9 @@ def _around(log: Log, side: str, tick: int) -> tuple[NDArray[Any], NDArray[Any],
         raise ValueError(f"tick {tick} is not in the log")
     row = int(rows[-1])
     edges = [0, *log.restarts(), len(log)]
-    run = slice(max(edge for edge in edges if edge <= row), min(edge for edge in edges if edge > row))
+    run = slice(
+        max(edge for edge in edges if edge <= row), min(edge for edge in edges if edge > row)
+    )
     return ticks[run], log.column("t_s")[run], log.column(side + "_phi_rad")[run], row - run.start
 
 
@@ -97,10 +99,14 @@ def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
     return settling_of(angles, times, float(times[row]))
 
 
-def settling_of(phi: Sequence[float] | NDArray[Any], t: Sequence[float] | NDArray[Any], begin_s: float) -> float | None:
+def settling_of(
+    phi: Sequence[float] | NDArray[Any], t: Sequence[float] | NDArray[Any], begin_s: float
+) -> float | None:
     """How long after begin_s (s) a wheel with the angles phi (rad) at the times t (s) had settled, by the rule of sim_motor.settling.
 
     None if it has not by the end of the data.
     """
-    found = rule(np.asarray(phi, dtype=float).tolist(), np.asarray(t, dtype=float).tolist(), begin_s)
+    found = rule(
+        np.asarray(phi, dtype=float).tolist(), np.asarray(t, dtype=float).tolist(), begin_s
+    )
     return None if isnan(found) else found

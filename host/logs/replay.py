@@ -107,15 +107,28 @@ class _Controller:
     def adopt(self, record: Record) -> None:
         """Take the potentials that a record tells of."""
         for wheel in self.wheels:
-            wheel.x1, wheel.x2 = getattr(record, wheel.side + "_x1"), getattr(record, wheel.side + "_x2")
+            wheel.x1, wheel.x2 = (
+                getattr(record, wheel.side + "_x1"),
+                getattr(record, wheel.side + "_x2"),
+            )
 
     def differences(self, record: Record) -> Iterator[Mismatch]:
         """Every channel of a record that is not, in every bit, what `step` came to."""
         for wheel in self.wheels:
             # From the recorded torque: rounding to whole percents may turn a difference in the last bit into one of 1.
             torque = getattr(record, wheel.side + "_torque")
-            duty = limit_duty(self.params.duty_scale * torque, self.params.max_duty_pct) if record.state == RUNNING else 0
-            replayed = (("x1", wheel.x1), ("x2", wheel.x2), ("force", wheel.force), ("torque", wheel.torque), ("duty_pct", duty))
+            duty = (
+                limit_duty(self.params.duty_scale * torque, self.params.max_duty_pct)
+                if record.state == RUNNING
+                else 0
+            )
+            replayed = (
+                ("x1", wheel.x1),
+                ("x2", wheel.x2),
+                ("force", wheel.force),
+                ("torque", wheel.torque),
+                ("duty_pct", duty),
+            )
             for name, value in replayed:
                 recorded = getattr(record, f"{wheel.side}_{name}")
                 if pack("d", recorded) != pack("d", value):
@@ -125,7 +138,9 @@ class _Controller:
 def replay(log: Log) -> ReplayResult:
     """Replay a log; see ReplayResult for what is found. Nothing differs in the replay of a log that was neither changed nor damaged."""
     here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
-    result = ReplayResult(0.0 if log.info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE)
+    result = ReplayResult(
+        0.0 if log.info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE
+    )
     controller = _Controller()
     known_before: int | None = None  # the tick before which the potentials are known
     failed = False

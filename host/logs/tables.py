@@ -16,14 +16,21 @@ from robot.record import KICK_NAMES, STATES
 
 _WHEEL = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct", "omega_rad_s")
 # The order is a promise; new columns come last.
-COLUMNS = ("tick", "t_s", "dt_s") + tuple(f"{side}_{name}" for side in WHEELS for name in _WHEEL) + ("kick", "state", "late_s", "missed")
+COLUMNS = (
+    ("tick", "t_s", "dt_s")
+    + tuple(f"{side}_{name}" for side in WHEELS for name in _WHEEL)
+    + ("kick", "state", "late_s", "missed")
+)
 
 
 def columns(arrays: dict[str, Any]) -> dict[str, Any]:
     """A log's arrays in the order of COLUMNS, with kick (its mode, or empty) and state as text."""
     import numpy as np
 
-    named = {"kick": np.array(KICK_NAMES)[arrays["kick"]], "state": np.array(STATES)[arrays["state"]]}
+    named = {
+        "kick": np.array(KICK_NAMES)[arrays["kick"]],
+        "state": np.array(STATES)[arrays["state"]],
+    }
     return {name: named.get(name, arrays.get(name)) for name in COLUMNS}
 
 
@@ -34,7 +41,9 @@ def write_csv(arrays: dict[str, Any], out: TextIO) -> None:
     writer.writerows(zip(*(column.tolist() for column in columns(arrays).values()), strict=True))
 
 
-def write_npz(arrays: dict[str, Any], info: dict[str, Any], events: list[Event], out: IO[bytes]) -> None:
+def write_npz(
+    arrays: dict[str, Any], info: dict[str, Any], events: list[Event], out: IO[bytes]
+) -> None:
     """Write the columns as arrays of an .npz file, and `info` and `events` as JSON text."""
     import numpy as np
 

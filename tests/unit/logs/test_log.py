@@ -25,7 +25,11 @@ def test_the_stream_comes_out_as_it_went_in():
     log.play(copy)
     assert (copy.records, copy.events, copy.places) == (log.records, log.events, log.places)
     for event, place in zip(log.events, log.places, strict=True):
-        assert log.records[place].tick == event["tick"] if place < len(log) else event["tick"] == log.records[-1].tick + 1
+        assert (
+            log.records[place].tick == event["tick"]
+            if place < len(log)
+            else event["tick"] == log.records[-1].tick + 1
+        )
     assert list(log.stream()) == list(copy.stream())
     assert len(list(log.stream())) == len(log.records) + len(log.events)
 
@@ -64,7 +68,12 @@ def test_no_speed_spans_a_restart():
     log = running(20)
     log.take_event({"event": "restart", "tick": 0, "boot": "b"})
     # Ticks and times go on as if nothing had been: only the event tells.
-    log.take_records([record._replace(right_phi_rad=record.right_phi_rad + 100) for record in running(35).records[20:]])
+    log.take_records(
+        [
+            record._replace(right_phi_rad=record.right_phi_rad + 100)
+            for record in running(35).records[20:]
+        ]
+    )
     assert log.restarts() == [20]
     omega = log.omega("right")
     assert omega[20] == omega[21]

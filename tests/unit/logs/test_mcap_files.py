@@ -48,12 +48,16 @@ def running(ticks):
 
 
 def unpack_f32(value):
-    return unpack(STRUCT.pack(*[value if channel.code == "f" else 0 for channel in CHANNELS]))[0].late_s
+    return unpack(STRUCT.pack(*[value if channel.code == "f" else 0 for channel in CHANNELS]))[
+        0
+    ].late_s
 
 
 def test_a_log_comes_back_as_it_was(tmp_path):
     log = eventful().log(**INFO)
-    log.records[2] = log.records[2]._replace(left_x1=-0.0, left_x2=5e-324, left_force=-1.7976931348623157e308, late_s=unpack_f32(0.1))
+    log.records[2] = log.records[2]._replace(
+        left_x1=-0.0, left_x2=5e-324, left_force=-1.7976931348623157e308, late_s=unpack_f32(0.1)
+    )
     back = Log.load(log.save(tmp_path / "log.mcap"))
     assert repr(back.info) == repr(INFO)
     assert bits(back) == bits(log)
@@ -70,8 +74,18 @@ def records():
         "H": st.integers(0, 65535),
         "b": st.integers(-128, 127),
     }
-    by_name = {"state": st.integers(0, len(STATES) - 1), "kick": st.integers(0, len(KICK_NAMES) - 1), "t_s": st.floats(0, 1e7)}
-    return st.builds(Record, **{channel.name: by_name.get(channel.name, by_code.get(channel.code)) for channel in CHANNELS})
+    by_name = {
+        "state": st.integers(0, len(STATES) - 1),
+        "kick": st.integers(0, len(KICK_NAMES) - 1),
+        "t_s": st.floats(0, 1e7),
+    }
+    return st.builds(
+        Record,
+        **{
+            channel.name: by_name.get(channel.name, by_code.get(channel.code))
+            for channel in CHANNELS
+        },
+    )
 
 
 @settings(max_examples=60, deadline=None)
@@ -97,21 +111,30 @@ def test_the_file_is_what_viewers_expect(tmp_path):
         assert json.loads(metadata.metadata["params"]) == INFO["params"]
         messages = list(reader.iter_messages(log_time_order=False))
     assert {channel.topic for _, channel, _ in messages} == {"/ticks", "/events"}
-    assert {(schema.encoding, channel.message_encoding) for schema, channel, _ in messages} == {("jsonschema", "json")}
+    assert {(schema.encoding, channel.message_encoding) for schema, channel, _ in messages} == {
+        ("jsonschema", "json")
+    }
     ticks = [
-        (json.loads(schema.data), json.loads(message.data), message) for schema, channel, message in messages if channel.topic == "/ticks"
+        (json.loads(schema.data), json.loads(message.data), message)
+        for schema, channel, message in messages
+        if channel.topic == "/ticks"
     ]
     python = {"string": str, "integer": int, "number": float}
     for (schema, data, message), record in zip(ticks, log.records, strict=True):
         assert schema["type"] == "object"
         assert list(schema["properties"]) == list(data) == list(NAMES)
-        assert all(isinstance(value, python[schema["properties"][name]["type"]]) for name, value in data.items())
+        assert all(
+            isinstance(value, python[schema["properties"][name]["type"]])
+            for name, value in data.items()
+        )
         assert (data["state"], data["kick"]) == (STATES[record.state], "")
         assert message.log_time == message.publish_time
         assert message.log_time / 1e9 == pytest.approx(ZERO_S + record.t_s, abs=1e-6)
     assert "[rad] wheel angle" in ticks[0][0]["properties"]["left_phi_rad"]["description"]
     for channel in CHANNELS:
-        assert ticks[0][0]["properties"][channel.name]["description"].startswith(f"[{channel.unit}] ")
+        assert ticks[0][0]["properties"][channel.name]["description"].startswith(
+            f"[{channel.unit}] "
+        )
 
 
 def test_an_event_has_the_time_of_the_record_it_precedes(tmp_path):
@@ -124,12 +147,15 @@ def test_an_event_has_the_time_of_the_record_it_precedes(tmp_path):
     log.take_event({"event": "stop", "tick": 30, "reason": "nothing follows"})
     with log.save(tmp_path / "log.mcap").open("rb") as file:
         messages = [
-            (channel.topic, message.log_time, json.loads(message.data)) for _, channel, message in make_reader(file).iter_messages()
+            (channel.topic, message.log_time, json.loads(message.data))
+            for _, channel, message in make_reader(file).iter_messages()
         ]
     times = [time for _, time, _ in messages]
     assert times == sorted(times)
     [kick_time] = [time for _, time, data in messages if data.get("event") == "kick"]
-    assert kick_time == next(time for topic, time, data in messages if topic == "/ticks" and data["tick"] == begin)
+    assert kick_time == next(
+        time for topic, time, data in messages if topic == "/ticks" and data["tick"] == begin
+    )
     assert messages[-1][2]["event"] == "stop"
     assert messages[-1][1] == messages[-2][1]
 
@@ -141,7 +167,10 @@ def test_a_restarted_robot_has_a_new_zero_of_time(tmp_path):
     log.take_records(running(10).records)
     path = log.save(tmp_path / "log.mcap")
     with path.open("rb") as file:
-        times = [message.log_time / 1e9 - ZERO_S for _, _, message in make_reader(file).iter_messages(topics="/ticks")]
+        times = [
+            message.log_time / 1e9 - ZERO_S
+            for _, _, message in make_reader(file).iter_messages(topics="/ticks")
+        ]
     assert times[:10] == pytest.approx([record.t_s for record in log.records[:10]], abs=1e-6)
     assert times[10:] == pytest.approx([1000 + record.t_s for record in log.records[10:]], abs=1e-6)
     assert Log.load(path).restarts() == [10]
@@ -174,7 +203,10 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 def test_a_killed_process_leaves_a_file_that_reads(tmp_path):
     path = tmp_path / "log.mcap"
-    assert subprocess.run([sys.executable, "-c", _KILLED, str(path)], cwd=ROOT, check=False).returncode == -signal.SIGKILL
+    assert (
+        subprocess.run([sys.executable, "-c", _KILLED, str(path)], cwd=ROOT, check=False).returncode
+        == -signal.SIGKILL
+    )
     log, back = running(100), Log.load(path)
     assert back.info["truncated"] is True
     assert len(back) > 60
@@ -292,7 +324,11 @@ def test_new_logs_have_names_of_their_own_in_the_present_folder(tmp_path, monkey
     monkeypatch.setattr(recording, "datetime", Now)
     log = running(3)
     names = [log.save(new_path("kick")).relative_to("logs").name for _ in range(3)]
-    assert names == ["kick-20261122-153012.mcap", "kick-20261122-153012-2.mcap", "kick-20261122-153012-3.mcap"]
+    assert names == [
+        "kick-20261122-153012.mcap",
+        "kick-20261122-153012-2.mcap",
+        "kick-20261122-153012-3.mcap",
+    ]
     assert new_path("record").name == "record-20261122-153012.mcap"
 
 

@@ -18,7 +18,9 @@ TICK_S = 0.03
 def ticks(seconds, jitter_s=0.0, seed=1):
     """Times of ticks, each late by up to jitter_s."""
     grid = np.arange(0.0, seconds, TICK_S)
-    return grid + np.random.default_rng(seed).uniform(0.0, jitter_s, len(grid)) if jitter_s else grid
+    return (
+        grid + np.random.default_rng(seed).uniform(0.0, jitter_s, len(grid)) if jitter_s else grid
+    )
 
 
 def encoder(phi):
@@ -29,7 +31,11 @@ def encoder(phi):
 def integral(speed, t):
     """Angles at times t of a wheel that turns at speed(t)."""
     fine = np.linspace(0.0, t[-1], 100 * len(t))
-    return np.interp(t, fine, np.concatenate([[0.0], np.cumsum(speed((fine[1:] + fine[:-1]) / 2) * np.diff(fine))]))
+    return np.interp(
+        t,
+        fine,
+        np.concatenate([[0.0], np.cumsum(speed((fine[1:] + fine[:-1]) / 2) * np.diff(fine))]),
+    )
 
 
 def test_a_heading_is_what_the_robot_takes_for_the_sign_of_a_phase_kick():
@@ -73,7 +79,9 @@ def test_the_directions_of_a_series_are_the_robots_own_of_each_travel():
     travels = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
     assert not directions(phi)[:DIRECTION_TICKS].any()
     assert not directions(phi[:3]).any()
-    assert directions(phi)[DIRECTION_TICKS:].tolist() == [[direction(travel) for travel in row] for row in travels.tolist()]
+    assert directions(phi)[DIRECTION_TICKS:].tolist() == [
+        [direction(travel) for travel in row] for row in travels.tolist()
+    ]
 
 
 def test_a_heading_needs_angles_and_a_tick_that_is_there():
@@ -132,7 +140,9 @@ def test_less_than_two_windows_are_never_settled():
 @pytest.mark.parametrize("tau_s", [0.1, 0.2, 0.4])
 def test_a_reversing_wheel_is_not_settled_until_it_has_reversed(tau_s):
     t = ticks(6.0, 0.004)
-    phi = encoder(integral(lambda t: np.where(t < 2.0, 12.0, 12.0 * (2 * np.exp(-(t - 2.0) / tau_s) - 1)), t))
+    phi = encoder(
+        integral(lambda t: np.where(t < 2.0, 12.0, 12.0 * (2 * np.exp(-(t - 2.0) / tau_s) - 1)), t)
+    )
     answers = np.array([settled(phi[:end], t[:end]) for end in range(1, len(t) + 1)])
     assert answers[(t > 1.1) & (t < 2.0)].all()
     # Within two windows after it turned, the wheel has turned back in them; a tick or two until the turn shows at all.
@@ -171,7 +181,9 @@ def test_irregular_switching_is_never_settled_while_a_switch_is_in_sight():
 
 def reversal(tau_s, t, begin_s, speed=12.6):
     """A wheel that reverses from begin_s on with time constant tau_s: it enters the band of 10 % after tau_s ln 20."""
-    return integral(lambda t: speed * np.where(t < begin_s, 1.0, 2 * np.exp(-(t - begin_s) / tau_s) - 1), t)
+    return integral(
+        lambda t: speed * np.where(t < begin_s, 1.0, 2 * np.exp(-(t - begin_s) / tau_s) - 1), t
+    )
 
 
 @pytest.mark.parametrize("jitter_s", [0.0, 0.006])
@@ -193,7 +205,9 @@ def test_a_kick_without_effect_settles_at_once():
 
 def test_a_wheel_that_is_brought_to_rest_settles():
     t = ticks(5.0)
-    phi = encoder(integral(lambda t: 12.6 * np.where(t < 2.0, 1.0, np.maximum(0.0, 1 - (t - 2.0) / 0.4)), t))
+    phi = encoder(
+        integral(lambda t: 12.6 * np.where(t < 2.0, 1.0, np.maximum(0.0, 1 - (t - 2.0) / 0.4)), t)
+    )
     assert settling_of(phi, t, 2.0) == pytest.approx(0.4, abs=2.5 * TICK_S)
 
 
@@ -206,7 +220,9 @@ def test_what_comes_before_the_kick_does_not_count():
 
 def test_a_late_wobble_makes_settling_late():
     t = ticks(9.0)
-    phi = encoder(integral(lambda t: np.where(t < 2.0, -12.6, np.where((t > 4.0) & (t < 4.3), 9.0, 12.6)), t))
+    phi = encoder(
+        integral(lambda t: np.where(t < 2.0, -12.6, np.where((t > 4.0) & (t < 4.3), 9.0, 12.6)), t)
+    )
     assert settling_of(phi, t, 2.0) == pytest.approx(2.3, abs=3 * TICK_S)
 
 
@@ -218,10 +234,14 @@ def test_the_steps_of_the_encoder_do_not_keep_a_slow_wheel_from_settling():
 
 def test_what_has_not_settled_by_the_end_is_told():
     t = ticks(6.0)
-    at_last = encoder(integral(lambda t: np.where(t < 2.0, -12.6, np.where(t < 5.6, 10.3, 12.6)), t))
+    at_last = encoder(
+        integral(lambda t: np.where(t < 2.0, -12.6, np.where(t < 5.6, 10.3, 12.6)), t)
+    )
     assert settling_of(at_last, t, 2.0) is None
     assert settling_of(encoder(integral(lambda t: 12.6 * np.sin(4 * t), t)), t, 2.0) is None
-    assert settling_of(encoder(10.0 * np.maximum(0.0, t - 2.0) ** 2)[t < 3.5], t[t < 3.5], 2.0) is None
+    assert (
+        settling_of(encoder(10.0 * np.maximum(0.0, t - 2.0) ** 2)[t < 3.5], t[t < 3.5], 2.0) is None
+    )
     early = t < 2.6
     assert settling_of(encoder(reversal(0.3, t, 2.0))[early], t[early], 2.0) is None
     assert settling_of(encoder(12.6 * t), t, 5.8) is None

@@ -37,7 +37,18 @@ def next_float(value):
 def test_an_eventful_log_replays_bit_for_bit(rig):
     log = rig.log()
     assert {event["event"] for event in log.events} == {
-        *("snapshot", "start", "params", "kick", "stop", "link_loss", "hold", "resume", "fault", "clear")
+        *(
+            "snapshot",
+            "start",
+            "params",
+            "kick",
+            "stop",
+            "link_loss",
+            "hold",
+            "resume",
+            "fault",
+            "clear",
+        )
     }
     assert {record.kick for record in log.records} == {0, 1, 2, 3, 4, 5}
     result = replay(log)
@@ -64,7 +75,11 @@ def test_one_changed_bit_is_found(rig, side, channel):
     name = f"{side}_{channel}"
 
     def alter(record):
-        return record._replace(**{name: next_float(getattr(record, name))}) if record.tick == 77 else record
+        return (
+            record._replace(**{name: next_float(getattr(record, name))})
+            if record.tick == 77
+            else record
+        )
 
     result = replay(changed(rig.log(), alter))
     assert not result.exact
@@ -76,7 +91,14 @@ def test_one_changed_bit_is_found(rig, side, channel):
 
 @pytest.mark.parametrize("machine", [None, "armv5tejl CPython 3.5.3"])
 def test_one_percent_of_duty_is_found_whatever_the_machine(rig, machine):
-    log = changed(rig.log(), lambda record: record._replace(right_duty_pct=record.right_duty_pct - 1) if record.tick == 77 else record)
+    log = changed(
+        rig.log(),
+        lambda record: (
+            record._replace(right_duty_pct=record.right_duty_pct - 1)
+            if record.tick == 77
+            else record
+        ),
+    )
     if machine:
         log.info["robot_machine"] = machine
     result = replay(log)
@@ -87,12 +109,16 @@ def test_one_percent_of_duty_is_found_whatever_the_machine(rig, machine):
 def test_the_sign_of_a_zero_is_a_bit_too():
     rig = Rig()
     rig.run(3)
-    log = changed(rig.log(), lambda record: record._replace(left_force=-0.0) if record.tick == 2 else record)
+    log = changed(
+        rig.log(), lambda record: record._replace(left_force=-0.0) if record.tick == 2 else record
+    )
     assert replay(rig.log()).exact
     assert replay(log).first.channel == "left_force"
 
 
-@pytest.mark.parametrize(("kind", "number"), [("start", 0), ("kick", 0), ("kick", 20), ("params", 1), ("params", 4)])
+@pytest.mark.parametrize(
+    ("kind", "number"), [("start", 0), ("kick", 0), ("kick", 20), ("params", 1), ("params", 4)]
+)
 def test_a_course_that_the_events_do_not_explain_is_found(rig, kind, number):
     log = rig.log()
     victim = [event for event in log.events if event["event"] == kind][number]
@@ -105,14 +131,23 @@ def test_angles_and_steps_of_time_are_what_drives_the_replay(rig):
     for name in ("left_phi_rad", "dt_s"):
 
         def alter(record, name=name):
-            return record._replace(**{name: getattr(record, name) * 1.01}) if record.tick == 50 else record
+            return (
+                record._replace(**{name: getattr(record, name) * 1.01})
+                if record.tick == 50
+                else record
+            )
 
         assert replay(changed(rig.log(), alter)).first.tick == 50
 
 
 def test_another_machine_may_differ_in_the_last_bits_but_no_further(rig):
     def log(difference):
-        log = changed(rig.log(), lambda record: record._replace(left_force=record.left_force + difference * (record.tick == 60)))
+        log = changed(
+            rig.log(),
+            lambda record: record._replace(
+                left_force=record.left_force + difference * (record.tick == 60)
+            ),
+        )
         log.info["robot_machine"] = "armv5tejl CPython 3.5.3"
         return log
 
@@ -183,7 +218,9 @@ def test_what_the_robot_made_up_for_the_voltage_stands_in_the_log():
     rig.loop.start()
     rig.run(3 * BATTERY_TICKS)
     log = rig.log()
-    scales = [event["set"]["duty_scale"] for event in log.events if "duty_scale" in event.get("set", {})]
+    scales = [
+        event["set"]["duty_scale"] for event in log.events if "duty_scale" in event.get("set", {})
+    ]
     assert len(set(scales)) == 3
     result = replay(log)
     assert result.exact
