@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 
 from host.figures.style import COLOURS, styled
 from host.runs.contract import Findings, Row
-from host.theory.analysis.fates import BACK, BACKWARD, FORWARD, REST
+from host.theory.analysis.outcomes import BACK, BACKWARD, FORWARD, REST
 from host.theory.studies.basins import (
     CONTINUOUS,
     LENGTHS_S,

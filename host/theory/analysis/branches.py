@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from host.theory.analysis.bifurcations import MERGING, Followed, follow
 from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Shooting, rolling
 from host.theory.analysis.fixpoints import fixpoint
 from host.theory.analysis.hopf import hopf
 from host.theory.analysis.merging import course, mergings
-from host.theory.analysis.special import MERGING, Followed, follow
 from host.theory.model.turning import constant_velocity, turning
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 

@@ -19,8 +19,8 @@ from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
 from host.runs.contract import Cell, Findings, Row, Setting
-from host.theory.analysis import fates
-from host.theory.analysis.fates import (
+from host.theory.analysis import outcomes
+from host.theory.analysis.outcomes import (
     BACK,
     BACKWARD,
     FORWARD,
@@ -116,7 +116,7 @@ def omegas(wheel: Wheel, points: int) -> Array:
 
     In scale with the springs, or with the wheel's memory where there are none.
     """
-    greatest = FASTEST * fates.free_speed(wheel) or pi / memory_s(wheel)
+    greatest = FASTEST * outcomes.free_speed(wheel) or pi / memory_s(wheel)
     return np.asarray((2 * np.arange(points) + 1 - points) * (greatest / points))
 
 
@@ -141,14 +141,14 @@ def _starts(model: Model, wheel: Wheel, phi: Array, omega: Array) -> list[Row]:
 
 def _kicks(model: Model, wheel: Wheel, mode: str, sign: int, lengths_s: list[float]) -> list[Row]:
     """A row for each length and phase; none if no wheel rolls."""
-    begun = fates.rolling(model, wheel, PHASES)
+    begun = outcomes.rolling(model, wheel, PHASES)
     if begun is None:
         return []
     phases = [degrees(phi) for phi in (begun[PHI] % QUARTER).tolist()]
     return [
         {"length_s": length_s, "phase_deg": phase, "outcome": str(outcome)}
         for length_s, line in zip(
-            lengths_s, fates.after_kicks(model, wheel, begun, mode, sign, lengths_s), strict=True
+            lengths_s, outcomes.after_kicks(model, wheel, begun, mode, sign, lengths_s), strict=True
         )
         for phase, outcome in zip(phases, line, strict=True)
     ]

@@ -33,8 +33,8 @@ from host.theory.analysis.merging import NEAR, Merging, merging_line, mergings, 
 from host.theory.engine.flow import FINENESS
 from host.theory.model.turning import constant_velocity, driven, potentials
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, wheel_of
+from host.theory.studies.branch_cycles import branch_rows, checks, pairs
 from host.theory.studies.branch_report import findings
-from host.theory.studies.cycle_rows import branch_rows, checks, pairs
 
 # The constant is followed from this part of the end's value on.
 _SPAN = 1e-3

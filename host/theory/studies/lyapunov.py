@@ -29,7 +29,7 @@ from host.theory.analysis.transients import crisis, least_chaotic_k, lives, samp
 from host.theory.engine.ensemble import rate_per_s
 from host.theory.model.turning import begun_rolling
 from host.theory.model.wheel import Array, Wheel, numpy_rates, wheel_of
-from host.theory.studies.route import (
+from host.theory.studies.route_to_chaos import (
     along,
     checked,
     of_series,

@@ -16,7 +16,13 @@ import numpy as np
 
 from host.runs.contract import Cell, Findings, Row, Setting
 from host.theory.analysis.hopf import estimate, hopf
-from host.theory.analysis.onset import critical_k, leading, multipliers, rolling_ends, swinging_ends
+from host.theory.analysis.stability_thresholds import (
+    critical_k,
+    leading,
+    multipliers,
+    rolling_ends,
+    swinging_ends,
+)
 from host.theory.engine import sampled
 from host.theory.engine.ensemble import rate_per_s
 from host.theory.engine.kicked import Continuous, Model, Sampled, memory_s

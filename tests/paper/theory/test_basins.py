@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from host.errors import WrongUse
 from host.figures.theory.basins import draw
 from host.runs.contract import Findings, Setting
-from host.theory.analysis import fates
-from host.theory.analysis.fates import (
+from host.theory.analysis import outcomes
+from host.theory.analysis.outcomes import (
     BACK,
     BACKWARD,
     FORWARD,
@@ -225,16 +225,16 @@ def test_outcomes_are_told_from_two_windows(travel, std, expected):
         Averages(np.array([quarters * pi / 2 / 10.0]), np.array([own]), np.zeros((4, 1)))
         for quarters, own in zip(travel, std, strict=True)
     ]
-    assert fates.outcomes(*windows, 10.0, stable=True).tolist() == [expected]
+    assert outcomes.outcomes(*windows, 10.0, stable=True).tolist() == [expected]
     if expected == REST:
-        assert fates.outcomes(*windows, 10.0, stable=False).tolist() == [BACK]
+        assert outcomes.outcomes(*windows, 10.0, stable=False).tolist() == [BACK]
 
 
 @NAMED
 def test_rest_is_stable_below_each_models_own_k(model):
     k_c = 1.5873 if isinstance(model, Continuous) else 1.7712
-    assert fates.rest_is_stable(model, WHEEL._replace(k=k_c - 1e-4))
-    assert not fates.rest_is_stable(model, WHEEL._replace(k=k_c + 1e-4))
+    assert outcomes.rest_is_stable(model, WHEEL._replace(k=k_c - 1e-4))
+    assert not outcomes.rest_is_stable(model, WHEEL._replace(k=k_c + 1e-4))
 
 
 def test_between_the_two_k_c_the_continuous_wheel_swings_and_the_sampled_one_rests():

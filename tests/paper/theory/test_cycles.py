@@ -8,12 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from host.errors import NotDone, WrongUse
-from host.theory.analysis.branches import hopf_values, rotation, rotations, swings, turned
-from host.theory.analysis.continuation import Curve, Point
-from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Family, Shooting
-from host.theory.analysis.hopf import hopf
-from host.theory.analysis.merging import course, merging, mergings, neutral_tau_s, passes
-from host.theory.analysis.special import (
+from host.theory.analysis.bifurcations import (
     FOLD,
     LOST,
     MERGING,
@@ -22,6 +17,11 @@ from host.theory.analysis.special import (
     RANGE,
     follow,
 )
+from host.theory.analysis.branches import hopf_values, rotation, rotations, swings, turned
+from host.theory.analysis.continuation import Curve, Point
+from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Family, Shooting
+from host.theory.analysis.hopf import hopf
+from host.theory.analysis.merging import course, merging, mergings, neutral_tau_s, passes
 from host.theory.model.turning import constant_velocity, driven, potentials
 from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
 

@@ -26,7 +26,7 @@ from host.theory.analysis.transients import crisis, lives, sample
 from host.theory.model.symbolic import jacobian_at
 from host.theory.model.turning import begun_rolling
 from host.theory.model.wheel import PHI, Wheel, rates, resting
-from host.theory.studies.route import rolling_end
+from host.theory.studies.route_to_chaos import rolling_end
 
 RESTING, SWINGING, ROLLING, CHAOTIC = (
     Wheel(k=1.4),

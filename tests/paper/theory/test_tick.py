@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from host.errors import WrongUse
 from host.figures.theory.tick import draw
 from host.runs.contract import Setting
-from host.theory.analysis import onset
+from host.theory.analysis import stability_thresholds as thresholds
 from host.theory.analysis.hopf import hopf
 from host.theory.engine import sampled
 from host.theory.engine.kicked import Continuous, Sampled
@@ -138,28 +138,29 @@ def test_the_jacobian_is_that_of_the_map(clock, number):
 @pytest.mark.parametrize("clock", [NEW, OLD, Clock(0.1), Clock(0.001, 0.0, fresh=False)])
 def test_multipliers_at_rest_are_those_worked_out_on_paper(clock):
     expected = [0.0, 1 - clock.tick_s / WHEEL.tau_s, *np.linalg.eigvals(by_hand(WHEEL, clock))]
-    assert np.sort_complex(onset.multipliers(WHEEL, clock)) == pytest.approx(
+    assert np.sort_complex(thresholds.multipliers(WHEEL, clock)) == pytest.approx(
         np.sort_complex(np.array(expected)), abs=1e-9
     )
 
 
 @pytest.mark.parametrize("clock", [NEW, OLD, Clock(0.1), Clock(0.001, 0.0, fresh=False)])
 def test_rest_loses_its_stability_where_a_pair_leaves_the_unit_circle(clock):
-    k_c = onset.critical_k(WHEEL, clock)
+    k_c = thresholds.critical_k(WHEEL, clock)
     # Schur and Cohn's condition on the cubic z^3 + c2 z^2 + c1 z + c0 for a pair on the unit
     # circle.
     _, c2, c1, c0 = np.poly(by_hand(WHEEL._replace(k=k_c), clock))
     assert 1 - c1 + c0 * c2 - c0**2 == pytest.approx(0.0, abs=1e-12)
-    assert abs(onset.leading(WHEEL._replace(k=k_c), clock)) == pytest.approx(1.0, abs=1e-13)
+    assert abs(thresholds.leading(WHEEL._replace(k=k_c), clock)) == pytest.approx(1.0, abs=1e-13)
     below, above = (
-        abs(onset.leading(WHEEL._replace(k=k_c * factor), clock)) for factor in (1 - 1e-6, 1 + 1e-6)
+        abs(thresholds.leading(WHEEL._replace(k=k_c * factor), clock))
+        for factor in (1 - 1e-6, 1 + 1e-6)
     )
     assert below < 1.0 < above
 
 
 @pytest.mark.parametrize("clock", [NEW, OLD, Clock(0.04, 0.02)])
 def test_a_small_swing_fades_below_that_k_and_grows_above(clock):
-    k_c = onset.critical_k(WHEEL, clock)
+    k_c = thresholds.critical_k(WHEEL, clock)
     assert study.k_by_time_course(WHEEL, clock, k_c) == pytest.approx(k_c, rel=1e-7)
 
 
@@ -168,7 +169,7 @@ def test_without_a_tick_k_c_is_the_hopf_bifurcations_to_first_order(tau_s):
     wheel = WHEEL._replace(tau_s=tau_s)
     for fresh in (True, False):
         near, nearer = (
-            onset.critical_k(wheel, Clock(tau_s * share, 0.0, fresh)) / hopf(wheel).k - 1
+            thresholds.critical_k(wheel, Clock(tau_s * share, 0.0, fresh)) / hopf(wheel).k - 1
             for share in (1e-3, 5e-4)
         )
         assert near / nearer == pytest.approx(2.0, abs=0.01)
@@ -179,7 +180,7 @@ def test_without_a_tick_k_c_is_the_hopf_bifurcations_to_first_order(tau_s):
 def test_the_two_orders_move_k_c_in_opposite_directions_and_latency_lowers_it():
     k_hopf = hopf(WHEEL).k
     shift = {
-        (tick_s, fresh): onset.critical_k(WHEEL, Clock(tick_s, 0.0, fresh)) / k_hopf - 1
+        (tick_s, fresh): thresholds.critical_k(WHEEL, Clock(tick_s, 0.0, fresh)) / k_hopf - 1
         for tick_s in (0.03, 0.04)
         for fresh in (0, 1)
     }
@@ -187,7 +188,7 @@ def test_the_two_orders_move_k_c_in_opposite_directions_and_latency_lowers_it():
     assert [shift[0.03, 0], shift[0.04, 0]] == pytest.approx([-0.0793, -0.1027], abs=1e-4)
     for fresh in (True, False):
         late = [
-            onset.critical_k(WHEEL, Clock(0.03, latency_s, fresh))
+            thresholds.critical_k(WHEEL, Clock(0.03, latency_s, fresh))
             for latency_s in (0.0, 0.01, 0.02, 0.03)
         ]
         assert late == sorted(late, reverse=True)
@@ -197,23 +198,27 @@ def test_a_new_force_that_acts_a_whole_tick_late_is_an_old_one_but_for_where_it_
     # With a latency of a tick, F of (x_n+1, phi_n) acts one tick later; k_c then lies between the
     # two orders without latency.
     assert (
-        onset.critical_k(WHEEL, OLD)
-        < onset.critical_k(WHEEL, Clock(0.03, 0.03))
-        < onset.critical_k(WHEEL, NEW)
+        thresholds.critical_k(WHEEL, OLD)
+        < thresholds.critical_k(WHEEL, Clock(0.03, 0.03))
+        < thresholds.critical_k(WHEEL, NEW)
     )
 
 
 def test_where_there_is_no_k_c_none_is_told():
-    assert onset.critical_k(WHEEL, Clock(0.6)) is None  # the neurons overshoot: 0.6 s > 2 tau
-    assert onset.critical_k(WHEEL._replace(friction=0.0), NEW) == 0.0  # nothing brakes
-    assert onset.critical_k(WHEEL._replace(a=0.0), NEW) is None  # the rods do not pull
+    assert thresholds.critical_k(WHEEL, Clock(0.6)) is None  # the neurons overshoot: 0.6 s > 2 tau
+    assert thresholds.critical_k(WHEEL._replace(friction=0.0), NEW) == 0.0  # nothing brakes
+    assert thresholds.critical_k(WHEEL._replace(a=0.0), NEW) is None  # the rods do not pull
 
 
 @pytest.mark.parametrize("model", [Continuous(), Sampled(NEW), Sampled(OLD)])
 def test_rolling_begins_and_ends_where_wheels_say_so(model):
-    k_c = hopf(WHEEL).k if isinstance(model, Continuous) else onset.critical_k(WHEEL, model.clock)
-    begins = onset.swinging_ends(model, WHEEL, k_c, 5 * k_c, 60.0)
-    ends = onset.rolling_ends(model, WHEEL, 5 * k_c, 0.2 * k_c, 60.0)
+    k_c = (
+        hopf(WHEEL).k
+        if isinstance(model, Continuous)
+        else thresholds.critical_k(WHEEL, model.clock)
+    )
+    begins = thresholds.swinging_ends(model, WHEEL, k_c, 5 * k_c, 60.0)
+    ends = thresholds.rolling_ends(model, WHEEL, 5 * k_c, 0.2 * k_c, 60.0)
     assert begins == pytest.approx(ends, rel=1e-6)  # no hysteresis at tau = 0.25 s
     assert begins > 1.05 * k_c  # forth and back in between
     start = model.begun(np.array([[1.0, 1.0], [0.0, 0.0], [0.0, 0.0], [12.0, 12.0]]))
@@ -227,11 +232,11 @@ def test_rolling_begins_and_ends_where_wheels_say_so(model):
 
 def test_no_end_of_a_motion_is_told_where_there_is_none():
     assert (
-        onset.rolling_ends(Sampled(NEW), WHEEL, 8.0, 4.0, 30.0) is None
+        thresholds.rolling_ends(Sampled(NEW), WHEEL, 8.0, 4.0, 30.0) is None
     )  # it rolls all the way down
-    assert onset.rolling_ends(Sampled(NEW), WHEEL, 1.5, 0.5, 30.0) is None  # it never rolls
+    assert thresholds.rolling_ends(Sampled(NEW), WHEEL, 1.5, 0.5, 30.0) is None  # it never rolls
     assert (
-        onset.swinging_ends(Sampled(NEW), WHEEL, 1.0, 1.9, 30.0) is None
+        thresholds.swinging_ends(Sampled(NEW), WHEEL, 1.0, 1.9, 30.0) is None
     )  # it swings all the way up
 
 

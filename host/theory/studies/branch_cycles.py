@@ -8,9 +8,9 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from host.runs.contract import Row
+from host.theory.analysis.bifurcations import Followed
 from host.theory.analysis.continuation import Point
 from host.theory.analysis.cycles import Shooting
-from host.theory.analysis.special import Followed
 from host.theory.engine.ensemble import averages
 from host.theory.model.turning import constant_velocity
 from host.theory.model.wheel import OMEGA, PHI

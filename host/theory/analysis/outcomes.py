@@ -15,7 +15,7 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from host.theory.analysis.onset import leading
+from host.theory.analysis.stability_thresholds import leading
 from host.theory.engine.ensemble import Averages
 from host.theory.engine.kicked import Model, Sampled, inverted, memory_s, seen_in
 from host.theory.engine.sampled import at_rest
