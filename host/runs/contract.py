@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -35,7 +35,7 @@ class Setting:
     motor: str = "pybricks"
     battery_v: float | None = None
 
-    def seed_of(self, cell: Cell) -> int:
+    def seed_of(self, cell: Mapping[str, Any]) -> int:
         """A cell's own seed: the same whatever else is done before it, or by whom."""
         text = json.dumps([self.seed, cell], sort_keys=True)
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], "big")

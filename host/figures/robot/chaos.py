@@ -1,33 +1,36 @@
-"""The torque in the chaotic mode, the return map of its turning points, how long switching lasts, how twins part, where it is chaotic."""
+"""The chaotic mode: torque, return map, how long switching lasts, how twins part, the map."""
 
 from __future__ import annotations
 
-from math import pi
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.robot.chaos import (
-    SEEN,
-    TAU_S,
-    TWIN_S,
-    UNSEEN,
-    by_part,
-    chosen,
-    column,
+from host.experiments.robot.chaos_pieces import SEEN, TAU_S, TWIN_S, UNSEEN
+from host.experiments.robot.chaos_rows import (
+    ChaosRow,
+    MapRow,
+    SeriesRow,
+    TwinsRow,
     intervals_s,
     is_chaotic,
+    lives_rows,
+    map_rows,
+    series_of_wheels,
+    turning_points_rad,
+    twins_rows,
 )
-from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES, switches
+from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES
 from host.figures.robot.kick import STALL_TORQUE
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 from sim_motor.settling import COUNT_RAD
 
 STRETCH_S = 20.0
 _BEGINS_S = {ORDINARY: 0.0, DELAYED: 60.0}
+# Condition and jump of the twins that are drawn, with a label and its place.
 _TWINS = (
     (DELAYED, SEEN, DELAYED, (2.0, 0.8)),
     (ORDINARY, SEEN, ORDINARY, (8.5, 2e-3)),
@@ -43,49 +46,40 @@ _ABOVE: Any = {
 }
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
-    """The figure of the experiment's rows.
-
-    Of a robot its two wheels, of a simulated one also the conditions, the twins and the map.
-    """
-    parts = by_part(rows)
-    explained = bool(parts["map"])
-    wheels = list(dict.fromkeys((row["condition"], row["side"]) for row in parts["series"]))
+def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
+    """Draw the rows of a simulated brick, or of a robot, which has neither twins nor map."""
+    wheels = series_of_wheels(rows)
+    places = map_rows(rows)
+    simulated = bool(places)
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 16.0 if explained else 9.0)})
-        grid = figure.add_gridspec(
-            5 if explained else 3, 2, height_ratios=(2, 2, 4, 4, 3) if explained else (2, 2, 4)
-        )
-        for place, (condition, side) in enumerate(wheels):
-            series = chosen(parts["series"], condition=condition, side=side)
-            _draw_torque(
-                figure.add_subplot(grid[place, :]),
-                series,
-                condition if explained else f"{side} wheel",
-                _BEGINS_S[condition],
-            )
-        shown = [
-            chosen(parts["series"], condition=condition, side=side)
-            for condition, side in (wheels[1:] if explained else wheels)
-        ]
-        _draw_return_map(figure.add_subplot(grid[2, 0]), shown)
-        if explained:
-            _draw_twins(figure.add_subplot(grid[2, 1]), parts["twins"])
-            _draw_lives(
-                figure.add_subplot(grid[3, :]),
-                parts["lives"],
-                max(row["t_s"] for row in parts["series"]),
-            )
-            _draw_map(figure.add_subplot(grid[4, :]), parts["map"])
+        if simulated:
+            figure = Figure(**{**SIZE, "figsize": (10.0, 16.0)})
+            grid = figure.add_gridspec(5, 2, height_ratios=(2, 2, 4, 4, 3))
         else:
-            _draw_intervals(figure.add_subplot(grid[2, 1]), shown)
+            figure = Figure(**{**SIZE, "figsize": (10.0, 9.0)})
+            grid = figure.add_gridspec(3, 2, height_ratios=(2, 2, 4))
+        for place, ((condition, side), series) in enumerate(wheels.items()):
+            axes = figure.add_subplot(grid[place, :])
+            title = condition if simulated else f"{side} wheel"
+            _draw_torque(axes, series, title, _BEGINS_S[condition])
+        if simulated:
+            delayed = [own for (condition, _), own in wheels.items() if condition == DELAYED]
+            _draw_return_map(figure.add_subplot(grid[2, 0]), delayed)
+            _draw_twins(figure.add_subplot(grid[2, 1]), twins_rows(rows))
+            end_s = max(series[-1]["t_s"] for series in wheels.values())
+            _draw_lives(figure.add_subplot(grid[3, :]), rows, end_s)
+            _draw_map(figure.add_subplot(grid[4, :]), places)
+        else:
+            _draw_return_map(figure.add_subplot(grid[2, 0]), list(wheels.values()))
+            _draw_intervals(figure.add_subplot(grid[2, 1]), list(wheels.values()))
         figure.suptitle("$k$ = 15, $\\tau$ = 1 s: do the wheels switch irregularly?", fontsize=16)
     return figure
 
 
-def _draw_torque(axes: Axes, series: list[Row], title: str, begin_s: float) -> None:
-    """A readable stretch, from begin_s or as late as there is one."""
-    t_s, torque = column(series, "t_s"), column(series, "torque")
+def _draw_torque(axes: Axes, series: list[SeriesRow], title: str, begin_s: float) -> None:
+    """Draw STRETCH_S seconds from begin_s on, or the last ones if the series ends before that."""
+    t_s = np.array([row["t_s"] for row in series])
+    torque = np.array([row["torque"] for row in series])
     begin_s = max(0.0, min(begin_s, t_s[-1] - STRETCH_S))
     inside = (t_s >= begin_s) & (t_s <= begin_s + STRETCH_S)
     axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", linewidth=0)
@@ -97,23 +91,21 @@ def _draw_torque(axes: Axes, series: list[Row], title: str, begin_s: float) -> N
     axes.set_title(f"{title} (grey: the motor stalls)", fontsize=13, loc="left")
 
 
-def _draw_return_map(axes: Axes, shown: list[list[Row]]) -> None:
-    """Angles of successive turning points, but for quarter turns, after which the two rods are as before."""
+def _draw_return_map(axes: Axes, shown: list[list[SeriesRow]]) -> None:
+    """Draw the angle of each turning point against the one before."""
     for series, colour in zip(shown, COLOURS, strict=False):
-        phi = column(series, "phi_rad")
-        angles = np.degrees(phi[switches(phi)] % (pi / 2))
+        angles = np.degrees(turning_points_rad(series))
         axes.plot(angles[:-1], angles[1:], ".", color=colour, markersize=4)
     axes.set_xlabel("angle of a turning point, modulo 90 (deg)")
     axes.set_ylabel("angle of the next (deg)")
     axes.set_xticks((0, 30, 60, 90))
     axes.set_yticks((0, 30, 60, 90))
-    axes.set_title(
-        "return map" + (", " + DELAYED if len(shown) == 1 else ""), fontsize=13, loc="left"
-    )
+    title = "return map, " + DELAYED if len(shown) == 1 else "return map"
+    axes.set_title(title, fontsize=13, loc="left")
 
 
-def _draw_intervals(axes: Axes, shown: list[list[Row]]) -> None:
-    """How long the wheels went one way."""
+def _draw_intervals(axes: Axes, shown: list[list[SeriesRow]]) -> None:
+    """Draw histograms of the times between switches."""
     for series, colour in zip(shown, COLOURS, strict=False):
         axes.hist(
             intervals_s(series),
@@ -128,15 +120,16 @@ def _draw_intervals(axes: Axes, shown: list[list[Row]]) -> None:
     axes.legend()
 
 
-def _draw_lives(axes: Axes, rows: list[Row], end_s: float) -> None:
-    """What part of the wheels still switches, against time."""
+def _draw_lives(axes: Axes, rows: list[ChaosRow], end_s: float) -> None:
+    """Draw the share of the wheels that still switch, against time."""
     styles: Any = ("-", "--", ":")
     for number, name in enumerate(CONDITIONS):
-        own = chosen(rows, condition=name)
-        lasts = [row["end"] == SWITCHES for row in own]
-        until_s = np.sort(np.where(lasts, np.inf, np.maximum(column(own, "until_s"), 0.1)))
+        wheels = lives_rows(rows, name)
+        lasts = [row["end"] == SWITCHES for row in wheels]
+        stops_s = np.maximum([row["until_s"] for row in wheels], 0.1)
+        until_s = np.sort(np.where(lasts, np.inf, stops_s))
         steps = np.append(until_s[until_s < end_s], end_s)
-        left = 100 * (1 - np.searchsorted(until_s, steps, side="right") / len(own))
+        left = 100 * (1 - np.searchsorted(until_s, steps, side="right") / len(wheels))
         axes.step(
             np.append(0.1, steps),
             np.append(100, left),
@@ -153,12 +146,12 @@ def _draw_lives(axes: Axes, rows: list[Row], end_s: float) -> None:
     axes.legend(ncols=3, **_ABOVE)
 
 
-def _draw_twins(axes: Axes, rows: list[Row]) -> None:
-    """Median and 10 to 90 % of the distance of twins."""
+def _draw_twins(axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]]) -> None:
+    """Draw the median, and 10 to 90 %, of the distance of twins."""
     for (condition, jump, label, place), colour in zip(_TWINS, COLOURS, strict=False):
-        own = chosen(rows, condition=condition, jump=jump)
-        since_s = np.unique(column(own, "since_s"))
-        distances = column(own, "distance").reshape(-1, len(since_s))
+        pairs = twins[condition, jump]
+        since_s = np.unique([row["since_s"] for row in pairs])
+        distances = np.array([row["distance"] for row in pairs]).reshape(-1, len(since_s))
         low, median, high = np.quantile(distances, (0.1, 0.5, 0.9), axis=0)
         axes.plot(since_s, median, color=colour)
         axes.text(*place, label, color=colour, fontsize=_SMALL, va="bottom")
@@ -173,25 +166,22 @@ def _draw_twins(axes: Axes, rows: list[Row]) -> None:
     axes.set_title("how twins part", fontsize=13, loc="left")
 
 
-def _draw_map(axes: Axes, rows: list[Row]) -> None:
-    """The share of wheels that are chaotic."""
-    latencies, inertias = (sorted({row[name] for row in rows}) for name in ("latency_s", "inertia"))
-    shares = np.array(
-        [
-            [
-                np.mean([is_chaotic(row) for row in chosen(rows, latency_s=x, inertia=y)])
-                for x in latencies
-            ]
-            for y in inertias
-        ]
-    )
+def _draw_map(axes: Axes, places: dict[tuple[float, float], list[MapRow]]) -> None:
+    """Draw the share of chaotic wheels over latency and moment of inertia."""
+    latencies = sorted({latency_s for latency_s, _ in places})
+    inertias = sorted({inertia for _, inertia in places})
+
+    def share(latency_s: float, inertia: float) -> float:
+        return float(np.mean([is_chaotic(row) for row in places[latency_s, inertia]]))
+
+    shares = np.array([[share(x, y) for x in latencies] for y in inertias])
     image = axes.imshow(
         100 * shares, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=100
     )
     axes.set_xticks(range(len(latencies)), [f"{1000 * latency:g}" for latency in latencies])
     axes.set_yticks(range(len(inertias)), [f"{inertia:g}" for inertia in inertias])
     axes.set_xlabel("latency of the motors (ms)")
-    axes.set_ylabel("moment of inertia\n(of the motor's)")
+    axes.set_ylabel("moment of inertia\n(multiple of the motor's)")
     own = latencies.index(min(latencies)), inertias.index(1.0)
     axes.plot(*own, marker="*", color="white", markersize=14)
     axes.figure.colorbar(image, ax=axes, label="chaotic wheels (%)", fraction=0.06, pad=0.02)

@@ -1,4 +1,4 @@
-"""The chaotic mode (R14): how switching and exponents are told, and what the simulated wheels do under which condition."""
+"""The chaotic mode (R14): switches and exponents of known series, and what simulated wheels do."""
 
 import json
 from math import log, pi
@@ -8,7 +8,8 @@ import pytest
 
 from host.client.robot import connect
 from host.errors import NotDone
-from host.experiments.robot import chaos
+from host.experiments.robot import chaos, chaos_pieces
+from host.experiments.robot.chaos_numbers import APART_S, growth
 from host.experiments.robot.switching import (
     CONDITIONS,
     DELAYED,
@@ -31,17 +32,13 @@ from sim_motor.batch import CHANNELS
 
 SETTING = Setting(3, {"minutes": 2.5})
 PHI, X1, FORCE, TORQUE = (CHANNELS.index(name) for name in ("phi_rad", "x1", "force", "torque"))
-MODE = {"k": chaos.K, "tau_s": chaos.TAU_S}
+MODE = {"k": chaos_pieces.K, "tau_s": chaos_pieces.TAU_S}
 
 
 def runs(name, wheels, seconds, seed=1, jump=None, **changes):
-    return np.concatenate(
-        list(
-            wheels_run(
-                CONDITIONS[name], SETTING, wheels, seconds, seed, jump, **{**MODE, **changes}
-            )
-        )
-    )
+    params = {**MODE, **changes}
+    records = wheels_run(CONDITIONS[name], SETTING, wheels, seconds, seed, jump, **params)
+    return np.concatenate(list(records))
 
 
 def with_fields(rows, **fields):
@@ -113,7 +110,7 @@ def test_a_wheel_that_chatters_by_two_degrees_at_rest_does_not_switch():
     ],
     ids=[RESTS, ROLLS, SWITCHES],
 )
-def test_what_a_wheel_does_in_the_end_is_told_apart(after, expected):
+def test_what_a_wheel_does_in_the_end_is_classified(after, expected):
     swing = np.abs(np.arange(200) % 100 - 50) * 0.3
     until_s, end = ending(np.concatenate([swing, swing[-1] + after - after[0]]), 0.03)
     assert end == expected
@@ -143,32 +140,25 @@ def test_the_brick_as_it_is_stops_switching_within_a_minute():
 def test_with_a_longer_latency_wheels_go_on_switching_and_their_exponent_is_positive(delayed):
     for record in delayed:
         assert ending(record[:, PHI], Params().tick_s)[1] == SWITCHES
-        exponent, _ = from_series(record[:, FORCE], Params().tick_s, chaos.APART_S)
+        exponent, _ = from_series(record[:, FORCE], Params().tick_s, APART_S)
         assert exponent.interval[0] > of_noise()
 
 
 def test_twins_part_with_the_latency_and_a_jump_below_the_steps_dies_with_tau(monkeypatch):
-    monkeypatch.setattr(chaos, "_TWINS", 24)
-    cells = (
-        {"part": "twins", "condition": DELAYED, "jump": jump} for jump in (chaos.SEEN, chaos.UNSEEN)
-    )
-    seen, unseen = (chaos.growth(chaos.simulate(cell, SETTING)) for cell in cells)
+    monkeypatch.setattr(chaos_pieces, "TWINS", 24)
+    cell = {"part": "twins", "condition": DELAYED}
+    seen = growth(chaos.simulate({**cell, "jump": chaos_pieces.SEEN}, SETTING))
+    unseen = growth(chaos.simulate({**cell, "jump": chaos_pieces.UNSEEN}, SETTING))
     assert seen.interval[0] > 0.5
-    assert unseen.rate == pytest.approx(-1 / chaos.TAU_S, abs=0.05)
+    assert unseen.rate == pytest.approx(-1 / chaos_pieces.TAU_S, abs=0.05)
 
 
 def test_it_is_the_bound_of_the_torque_that_ends_the_chaos_of_the_papers_model():
-    free, bounded = (
-        {
-            row["end"]
-            for row in chaos.simulate(
-                {"part": "model", "wheel": "paper", "bounded": bounded}, SETTING
-            )
-        }
-        for bounded in (False, True)
-    )
-    assert free == {SWITCHES}
-    assert bounded == {ROLLS}
+    cell = {"part": "model", "wheel": "paper"}
+    free = chaos.simulate({**cell, "bounded": False}, SETTING)
+    bounded = chaos.simulate({**cell, "bounded": True}, SETTING)
+    assert {row["end"] for row in free} == {SWITCHES}
+    assert {row["end"] for row in bounded} == {ROLLS}
 
 
 def test_a_piece_done_again_has_the_same_rows_and_they_survive_json():
@@ -228,14 +218,11 @@ def _even(record):
 
 
 def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hold(monkeypatch):
-    for name, value in (
-        ("LATENCIES_S", (0.003, 0.06)),
-        ("INERTIAS", (1.0,)),
-        ("_LIVES", 6),
-        ("_LIVES_DELAYED", 2),
-        ("_TWINS", 4),
-    ):
-        monkeypatch.setattr(chaos, name, value)
+    monkeypatch.setattr(chaos, "LATENCIES_S", (0.003, 0.06))
+    monkeypatch.setattr(chaos, "INERTIAS", (1.0,))
+    monkeypatch.setattr(chaos_pieces, "LIVES", 6)
+    monkeypatch.setattr(chaos_pieces, "LIVES_DELAYED", 2)
+    monkeypatch.setattr(chaos_pieces, "TWINS", 4)
     setting = Setting(1, {"minutes": 1.0})
     rows = [
         row
@@ -264,7 +251,7 @@ def test_a_robot_gives_both_wheels_from_its_start():
     assert len(left) == len(right) == round(left[-1]["t_s"] / Params().tick_s) + 1
 
 
-def test_a_stop_in_between_is_told():
+def test_a_stop_in_between_is_reported():
     with connect("sim://", 1) as robot:
         log = Log()
         robot.add_tap(log)
