@@ -1,34 +1,47 @@
 #!/bin/sh
-# Brings the robot's program to a brick over ssh, starts it there and sees that it is well; ./deploy.sh --help tells the rest.
-# What the brick has to do for it stands in robot/service/brick.sh.
+# Brings the robot's program to a brick over ssh, starts it there and checks that it is well: --help
+# says how. robot/service/brick.sh does the brick's part of the work.
 set -eu
 
+# What a person types for kickctl and for this script; `kickctl deploy` runs it with KICKCTL set.
+deploy=./deploy.sh
+[ -z "${KICKCTL-}" ] || deploy="$KICKCTL deploy"
+
 usage() {
+    cat <<END
+$deploy [OPTION] [USER@HOST]    the brick, by default robot@ev3dev.local (password: maker)
+
+Without an option: check the brick, copy the robot's program and the token that lets this machine
+command it, stop the program that runs and its motors, start the new one and check that it is well.
+If it is not, the one before it runs again.
+
+END
     cat <<'END'
-./deploy.sh [OPTION] [USER@HOST]      the brick; by default robot@ev3dev.local (password: maker)
+  --service     the same; from now on the program starts with the brick, and announces itself in
+                the network (asks for the brick's password)
+  --no-service  undo that: from now on the program starts only when it is deployed
+  --rollback    go back to the release before this one
+  --status      show which release is on the brick, and how it is
+  --logs        show what the robot's program printed
+  --dry-run     show what would be done; connect to nothing
+  --help        show this
 
-Without an option: check the brick, copy the robot's program and the token that lets this machine command it, stop the motors and the
-program that runs, start the new one and see that it is well. If it is not, the one before it runs again.
-
-  --service    the same, and have the program start with the brick from now on, announced in the network (asks for the brick's password)
-  --no-service undo that: the program no longer starts with the brick; the release stays, and runs now as after a plain ./deploy.sh
-  --rollback   go back to the release before this one
-  --status     tell which release is on the brick and how it is
-  --logs       show what the robot's program said
-  --dry-run    tell what would be done; connect to nothing
-  --help       this
-
-Unless it runs as a service, the program turns the wheels as soon as it is ready: hold the robot up, or have it started with --idle.
+The wheels turn as soon as the program is ready, unless it runs as a service: hold the robot up, or
+start the program with --idle.
 
 Environment:
-  KICK_ROBOT_ARGS    what the program is started with from this deploy on, such as '--left outA --right outD --set polarity_left=-1';
-                     python3 -m robot --help lists it; a release that is not well takes its arguments with it
-  KICK_TOKEN         the token's file, by default ~/.config/kickctl/token; made, or fetched from the brick, if there is none
-  KICK_SSH_OPTIONS   options for ssh, such as '-p 2222 -i key'
+  KICK_ROBOT_ARGS    arguments of the robot's program, from this deploy on; for example
+                     '--left outA --right outD --set polarity_left=-1'.
+                     python3 -m robot --help lists them. If the new release is not well, the
+                     arguments of before count again
+  KICK_TOKEN         the token's file, by default ~/.config/kickctl/token; if there is none, the
+                     brick's is fetched, or a new one is made
+  KICK_SSH_OPTIONS   options for ssh, for example '-p 2222 -i key'
 
-Exit status: 0 done, and the program is well, even if it reports a fault of the robot, such as a cable that is out: no other release
-would mend that, and what to do is told; 1 not done, and the brick is as it was; 2 wrong use; 3 no connection; 4 the brick is not fit
-(Python, space, battery); 5 no robot's program is well on the brick now.
+Exit status: 0 done, and the program is well. It may still report a fault of the robot, such as a
+cable that is out: another release would not help, and the output says what does. 1 not done, and
+the brick is as it was; 2 wrong use; 3 no connection; 4 the brick is not fit (Python, space,
+battery); 5 no robot's program is well on the brick now.
 END
 }
 
@@ -42,29 +55,38 @@ fail() { # fail STATUS WHAT REMEDY
     exit "$1"
 }
 
-quoted() { printf "'%s'" "$(printf '%s' "$1" | sed "s/'/'\\\\''/g")"; } # one word for the brick's shell
+# quoted TEXT: as one word for the brick's shell
+quoted() { printf "'%s'" "$(printf '%s' "$1" | sed "s/'/'\\\\''/g")"; }
 
-remedy="is it on? Try the address on its screen (robot@192.168...) or robot@ev3dev-2.local; kickctl discover looks around"
+remedy="is it on? Try the address on its screen (robot@192.168...) or robot@ev3dev-2.local; kickctl\
+ discover lists bricks"
 lost() { # lost WHAT_SSH_SAID: no connection
     printf '%s\n' "$1" >&2
     host=${brick#*@}
     case $1 in
     *"IDENTIFICATION HAS CHANGED"*)
-        remedy="a newly written card has a new key, and this machine remembers the old one: ssh-keygen -R $host, then try again"
+        remedy="a new card has a new key, and this machine remembers the old one: type\
+ ssh-keygen -R $host, then try again"
         ;;
-    *"Host key verification failed"*) remedy="make its acquaintance once: ssh $brick, and say yes to its key" ;;
+    *"Host key verification failed"*)
+        remedy="this machine has never met the brick: type ssh $brick, and say yes to its key"
+        ;;
     *"Permission denied"* | *"Too many authentication failures"*)
-        remedy="an ev3dev brick's user is robot, with the password maker unless it was changed; ssh-copy-id robot@$host spares typing it"
+        remedy="an ev3dev brick's user is robot, and its password maker, unless somebody changed\
+ it; after ssh-copy-id robot@$host nobody needs to type it"
         ;;
     *"Could not resolve hostname"*)
-        remedy="the network knows no $host: kickctl discover looks around, or take the address on the brick's screen: robot@192.168..."
+        remedy="the network knows no $host: kickctl discover lists bricks, or take the address on\
+ the brick's screen: robot@192.168..."
         ;;
     esac
     fail 3 "no connection to $brick, while $doing" "$remedy"
 }
 
-# One connection for everything, made by the first command; a new one costs seconds on a brick. Left alone, it ends by itself.
-on_brick() { # on_brick [-t] COMMAND: run it there with this standard input, -t with a terminal if there is one, to ask for a password
+# on_brick [-t] COMMAND: run it on the brick with this standard input. With -t it has a terminal, if
+# there is one, on which it can ask for a password.
+# All commands share one connection, as a new one takes seconds on a brick. It ends by itself.
+on_brick() {
     terminal=-T
     if [ "$1" = -t ]; then
         shift
@@ -72,17 +94,20 @@ on_brick() { # on_brick [-t] COMMAND: run it there with this standard input, -t 
     fi
     : >"$folder/ssh.log" # what ssh itself says, apart from what the command says
     # shellcheck disable=SC2086 # options are words
-    ssh -E "$folder/ssh.log" -o ControlMaster=auto -o ControlPath="$folder/ssh" -o ControlPersist=60 -o ConnectTimeout=20 \
-        -o ServerAliveInterval=5 -o LogLevel=ERROR "$terminal" ${KICK_SSH_OPTIONS-} -- "$brick" "$1" || {
+    ssh -E "$folder/ssh.log" -o ControlMaster=auto -o ControlPath="$folder/ssh" \
+        -o ControlPersist=60 -o ConnectTimeout=20 -o ServerAliveInterval=5 -o LogLevel=ERROR \
+        "$terminal" ${KICK_SSH_OPTIONS-} -- "$brick" "$1" || {
         status=$?
         [ "$status" != 255 ] || lost "$(tr -d '\r' <"$folder/ssh.log")"
         return "$status"
     }
-    remedy="no half-done release ever runs there; './deploy.sh --status $brick' tells how it is; then try again"
+    remedy="the brick runs whole releases only; '$deploy --status $brick' shows how it is; then try\
+ again"
 }
 
 leave() {
-    [ ! -e "$folder/ssh" ] || ssh -o ControlPath="$folder/ssh" -O exit -- "$brick" 2>/dev/null || true
+    [ ! -e "$folder/ssh" ] ||
+        ssh -o ControlPath="$folder/ssh" -O exit -- "$brick" 2>/dev/null || true
     rm -rf "$folder"
 }
 
@@ -90,32 +115,40 @@ dry_run() {
     case $verb in
     status | logs) say "would connect to $brick and show its $verb" ;;
     rollback)
-        say "would connect to $brick, stop the robot's program, reset its motors, and start the release before, if there is one"
+        say "would connect to $brick, stop the robot's program and its motors"
+        say "  start the release before this one, if there is one"
         wheels
         ;;
     no-service)
-        say "would connect to $brick, stop the robot's program, reset its motors, and remove the service and its announcement"
-        say "  start the same release without it"
+        say "would connect to $brick, stop the robot's program and its motors"
+        say "  remove the service and its announcement, and start the same release without it"
         wheels
         ;;
     deploy)
         say "would deploy release $id to $brick:"
         say "  check there: Python 3.5 or newer, 20 MB of space, battery"
-        say "  copy to ~/kickctl/releases/$id, check every file's sum, and compile:"
+        say "  copy to ~/kickctl/releases/$id, compare every file's checksum, and compile:"
         sed 's/^[0-9a-f]*  /    /' "$folder/SHA256SUMS"
-        if [ -e "$token" ]; then say "  copy the token $token"; else say "  fetch the brick's token, or make one, as $token"; fi
-        [ -z "${KICK_ROBOT_ARGS+set}" ] || say "  start the program from now on with: $KICK_ROBOT_ARGS"
+        if [ -e "$token" ]; then
+            say "  copy the token $token"
+        else
+            say "  fetch the brick's token, or make one, as $token"
+        fi
+        [ -z "${KICK_ROBOT_ARGS+set}" ] ||
+            say "  start the program from now on with: $KICK_ROBOT_ARGS"
         say "  stop the robot's program (SIGTERM, after 5 s SIGKILL), reset all motors"
         say "  make $id the current release${service:+ and have systemd start it with the brick}"
-        say "  start it, wait up to 60 s until it is ready, ask it how it is; if it is not well, start the release before again"
+        say "  start it, wait up to 60 s until it is ready, and ask it how it is"
+        say "  if it is not well, start the release before it again"
         [ -n "$service" ] || wheels
         ;;
     esac
 }
 
-wheels() { say "  the wheels turn then, unless it is started with --idle, as a service always is"; }
+wheels() { say "  the wheels turn then, unless it starts with --idle, as a service always does"; }
 
-give_token() { # both must have the same; one that the brick has already may be in use by other machines
+# Both sides need the same token. Other machines may use one that the brick has already.
+give_token() {
     if [ ! -e "$token" ]; then
         theirs=$(on_brick "cat .config/kickctl/token 2>/dev/null || true" </dev/null)
         if [ -n "$theirs" ]; then
@@ -123,21 +156,23 @@ give_token() { # both must have the same; one that the brick has already may be 
             (umask 077 && mkdir -p "$(dirname "$token")" && printf '%s\n' "$theirs" >"$token")
         fi
     fi
-    made=$(python3 -B -c '
+    found=$(python3 -B -c '
 import sys
 from robot import token
 try:
     print("" if token.load_or_make(sys.argv[1])[1] else "there")
 except token.TokenError as error:
-    sys.exit(str(error))' "$token" 2>&1) || fail 1 "$made" "mend that file, or delete it to have a new one made, and deploy again"
-    [ -n "$made" ] || step "making a token"
+    sys.exit(str(error))' "$token" 2>&1) ||
+        fail 1 "$found" "mend that file, or delete it to get a new one; then deploy again"
+    [ -n "$found" ] || step "making a token"
     step "copying the token $token"
     on_brick "sh $files/robot/service/brick.sh token" <"$token"
 }
 
 upload() {
     files=kickctl/releases/$id
-    if on_brick "cd $files 2>/dev/null && sha256sum --quiet -c SHA256SUMS >/dev/null 2>&1" </dev/null; then
+    whole="cd $files 2>/dev/null && sha256sum --quiet -c SHA256SUMS >/dev/null 2>&1"
+    if on_brick "$whole" </dev/null; then
         step "release $id is there already"
         return
     fi
@@ -147,7 +182,8 @@ upload() {
     tar -cz robot/*.py robot/service/* -C "$folder" SHA256SUMS |
         on_brick "mkdir -p $there && tar -xzmC $there || { rm -rf $there; exit 1; }" || {
         [ $? != 3 ] || exit 3
-        fail 1 "the copy did not arrive whole; what runs on the brick is untouched" "is its card full, or failing? Try again"
+        fail 1 "the copy did not arrive whole; the brick runs on as before" \
+            "is its card full, or failing? Try again"
     }
     step "checking and compiling it there"
     on_brick "sh $there/robot/service/brick.sh adopt $id $incoming" </dev/null
@@ -157,15 +193,17 @@ deploy() {
     on_brick "sh -s check" <robot/service/brick.sh
     upload
     give_token
-    step "changing over to $id"
-    change_over "sh $files/robot/service/brick.sh activate $id '$service' ${KICK_ROBOT_ARGS+$(quoted "$KICK_ROBOT_ARGS")}"
+    step "starting $id instead of what runs now"
+    arguments=${KICK_ROBOT_ARGS+$(quoted "$KICK_ROBOT_ARGS")}
+    change_over "sh $files/robot/service/brick.sh activate $id '$service' $arguments"
 }
 
-# With this script and not with that of the release there, which may be an older one, or none at all; not through standard input, which
-# sudo may need to ask for a password.
+# by_this_script VERB: with the brick.sh of this machine, as the release on the brick may be older,
+# or missing. Not through standard input: sudo may need that to ask for a password.
 by_this_script() { change_over "sh -c $(quoted "$(cat robot/service/brick.sh)") brick.sh $1"; }
 
-change_over() { # change_over COMMAND: which starts a release on the brick; then tell how to go on
+# change_over COMMAND: run it on the brick, where it starts a release; then say how to go on
+change_over() {
     fault=''
     on_brick -t "$1" || {
         status=$?
@@ -173,19 +211,21 @@ change_over() { # change_over COMMAND: which starts a release on the brick; then
         fault=yes
     }
     kickctl=kickctl
-    command -v kickctl >/dev/null || kickctl=$here/.venv/bin/kickctl
+    command -v kickctl >/dev/null || kickctl=${KICKCTL-$from/.venv/bin/kickctl}
     say
     if [ -n "$fault" ]; then
-        say "The robot's program runs on $brick, but the robot is in fault, as told above. Mend that, clear the fault, let it run:"
+        say "The robot's program runs on $brick, but the robot is in fault: see above."
+        say "Mend the cause, clear the fault, start the robot:"
         say "  $kickctl --brick ssh://$brick clear"
         say "  $kickctl --brick ssh://$brick start"
     else
-        say "The robot's program runs on $brick. Let it run, kick it, stop it:"
+        say "The robot's program runs on $brick. Start the robot, kick it, stop it:"
         say "  $kickctl --brick ssh://$brick start"
         say "  $kickctl --brick ssh://$brick kick --mode phase --ticks 4"
         say "  $kickctl --brick ssh://$brick stop"
     fi
-    [ "$kickctl" = kickctl ] || [ -x .venv/bin/kickctl ] || say "There is no kickctl yet: make setup makes it."
+    [ "$kickctl" != "$from/.venv/bin/kickctl" ] || [ -x .venv/bin/kickctl ] ||
+        say "There is no kickctl yet: make setup installs it."
 }
 
 verb=deploy service='' dry='' brick=robot@ev3dev.local named=''
@@ -198,7 +238,7 @@ for argument; do
         [ "$verb" = deploy ] || fail 2 "--$verb and $argument at once" "give one of them"
         verb=${argument#--}
         ;;
-    -*) fail 2 "there is no option $argument" "./deploy.sh --help lists them" ;;
+    -*) fail 2 "there is no option $argument" "$deploy --help lists them" ;;
     '') fail 2 "the brick's name is empty" "give it as USER@HOST, or leave it out for $brick" ;;
     *)
         [ -z "$named" ] || fail 2 "two bricks: $brick and $argument" "deploy to one after the other"
@@ -206,12 +246,15 @@ for argument; do
         ;;
     esac
 done
-[ -z "$service" ] || [ "$verb" = deploy ] || fail 2 "--service and --$verb at once" "give one of them"
+[ -z "$service" ] || [ "$verb" = deploy ] ||
+    fail 2 "--service and --$verb at once" "give one of them"
 
 token=${KICK_TOKEN:-${XDG_CONFIG_HOME:-$HOME/.config}/kickctl/token}
 case $token in /*) ;; *) token=$PWD/$token ;; esac
-here=$(dirname "$0")
-cd "$here"
+from=$(dirname "$0") # as it was typed, so that the closing words can be typed too
+# In a checkout robot/ lies beside this script; in an installed kickctl it lies one folder higher.
+cd "$(dirname "$(readlink -f "$0")")"
+[ -d robot ] || cd ..
 folder=$(mktemp -d)
 trap leave EXIT
 trap 'exit 130' HUP INT TERM

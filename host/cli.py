@@ -32,6 +32,7 @@ VERBS = (
     "log",
     "doctor",
     "discover",
+    "deploy",
     "experiment",
     "theory",
     "body",

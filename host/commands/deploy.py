@@ -1,0 +1,71 @@
+"""kickctl deploy."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+
+from host.errors import WrongUse
+from host.util.installation import DEPLOY_SCRIPT, kickctl_command
+
+HELP = "bring the robot's program to a brick over ssh, and start it there"
+
+# The options of deploy.sh, which does the work.
+OPTIONS = {
+    "service": "have the program start with the brick from now on (asks for the brick's password)",
+    "no-service": "undo that: from now on the program starts only when it is deployed",
+    "rollback": "go back to the release before this one",
+    "status": "show which release is on the brick, and how it is",
+    "logs": "show what the robot's program printed",
+    "dry-run": "show what would be done; connect to nothing",
+}
+_DETAILS = """\
+Without an option: check the brick, copy the robot's program and the token that lets this machine
+command it, stop the program that runs and its motors, start the new one and check that it is well.
+If it is not, the one before it runs again.
+
+The wheels turn as soon as the program is ready, unless it runs as a service: hold the robot up, or
+start the program with --idle.
+
+Environment:
+  KICK_ROBOT_ARGS    arguments of the robot's program, from this deploy on:
+                     '--idle --left outA --right outD --set polarity_left=-1'
+  KICK_TOKEN         the token's file (default ~/.config/kickctl/token)
+  KICK_SSH_OPTIONS   options for ssh, for example '-p 2222 -i key'
+
+Exit status: 0 done, and the program is well; 1 not done, and the brick is as it was; 2 wrong use;
+3 no connection; 4 the brick is not fit (Python, space, battery); 5 no robot's program is well on
+the brick now."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of deploy.sh, and the brick."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = _DETAILS
+    parser.add_argument(
+        "login", nargs="?", metavar="USER@HOST", help="the brick (default robot@ev3dev.local)"
+    )
+    for name, text in OPTIONS.items():
+        parser.add_argument(
+            f"--{name}", dest="given", action="append_const", const=f"--{name}", help=text
+        )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Become deploy.sh: its output, its questions at the terminal and its exit status are the verb's."""
+    if options.json:
+        raise WrongUse("deploy does not answer in JSON", "leave --json out")
+    if options.brick is not None:
+        raise WrongUse(
+            "deploy reaches the brick by ssh only, not through --brick",
+            "name the brick's user and address: kickctl deploy robot@ev3dev.local",
+        )
+    environment = {**os.environ, "KICKCTL": kickctl_command()}
+    if options.token is not None:
+        environment["KICK_TOKEN"] = options.token
+    login = [] if options.login is None else [options.login]
+    sys.stdout.flush()
+    os.execvpe(  # noqa: S606 - ssh has to find the terminal as it is
+        "sh", ["sh", str(DEPLOY_SCRIPT), *(options.given or []), *login], environment
+    )

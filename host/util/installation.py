@@ -1,0 +1,45 @@
+"""How this copy of kickctl was installed, and so what a person types to install a library or to deploy."""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+# In a checkout it is a link to the one at the top; an installed kickctl has a copy of that.
+DEPLOY_SCRIPT = Path(__file__).resolve().parents[1] / "deploy.sh"
+
+
+def is_checkout() -> bool:
+    """Whether kickctl runs from a folder with its sources and Makefile, and not from an installed package."""
+    return (ROOT / "Makefile").is_file()
+
+
+def kickctl_command() -> str:
+    """What starts this very kickctl in a shell."""
+    if shutil.which("kickctl"):
+        return "kickctl"
+    if Path(sys.argv[0]).name == "kickctl":
+        return shlex.quote(sys.argv[0])
+    return f"{shlex.quote(sys.executable)} -m host"
+
+
+def deploy_command() -> str:
+    """What brings the robot's program to a brick: `./deploy.sh` in a checkout, else `kickctl deploy`."""
+    if not is_checkout():
+        return f"{kickctl_command()} deploy"
+    return "./deploy.sh" if Path.cwd() == ROOT else shlex.quote(str(ROOT / "deploy.sh"))
+
+
+def install_command(extra: str = "") -> str:
+    """What installs the libraries that are missing here.
+
+    Args:
+        extra: The extra of the package that has them; without it, what kickctl always needs.
+    """
+    if is_checkout():
+        return "make setup" if Path.cwd() == ROOT else f"make -C {shlex.quote(str(ROOT))} setup"
+    name = f"'kickctl[{extra}]'" if extra else "kickctl"
+    return f"{shlex.quote(sys.executable)} -m pip install {name}"
