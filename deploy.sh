@@ -214,8 +214,7 @@ change_over() {
     command -v kickctl >/dev/null || kickctl=${KICKCTL-$from/.venv/bin/kickctl}
     say
     if [ -n "$fault" ]; then
-        say "The robot's program runs on $brick, but the robot is in fault: see above."
-        say "Mend the cause, clear the fault, start the robot:"
+        say "The program runs on $brick, but the robot is in fault: see above. Mend that, then:"
         say "  $kickctl --brick ssh://$brick clear"
         say "  $kickctl --brick ssh://$brick start"
     else

@@ -81,8 +81,8 @@ def serve(mountpoint: str, brick: SimBrick) -> int:
         import mfusepy
     except (ImportError, OSError) as error:
         return _give_up(
-            f"the file tree needs mfusepy and libfuse3 ({error}): run `make setup`, and apt-get"
-            " install fuse3"
+            f"the file tree needs mfusepy and libfuse3 ({error}): install both, for example by"
+            " `pip install mfusepy` and `apt-get install fuse3`"
         )
     folder = Path(mountpoint)
     if not folder.is_dir() or folder.is_mount() or any(folder.iterdir()):

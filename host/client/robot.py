@@ -26,6 +26,7 @@ from host.client.subscription import Subscription
 from host.errors import KickctlError, LeaseLost, NoLink, RefusedByRobot, WrongUse
 from host.link.addresses import SIM, make_link
 from host.link.transport import Link, LinkLost
+from host.util.installation import deploy_command
 from host.util.provenance import origin
 from robot.record import Record
 from robot.token import TokenError, default_path, load
@@ -312,7 +313,7 @@ class Robot:
                 raise RefusedByRobot(
                     "this machine does not have the robot's token, so it may only look, and stop"
                     " the robot",
-                    "`./deploy.sh` gives it to both; or copy the robot's token file to"
+                    f"`{deploy_command()}` gives it to both; or copy the robot's token file to"
                     f" {default_path()}, mode 600",
                 )
             return self._exchange(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import platform
 import shutil
 import statistics
@@ -11,28 +10,30 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from typing import Any
 
 from host.client.robot import Robot, connect
 from host.commands._terminal import show
 from host.errors import KickctlError
+from host.util import requirements
+from host.util.installation import deploy_command, install_command
 from robot import __version__
 from robot.token import TokenError, default_path, load
 
-HELP = "examine this machine, the link and the robot, and say what to mend"
+HELP = "check this machine, the link and the robot, and say what to mend"
 
-NEEDED = ("argcomplete", "matplotlib", "mcap", "numba", "numpy", "rich", "serial")
 LEAST_DISK_BYTES = 100_000_000
 PINGS = 20
 LOW_BATTERY_V = 6.5
-# A robot that misses more of its ticks than this does not see its own wheels turn evenly.
+# Share of the ticks. A robot that misses more does not see its own wheels turn evenly.
 MANY_MISSED = 0.01
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at. `remedy` is empty if it is well."""
+    """What one check has found. `remedy` is empty if all is well."""
 
     what: str
     found: str
@@ -44,9 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Examine without moving anything.
+    """Check everything without moving anything.
 
-    1 if something needs mending, or the status of the error that hides the robot.
+    Returns:
+        0 if all is well, 1 if something needs mending, or the exit status of the error that keeps
+        the robot out of reach.
     """
     findings = [*_machine(), *_token(options.token)]
     status = 0
@@ -78,29 +81,49 @@ def _machine() -> Iterator[Finding]:
         platform.python_version(),
         "" if sys.version_info >= (3, 11) else "install Python 3.11 or newer",
     )
-    absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
-    yield Finding(
-        "libraries",
-        f"missing: {', '.join(absent)}" if absent else "all there",
-        "run: make setup" if absent else "",
-    )
+    yield from _libraries()
     free = shutil.disk_usage(Path.cwd()).free
     yield Finding(
         "disk",
         f"{free / 1e9:.1f} GB free here",
-        "" if free > LEAST_DISK_BYTES else "logs need room: delete what is old",
+        "" if free > LEAST_DISK_BYTES else "logs need room: delete old ones",
     )
+
+
+def _libraries() -> Iterator[Finding]:
+    """What the package's own metadata requires, first always and then for each extra."""
+    try:
+        absent = requirements.missing()
+        extras = {extra: requirements.missing(extra) for extra in requirements.extras()}
+    except PackageNotFoundError:
+        yield Finding(
+            "libraries",
+            "kickctl runs from its folder without being installed: nobody knows what is missing",
+            f"install it: {install_command()}",
+        )
+        return
+    except ImportError as error:
+        yield Finding("libraries", str(error), f"install what is missing: {install_command()}")
+        return
+    yield Finding(
+        "libraries",
+        f"missing: {', '.join(absent)}" if absent else "all there",
+        f"install them: {install_command()}" if absent else "",
+    )
+    for extra, names in extras.items():
+        found = f"not installed ({', '.join(names)}); to get it: {install_command(extra)}"
+        yield Finding(f"extra {extra}", found if names else "all there")
 
 
 def _token(path: str | None) -> Iterator[Finding]:
     chosen = path or default_path()
     if not Path(chosen).exists():
-        yield Finding("token", f"none at {chosen}; needed only to command a robot elsewhere")
+        yield Finding("token", f"none at {chosen}; only a robot on another machine needs one")
         return
     try:
         load(chosen)
     except TokenError as error:
-        yield Finding("token", str(error), "mend the file, or delete it and copy the robot's anew")
+        yield Finding("token", str(error), "mend the file, or delete it and copy the robot's again")
     else:
         yield Finding("token", chosen)
 
@@ -116,14 +139,18 @@ def _robot(robot: Robot) -> Iterator[Finding]:
     )
     yield Finding(
         "access",
-        "token accepted" if robot.trusted else "no token: may look, and stop the robot",
-        "" if robot.trusted else "copy the robot's token file to this machine, mode 600",
+        "token accepted" if robot.trusted else "no token: you may look, and stop the robot",
+        (
+            ""
+            if robot.trusted
+            else f"{deploy_command()} copies it; or copy the robot's token file here, mode 600"
+        ),
     )
     delays = []
     for _ in range(PINGS):
-        begun = time.perf_counter()
+        asked = time.perf_counter()
         status = robot.status()
-        delays.append(1000 * (time.perf_counter() - begun))
+        delays.append(1000 * (time.perf_counter() - asked))
     slow = statistics.median(delays) > 100.0
     yield Finding(
         "link",
@@ -135,7 +162,7 @@ def _robot(robot: Robot) -> Iterator[Finding]:
     yield Finding(
         "state",
         f"{status['state']} ({status['reason']})",
-        "mend the cause, then: kickctl clear" if fault else "",
+        "mend the cause, then: kickctl clear, kickctl start" if fault else "",
     )
     yield _battery(status["battery_v"])
     yield _punctuality(status)
@@ -149,11 +176,11 @@ def _battery(volts: float | None) -> Finding:
 
 def _punctuality(status: dict[str, Any]) -> Finding:
     counts, edges = status["lateness"]["counts"], [*status["lateness"]["edges_s"], float("inf")]
-    total, seen, bound = sum(counts), 0, 0.0
+    total, passed, bound = sum(counts), 0, 0.0
     for count, edge in zip(counts, edges, strict=True):
-        seen += count
+        passed += count
         bound = edge
-        if seen >= 0.99 * total:
+        if passed >= 0.99 * total:
             break
     missed = status["missed"] / max(1, total)
     text = (
@@ -164,7 +191,8 @@ def _punctuality(status: dict[str, Any]) -> Finding:
         "ticks",
         text,
         (
-            "something else keeps the robot busy; or choose a longer tick_s"
+            "end other programs on the robot, or choose a longer control period:"
+            " kickctl params set tick_s=0.04"
             if missed > MANY_MISSED
             else ""
         ),

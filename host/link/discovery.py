@@ -17,6 +17,7 @@ from zeroconf import (
 )
 
 from host.errors import NoLink, WrongUse, printable
+from host.util.installation import deploy_command
 from robot.program import PORT
 
 # What a brick with the robot's program as a service announces, and what every ev3dev brick does
@@ -119,7 +120,7 @@ def _found(info: ServiceInfo) -> Found | None:
     ).lstrip("-")
     return Found(
         name,
-        "EV3 brick; ./deploy.sh brings the robot's program to it",
+        f"EV3 brick; {deploy_command()} brings the robot's program to it",
         f"ssh://{login}@{addresses[0]}",
         host,
         addresses,

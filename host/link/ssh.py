@@ -17,6 +17,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from host.errors import NoLink, WrongUse, printable
 from host.link.transport import LinkLost, TcpLink
+from host.util.installation import deploy_command
 from robot.program import PORT
 
 _FORM = (
@@ -48,8 +49,8 @@ _REMEDIES = {
     ),
     "ssh: not found": "install ssh (Debian, Ubuntu: apt-get install openssh-client)",
     "open failed": (
-        "ssh works, but the robot's program does not listen there: `./deploy.sh --status` looks,"
-        " `./deploy.sh` starts it"
+        "ssh works, but the robot's program does not listen there: `{deploy} --status` looks,"
+        " `{deploy}` starts it"
     ),
 }
 _REMEDY = (
@@ -167,5 +168,5 @@ class SshLink(TcpLink):
             )
             raise NoLink(
                 f"no robot answers at {self.uri}: {shown or error}",
-                remedy.format(host=self._address[0]),
+                remedy.format(host=self._address[0], deploy=deploy_command()),
             ) from error

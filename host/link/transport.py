@@ -11,6 +11,7 @@ import time
 from typing import Protocol
 
 from host.errors import NoLink
+from host.util.installation import deploy_command
 
 CONNECT_TIMEOUT_S = 5.0
 _READ_BYTES = 65536
@@ -65,7 +66,7 @@ class TcpLink:
                 f"no robot's program runs at {self.uri}: the machine is there and refuses the"
                 " connection",
                 "start the program; if it died, its watchdog has stopped the motors, and its log"
-                " says why (of a brick: ./deploy.sh --logs)",
+                f" says why (of a brick: {deploy_command()} --logs)",
             ) from error
         except OSError as error:
             raise NoLink(

@@ -18,6 +18,7 @@ from host.runs import html_report as report
 from host.runs.claims import Claim
 from host.runs.registry import Entry
 from host.theory.studies.registry import TABLE as STUDIES
+from host.util.installation import install_command
 
 # What a robot on a table does not have around it; asked for by name, it is taken to be there.
 NEEDS = {
@@ -29,7 +30,7 @@ NEEDS = {
 
 OF_MODEL = "is about the paper's model and needs no robot: ask for it by name, or without --brick"
 OF_BODIES = "is about simulated cars and needs no robot: ask for it by name, without --brick"
-NO_BODIES = "needs mujoco, which is not installed: pip install 'kickctl[bodies]'"
+NO_BODIES = f"needs mujoco, which is not installed: {install_command('bodies')}"
 _ELSEWHERE = {"M": OF_MODEL, "B": OF_BODIES}
 
 

@@ -19,6 +19,7 @@ from host.logs.mcap_files import McapTap
 from host.runs.contract import Cell, Experiment, Row, Setting
 from host.runs.folder import digest
 from host.runs.runner import Outcome, Work
+from host.util.installation import deploy_command
 from robot.params import TABLE
 
 # A robot's cell is tried again when something else came between, a fault or a link that broke.
@@ -90,7 +91,7 @@ def _trial(
     if log.restarts() or log.missing():
         raise NotDone(
             "the robot's program began anew meanwhile, or records were lost",
-            "look at its log: ./deploy.sh --logs",
+            f"look at its log: {deploy_command()} --logs",
         )
     return rows
 

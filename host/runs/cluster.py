@@ -11,6 +11,7 @@ from concurrent.futures import CancelledError
 
 from host.errors import NoLink, WrongUse
 from host.runs.contract import Cell, Row, Setting
+from host.util.installation import install_command
 
 CONNECT_S = 10.0
 
@@ -31,7 +32,7 @@ def spread(
     except ImportError as error:
         raise WrongUse(
             "--scheduler needs the package distributed",
-            "install it: pip install 'kickctl[cluster]'",
+            f"install it: {install_command('cluster')}",
         ) from error
     if not re.fullmatch(r"\w+://.+:\d+", address):
         raise WrongUse(

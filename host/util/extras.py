@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 
 from host.errors import NotDone, WrongUse
+from host.util.installation import install_command
 
 
 def need(module: str, extra: str) -> None:
@@ -14,7 +15,7 @@ def need(module: str, extra: str) -> None:
     except ModuleNotFoundError as error:
         raise WrongUse(
             f"this needs {module}, which is not installed",
-            f"install it with the extra: pip install 'kickctl[{extra}]'",
+            f"install it: {install_command(extra)}",
         ) from error
     except (
         RuntimeError,

@@ -190,7 +190,7 @@ def test_status_and_logs(brick, checkout):
     status, output = checkout.deploy("--status")
     assert status == 0
     assert brick.release() in output
-    assert "no: ./deploy.sh --service" in output
+    assert "no: deploy with --service" in output
     assert "left motor (outB): there is none" in output
     assert "READY tcp://127.0.0.1:" in checkout.deploy("--logs")[1]
     brick.stop_program()

@@ -187,7 +187,7 @@ def test_a_program_that_hangs_is_told_and_a_deploy_ends_it(brick, checkout):
     os.kill(pid, signal.SIGSTOP)
     status, output = checkout.deploy("--status")
     assert status == 5
-    for words in ("it hangs", "the watchdog stops the motors", "./deploy.sh ends it"):
+    for words in ("it hangs", "the watchdog stops the motors", "deploy again to end it"):
         assert words in output
     status, output = checkout.deploy()
     assert status == 0, output

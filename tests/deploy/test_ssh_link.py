@@ -12,6 +12,7 @@ import pytest
 from host.client.robot import connect
 from host.errors import NoLink, WrongUse
 from host.link.addresses import make_link
+from host.util.installation import deploy_command
 from tests.deploy.brick import ROOT, free_port, needs_sshd
 from tests.sysfs.mount import ended, mounted, needs_mount, started
 
@@ -113,7 +114,7 @@ def test_an_interrupt_at_the_terminal_leaves_the_tunnel_to_stop_the_motors_throu
 def test_a_brick_whose_robot_does_not_run(brick, through):
     with pytest.raises(NoLink, match="no robot answers at ssh://brick") as caught:
         connect(f"ssh://brick?port={free_port()}")
-    assert "./deploy.sh" in caught.value.hint
+    assert deploy_command() in caught.value.hint
 
 
 @needs_sshd

@@ -32,6 +32,7 @@ from host.perform.run import perform
 from host.runs import processes
 from host.runs.claims import Claim
 from host.runs.contract import Setting
+from host.util.installation import install_command
 from sim_motor.bodies.measures import Course
 from sim_motor.bodies.presets import preset
 
@@ -123,7 +124,7 @@ def test_without_mujoco_its_extra_is_named_before_anything_runs(tmp_path, monkey
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(WrongUse) as refused:
         perform("train-start", out=tmp_path)
-    assert "kickctl[bodies]" in refused.value.hint
+    assert install_command("bodies") in refused.value.hint
     assert list(tmp_path.glob("*-*")) == []
 
 
@@ -135,7 +136,7 @@ def test_the_claims_come_after_those_of_robot_and_model():
 
 @pytest.mark.parametrize(
     ("uri", "library", "reason"),
-    [("tcp://robot:5425", True, "by name"), ("sim://", False, "kickctl[bodies]")],
+    [("tcp://robot:5425", True, "by name"), ("sim://", False, "mujoco")],
 )
 def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(
     monkeypatch, tmp_path, uri, library, reason

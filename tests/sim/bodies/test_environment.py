@@ -16,6 +16,7 @@ from host.errors import WrongUse
 from host.experiments.bodies import train_goal
 from host.figures.bodies.train_goal import draw
 from host.runs.contract import Setting
+from host.util.installation import install_command
 from robot.kicks import (
     MEMBRANE,
     NO_PULSE,
@@ -237,4 +238,4 @@ def test_without_gymnasium_it_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     with pytest.raises(WrongUse) as told:
         steering.environment("snake2019")
-    assert "kickctl[gym]" in told.value.hint
+    assert install_command("gym") in told.value.hint
