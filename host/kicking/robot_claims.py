@@ -25,6 +25,8 @@ ALWAYS = 50
 RELIABLE, FAILS = 0.95, 0.1
 SURE_LENGTHS = (3, 4, 5)
 LEAST_TRIALS = 20
+# Starts after which both directions have occurred almost surely.
+LEAST_STARTS = 10
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
     forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
     both = len(forward) > 0 and len(backward) > 0
     asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
-    return Claim(
+    claim = Claim(
         "R1",
         "forward and backward locomotion coexist",
         "both from random starts, speeds equal within 3 %",
@@ -78,6 +80,7 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
         f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward,"
         f" {len(backward)} backward",
     )
+    return claim.doubted(too_few(len(speeds), LEAST_STARTS, "wheels that started"))
 
 
 def locomotion(wheels: Sequence[Steady]) -> list[Claim]:

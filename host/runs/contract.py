@@ -17,6 +17,7 @@ from typing import Any, Protocol
 from host.client.robot import Robot
 from host.logs.log import Log
 from host.runs.claims import Claim
+from sim_motor.motor import load
 
 Cell = dict[str, Any]
 Row = dict[str, Any]
@@ -39,6 +40,47 @@ class Setting:
         """A cell's own seed: the same whatever else is done before it, or by whom."""
         text = json.dumps([self.seed, cell], sort_keys=True)
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], "big")
+
+    def elsewhere(self, **own: Any) -> str:
+        """Why this run cannot decide a claim: it is not at the parameters that the claim is made for.
+
+        Args:
+            own: The options at which the claim is made. A claim about a simulated robot is made for
+                the default motor and a battery of nominal voltage; one about the model has neither.
+
+        Returns:
+            Words that name the claim's parameters; empty if this run is at them.
+        """
+        made_for = [
+            f"{name} = {_word(value)} (here {_word(self.options[name])})"
+            for name, value in own.items()
+            if self.options[name] != value
+        ]
+        if self.motor != Setting.motor:
+            made_for.append(f"motor = {Setting.motor} (here {self.motor})")
+        if self.battery_v not in (None, nominal_v := load(self.motor).battery_v):
+            made_for.append(f"battery = {nominal_v:g} V (here {self.battery_v:g} V)")
+        return "the claim is made for " + ", ".join(made_for) if made_for else ""
+
+    def short_of(self, **least: float) -> str:
+        """Why this run cannot decide a claim: it is too short, or has too few trials.
+
+        Args:
+            least: The options on which the claim depends, and what each must be at least.
+
+        Returns:
+            Words that name what it takes; empty if this run is long enough.
+        """
+        missing = [
+            f"{name} = {value:g} or more (here {self.options[name]:g})"
+            for name, value in least.items()
+            if self.options[name] is not None and self.options[name] < value
+        ]
+        return "to decide takes " + ", ".join(missing) if missing else ""
+
+
+def _word(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float | int) else str(value)
 
 
 @dataclass(frozen=True)

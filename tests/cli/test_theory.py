@@ -25,9 +25,28 @@ def test_the_command_lists_eight_fixpoints(kickctl):
 
 
 def test_two_wheels_have_sixteen_stable_states_below_the_line_and_none_above(kickctl):
-    for k, stable in (("1.4", 16), ("1.85", 0)):
-        _, out, _ = kickctl("theory", "fixpoints", "--k", k)
-        assert f"M2 holds: two wheels have 16 non-moving states: {stable} stable states" in out
+    for k, stable, verdict in (("1.4", 16, "holds"), ("1.85", 0, "undecided")):
+        status, out, _ = kickctl("theory", "fixpoints", "--k", k)
+        assert status == 0
+        assert f"M2 {verdict}: two wheels have 16 non-moving states: {stable} stable states" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "claims"),
+    [
+        (("fixpoints", "--a", "3"), ("M1", "M2")),
+        (("hopf", "--tau", "1"), ("M3",)),
+        (("portrait", "--k", "1.4"), ("M4",)),
+    ],
+)
+def test_at_other_constants_the_claims_are_undecided_and_the_command_succeeds(
+    kickctl, arguments, claims
+):
+    status, out, _ = kickctl("theory", *arguments)
+    assert status == 0
+    for number in claims:
+        assert f"{number} undecided: " in out
+    assert out.count("the claim is made for ") == len(claims)
 
 
 def test_the_command_gives_the_hopf_point(kickctl):

@@ -16,6 +16,9 @@ from host.util.intervals import fraction, wilson
 from sim_motor.bodies.presets import preset
 
 EVERY_S, JUDGED_S = 0.05, 1.0
+# How long a train may take to find its direction, and how many trains of each preset it takes until
+# both directions occur almost surely.
+LEAST_S, LEAST_TRAINS = 15.0, 10
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
@@ -88,7 +91,9 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         done == tried > 0 and both,
         note,
     )
-    return Findings([claim], numbers)
+    # A train that finds no direction disproves the claim, however few there were.
+    few = "" if done < tried else setting.short_of(seeds=LEAST_TRAINS)
+    return Findings([claim.doubted(setting.short_of(seconds=LEAST_S), few)], numbers)
 
 
 def _told(found: list[dict[str, Any]]) -> dict[str, Any]:

@@ -31,6 +31,8 @@ TRAINS: tuple[Cell, ...] = (
 # the program of 2019.
 CONSTANT = 0.162
 LEAST = 5
+# Trains of each kind for a median, and the time for so many reversals.
+LEAST_TRAINS, LEAST_S = 3, 60.0
 EVERY_S, WHOLE_S, END_S, STUCK_M = 0.05, (0.5, 1.5), 5.0, 0.25
 STUCK, RUNS, LOST = "stuck", "runs", "could not be followed"
 
@@ -125,7 +127,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         f"median of the runs, in the preset that has fewer, in {setting.options['seconds']:g} s; "
         + "; ".join(map(_words, kinds)),
     )
-    return Findings([claim], {"kinds": kinds})
+    doubt = setting.short_of(seeds=LEAST_TRAINS, seconds=LEAST_S)
+    return Findings([claim.doubted(doubt)], {"kinds": kinds})
 
 
 def _kind(rows: list[Row], train: Cell, bouncy: bool) -> dict[str, Any]:

@@ -176,7 +176,10 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             - {row["held_hz"] for row in held(rows)}
         ),
     }
-    return Findings([_stall(rows), _jump(folds, critical, restarts(rows))], numbers)
+    foreign = setting.elsewhere()
+    stall = _stall(rows).doubted(foreign)
+    jump = _jump(folds, critical, restarts(rows)).doubted(foreign, setting.short_of(points=33))
+    return Findings([stall, jump], numbers)
 
 
 def _mean(values: list[float]) -> float:

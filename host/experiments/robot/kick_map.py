@@ -123,7 +123,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         _whatever_the_phase("R10", "a phase shift of the named sign", named),
     ]
     return Findings(
-        claims,
+        [claim.doubted(setting.elsewhere()) for claim in claims],
         {"kicks": count(rows)[1], "lengths": list(LENGTHS), "phase_bins": PHASE_BINS, "maps": best},
     )
 

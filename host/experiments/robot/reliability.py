@@ -153,6 +153,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             ("phase, other sign", PHASE, False),
         )
     }
+    claims = [claim.doubted(setting.elsewhere()) for claim in claims]
     return Findings(claims, {"lengths": list(LENGTHS), "reversals_of_trials": rates})
 
 

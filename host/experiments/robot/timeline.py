@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from host.client.robot import Robot
 from host.kicking.outcome import kick_and_watch
 from host.kicking.primitives import drive
-from host.kicking.robot_claims import inversions
+from host.kicking.robot_claims import LEAST_TRIALS, inversions
 from host.logs.log import Log
 from host.logs.motion import settling_s
-from host.runs.claims import Claim
+from host.runs.claims import Claim, too_few
 from host.runs.contract import Cell, Findings, Options, Row, Setting
 from host.util.intervals import spread, wilson
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION, WHEELS
@@ -171,7 +171,13 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         for mode in KICKS
     }
     membrane = inversions([row["reversed"] for row in tried if row["mode"] == MEMBRANE])
-    return Findings([membrane, _settling(kicks(rows)), _slips(kicks(rows))], numbers)
+    few = too_few(len(kicks(rows)), LEAST_TRIALS, "kicks that reversed the robot")
+    claims = [
+        membrane,
+        _settling(kicks(rows)).doubted(few),
+        _slips(kicks(rows)).doubted(few),
+    ]
+    return Findings([claim.doubted(setting.elsewhere()) for claim in claims], numbers)
 
 
 def _quantiles(values: list[float]) -> list[float] | None:

@@ -11,6 +11,7 @@ from host.runs.contract import Findings, Row, Setting
 from host.theory.analysis.hopf import estimate, hopf
 from host.theory.model.turning import constant_velocity
 from host.theory.model.wheel import Wheel, wheel_of
+from host.theory.studies.registry import PAPER
 
 # How many reduced maps make a period; mergings are extrapolated from so many cycles before the end
 # of a branch.
@@ -18,6 +19,8 @@ _POWER, _LAST = {"FB": 2, "LLM": 4, "dry": 4}, 25
 NEAR = 0.05
 # Where the paper's portraits find a wheel forth and back, and rolling.
 _SWINGS_K, _ROLLS_K = 1.65, 1.85
+# Far above the onset of locomotion, where the constant-velocity formula is claimed.
+FAR_K = 20.0
 
 
 def of(rows: list[Row], part: str, kind: str, type_: str | None = None) -> list[Row]:
@@ -241,8 +244,10 @@ def findings(rows: list[Row], setting: Setting) -> Findings:
         [_m5(rows, merge, hopfs[0], second, numbers)] if along == "k" and merge and hopfs else []
     )
     if along == "k" and deviations:
-        claims.append(_m6(deviations, turning, numbers, along, wheel))
-    return Findings([*claims, _m9(turning)], numbers)
+        far = setting.short_of(to=FAR_K)
+        claims.append(_m6(deviations, turning, numbers, along, wheel).doubted(far))
+    foreign = setting.elsewhere(**PAPER)
+    return Findings([claim.doubted(foreign) for claim in (*claims, _m9(turning))], numbers)
 
 
 def _dry(rows: list[Row]) -> dict[str, Any] | None:

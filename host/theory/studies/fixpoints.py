@@ -12,6 +12,10 @@ from host.runs.contract import Cell, Findings, Row, Setting
 from host.theory.analysis.fixpoints import fixpoints, growth_by_time_course
 from host.theory.model.symbolic import jacobian_at, jacobian_by_differences
 from host.theory.model.wheel import wheel_of
+from host.theory.studies.registry import PAPER
+
+# The k of the paper's portrait of a wheel that rests.
+PAPER_K = 1.4
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
@@ -80,6 +84,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     stable_pairs = sum(row["stable"] for row in two)
     drive = wheel.a * wheel.k * wheel.tau_s / 2
     ratio = f"{drive / wheel.friction:.2f}" if wheel.friction else "infinite"
+    foreign = setting.elsewhere(**PAPER, k=PAPER_K)
     return Findings(
         [
             Claim(
@@ -93,7 +98,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
                 f"odd n are saddles, even n {'stable' if even[0] else 'unstable'} at a k tau / (2"
                 f" f) = {ratio}; growth rates agree with time courses within"
                 f" {max(row['growth_off_by'] for row in one):.0e}/s",
-            ),
+            ).doubted(foreign),
             Claim(
                 "M2",
                 "two wheels have 16 non-moving states",
@@ -104,7 +109,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
                 stable_pairs == (16 if all(even) else 0),
                 "of 64 pairs of fixpoints; below the Hopf line 16 are stable, above it none: here"
                 f" {'below' if all(even) else 'above'}",
-            ),
+            ).doubted(foreign),
         ],
         numbers,
     )

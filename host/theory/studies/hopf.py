@@ -15,6 +15,7 @@ from host.runs.contract import Cell, Findings, Row, Setting
 from host.theory.analysis.fixpoints import ANGLES
 from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, estimate, hopf, line
 from host.theory.model.wheel import wheel_of
+from host.theory.studies.registry import PAPER
 
 # The line is drawn over time constants from a hundredth to a hundred times the wheel's.
 LINE = 101
@@ -95,4 +96,4 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         f" here; at f tau / I = {LIMIT:g} the ratio is {small['k_estimate'] / small['k_hopf']:.3f};"
         f" cycles are born {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
     )
-    return Findings([claim], numbers)
+    return Findings([claim.doubted(setting.elsewhere(**PAPER))], numbers)

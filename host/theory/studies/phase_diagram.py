@@ -16,6 +16,7 @@ from host.theory.analysis.hopf import critical_k, estimate
 from host.theory.engine.ensemble import FINE, Averages, averages
 from host.theory.model.turning import begun_rolling
 from host.theory.model.wheel import PHI, Array, Wheel, resting, wheel_of
+from host.theory.studies.registry import PAPER
 
 # The paper's inset.
 INSET_K, INSET_TAU = 5.0, 0.5
@@ -218,7 +219,10 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             panel: _hysteresis([row for row in diagram if row["panel"] == panel], of_row)
             for panel in planes(options)
         }
-    return Findings([_claim(numbers, ways(options)[0])], numbers)
+    constants = {name: value for name, value in PAPER.items() if name in options}
+    foreign = setting.elsewhere(**constants, k_to=20.0, tau_to=1.5, start="sweep")
+    coarse = setting.short_of(points=200, transient=100.0, seconds=100.0)
+    return Findings([_claim(numbers, ways(options)[0]).doubted(foreign, coarse)], numbers)
 
 
 def _accuracy(sample: list[Row], options: dict[str, Any]) -> dict[str, Any]:

@@ -13,6 +13,8 @@ TAU = Option("tau", 0.25, 1e-6, 1e3, "time constant of the membrane potentials, 
 K = Option("k", 1.85, 0.0, 1e4, "spring constant of the rods")
 F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel")
 I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel")  # noqa: E741
+# The paper's constants, for which its claims are made.
+PAPER = {option.name: option.default for option in (A, TAU, F, I)}
 
 TABLE = {
     "fixpoints": Entry(

@@ -18,7 +18,6 @@ import pytest
 from host.errors import NotDone, WrongUse
 from host.experiments.bodies import (
     car_route,
-    car_slope,
     train_fault,
     train_kick,
     train_start,
@@ -156,7 +155,6 @@ def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(
     known = reproduce.known()
     monkeypatch.setattr(reproduce, "find_spec", lambda module: library or None)
     monkeypatch.setattr(reproduce, "perform", perform)
-    monkeypatch.setattr(reproduce, "study", perform)
     monkeypatch.setattr(reproduce.report, "write", lambda path, *_: path)
     done = reproduce.reproduce(uri, out=tmp_path)
     assert all(reason in done.skipped[number] for number in ("B1", "B2", "B3"))
@@ -225,96 +223,6 @@ def test_a_reversal_of_some_wheels_is_not_one_of_the_whole_train():
     omega[600:, :2] *= -1
     row = train_wall.told(ran(omega, x=np.linspace(0, 5, 1200)))
     assert (len(row["reversals_s"]), row["whole"]) == (1, 0)
-
-
-def wall_rows(counts, ended=train_wall.STUCK):
-    """Runs with so many reversals, by (preset, drag, bouncy)."""
-    rows = []
-    for train in train_wall.TRAINS:
-        for bouncy in (False, True):
-            own = {
-                **train,
-                "bouncy": bouncy,
-                "number": 0,
-                "whole": counts[train["preset"]],
-                "aside_m": 0.0,
-            }
-            times = [float(time) for time in range(9)]  # not all of them of the whole train
-            rows += [{**own, "controller": True, "reversals_s": times, "ended": train_wall.RUNS}]
-            rows += [{**own, "controller": False, "reversals_s": [], "ended": ended}]
-    return rows
-
-
-@pytest.mark.parametrize(
-    ("paper", "snake", "ended", "holds"),
-    [
-        (5, 5, train_wall.STUCK, True),
-        (9, 4, train_wall.STUCK, False),
-        (4, 9, train_wall.STUCK, False),
-        (9, 9, train_wall.RUNS, False),
-    ],
-)
-def test_b3_wants_five_reversals_of_both_presets_and_none_without_neurons(
-    paper, snake, ended, holds
-):
-    rows = wall_rows({"paper": paper, "snake2019": snake}, ended)
-    (claim,) = train_wall.report(rows, setting("train-wall")).claims
-    assert claim.holds is holds
-    assert claim.measured == min(paper, snake)
-
-
-def start_rows(orders, ways):
-    return [
-        {
-            "preset": name,
-            "number": number,
-            "t_s": t_s,
-            "order": order if t_s else 0.2,
-            "omega_rad_s": 40.0 * way,
-        }
-        for name in ("paper", "snake2019")
-        for number, (order, way) in enumerate(zip(orders, ways, strict=True))
-        for t_s in (0.0, 5.0, 5.5)
-    ]
-
-
-@pytest.mark.parametrize(
-    ("orders", "ways", "holds"),
-    [((1.0, 1.0), (1, -1), True), ((1.0, 0.9), (1, -1), False), ((1.0, 1.0), (1, 1), False)],
-)
-def test_b2_wants_all_trains_ordered_and_both_directions(orders, ways, holds):
-    findings = train_start.report(start_rows(orders, ways), setting("train-start"))
-    assert findings.claims[0].holds is holds
-    assert findings.numbers["paper"]["ordered_s_latest"] == 5.0
-
-
-@pytest.mark.parametrize(
-    ("inside", "flipped", "seconds", "last_s", "holds"),
-    [
-        (True, False, 600.0, 600.0, True),
-        (False, False, 600.0, 600.0, False),
-        (True, True, 600.0, 600.0, False),
-        (True, False, 599.0, 599.0, False),
-        (True, False, 600.0, 300.0, True),
-    ],
-)
-def test_b1_wants_ten_minutes_inside_on_the_wheels(inside, flipped, seconds, last_s, holds):
-    fixed = {
-        "reach_m": 5.0,
-        "lean_rad": 0.3,
-        "reversals": 9,
-        "path_m": 1.0,
-        "travelled": 1.0,
-        "last_s": last_s,
-        "spun": 0.0,
-        "squares": 9,
-    }
-    rows = [
-        {"angle": angle, "number": 0, "inside": inside, "flipped": flipped, **fixed}
-        for angle in car_slope.ANGLES
-    ]
-    (claim,) = car_slope.report(rows, setting("car-slope", seconds=seconds)).claims
-    assert claim.holds is holds
 
 
 def test_a_wave_that_travels_has_its_frequency_its_lag_and_its_amplitudes():

@@ -41,8 +41,8 @@ def branch():
     }
 
 
-def verdict(rows, number):
-    return next(claim for claim in bifurcation.report(rows, SETTING).claims if claim.id == number)
+def verdict(rows, number, setting=SETTING):
+    return next(claim for claim in bifurcation.report(rows, setting).claims if claim.id == number)
 
 
 def test_the_same_k_finds_the_robot_running_on_the_way_down_and_at_rest_on_the_way_up(sweep):
@@ -86,6 +86,10 @@ def test_the_claims_hold(sweep, folds, branch):
     ]
     assert verdict(rows, "R5").holds
     assert verdict(rows, "R6").holds
+    few, weak = Setting(1, {"points": 32}), Setting(1, SETTING.options, battery_v=5.0)
+    assert verdict(rows, "R6", few).holds is None
+    assert verdict(rows, "R5", few).holds
+    assert [claim.holds for claim in bifurcation.report(rows, weak).claims] == [None, None]
 
 
 @pytest.mark.parametrize(
@@ -98,13 +102,13 @@ def test_the_claims_hold(sweep, folds, branch):
 )
 def test_no_jump_no_rest_or_no_hysteresis_is_told(sweep, folds, branch, changed):
     rows = [*sweep, *({**row, **changed} for row in folds), *branch.values()]
-    assert not verdict(rows, "R6").holds
+    assert verdict(rows, "R6").holds is False
 
 
 def test_a_motor_that_moves_too_early_is_told(branch):
     early = {"part": "ramp", "torque": 0.05, "holds": False, "note": "left: moves at 0.050"}
     claim = verdict([*branch.values(), early], "R5")
-    assert not claim.holds
+    assert claim.holds is False
     assert "0.050" in claim.note
 
 

@@ -59,7 +59,7 @@ def round_of(**changes):
 
 
 def started(backward=-2.0):
-    return [("left", 2.0), ("right", backward)]
+    return 5 * [("left", 2.0), ("right", backward)]
 
 
 def verdict(rows, number):
@@ -105,11 +105,31 @@ def test_a_transition_that_failed_or_needed_another_k_is_not_one_by_kicks_alone(
     assert not verdict(round_of(k=4.0), "R7").holds
 
 
-def test_a_transition_that_was_never_tried_is_no_success():
-    rows = [
-        row for row in round_of() if (row.get("begin"), row.get("end")) != ("stopped", "spin-left")
+def test_without_every_transition_the_rest_can_only_disprove():
+    def rows(**changes):
+        return [
+            row
+            for row in round_of(**changes)
+            if (row.get("begin"), row.get("end")) != ("stopped", "spin-left")
+        ]
+
+    assert verdict(rows(), "R7").holds is None
+    assert "19 transitions are too few: it takes 20" in verdict(rows(), "R7").note
+    assert verdict(rows(reached=False), "R7").holds is False
+
+
+def test_a_few_starts_do_not_show_both_directions():
+    rows = [row for row in round_of() if row["kind"] != "start"] + round_of()[-4:]
+    assert verdict(rows, "R1").holds is None
+
+
+@pytest.mark.parametrize("number", ["R1", "R2", "R3", "R4", "R7"])
+def test_another_motor_decides_nothing(number):
+    other = Setting(1, {"trials": 1}, motor="nxt_unroller")
+    (claim,) = [
+        claim for claim in primitives.report(round_of(), other).claims if claim.id == number
     ]
-    assert not verdict(rows, "R7").holds
+    assert claim.holds is None
 
 
 def test_rest_that_coexists_with_locomotion_nowhere_is_a_failure():
@@ -126,4 +146,4 @@ def test_one_direction_alone_or_of_another_speed_is_no_coexistence_of_mirror_ima
         {"kind": "start", "side": side, "hz": hertz, "duty_pct": 85.0, "ripple": 0.0}
         for side, hertz in started(backward)
     ]
-    assert not verdict(rows, "R1").holds
+    assert verdict(rows, "R1").holds is False

@@ -158,7 +158,7 @@ def rows_of(bounced, stuck, **fields):
 
 @pytest.mark.parametrize(
     ("bounced", "stuck", "holds"),
-    [(50, 0, True), (48, 2, True), (47, 3, False), (0, 50, False), (0, 0, False)],
+    [(50, 0, True), (48, 2, True), (47, 3, False), (0, 50, False), (49, 0, None), (0, 0, None)],
 )
 def test_r13_holds_from_95_percent_on(bounced, stuck, holds):
     rows = rows_of(bounced, stuck, k=2.0)
@@ -166,7 +166,14 @@ def test_r13_holds_from_95_percent_on(bounced, stuck, holds):
     assert (claim.id, claim.holds) == ("R13", holds)
     assert json.dumps(claim.as_dict(), allow_nan=False)
     if rows:
-        assert f"{bounced} of 50" in claim.note
+        assert f"{bounced} of {bounced + stuck}" in claim.note
+
+
+def test_r13_is_undecided_for_another_motor():
+    setting = Setting(1, SETTING.options, motor="nxt_unroller")
+    (claim,) = wall.report(rows_of(0, 50, k=2.0), setting).claims
+    assert claim.holds is None
+    assert "made for motor = pybricks (here nxt_unroller)" in claim.note
 
 
 def test_a_bounce_at_which_m_keeps_its_sign_speaks_against_the_claim():

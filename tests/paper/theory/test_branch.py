@@ -12,7 +12,7 @@ from host.theory.studies.registry import TABLE
 
 
 def setting(**options):
-    return Setting(1, checked("study", TABLE, "branch", options))
+    return Setting(1, checked("branch", TABLE["branch"], options))
 
 
 def rows_of(own, parts=None):
@@ -97,7 +97,8 @@ def test_the_claims_hold_and_say_where_the_formula_does_not(found):
     assert claim(found, "M5").holds
     assert "no hysteresis" in claim(found, "M5").note
     assert claim(found, "M9").holds
-    assert not claim(found, "M6").holds  # up to k = 3
+    assert claim(found, "M6").holds is None
+    assert "to = 20 or more (here 3)" in claim(found, "M6").note
     assert claim(found, "M6").measured > 0.2
     assert found.numbers["formula_within_5_percent"] == []
 
@@ -108,9 +109,23 @@ def test_m5_does_not_hold_if_a_branch_does_not_reach_the_merging_or_cycles_are_b
         for row in rows
         if not (row["part"] == "FB" and row["kind"] == "cycle" and row["period"] > 4.0)
     ]
-    assert not claim(branch.report(without, PAPER), "M5").holds
+    assert claim(branch.report(without, PAPER), "M5").holds is False
     unstable = [{**row, "l1": 0.1} if row.get("type") == "hopf" else row for row in rows]
-    assert not claim(branch.report(unstable, PAPER), "M5").holds
+    assert claim(branch.report(unstable, PAPER), "M5").holds is False
+
+
+def test_other_constants_decide_nothing(rows):
+    found = branch.report(rows, setting(tau=0.1))
+    assert [(claim.id, claim.holds) for claim in found.claims] == [
+        ("M5", None),
+        ("M6", None),
+        ("M9", None),
+    ]
+    assert all("made for tau = 0.25 (here 0.1)" in claim.note for claim in found.claims)
+
+
+def test_m6_does_not_hold_if_the_formula_is_off_at_the_end_of_the_whole_branch(rows):
+    assert claim(branch.report(rows, setting()), "M6").holds is False
 
 
 def test_the_branch_with_dry_friction_ends_in_a_fold_below_its_merging(found):

@@ -106,6 +106,22 @@ def test_points_out_of_chaos_do_not_depend_on_the_step(diagram):
     assert found["p90_rad_s"] < 1e-6
 
 
+@pytest.mark.parametrize(
+    ("options", "holds", "words"),
+    [
+        ({}, None, "points = 200 or more (here 10)"),
+        ({"points": 200, "a": 3.0}, None, "a = 4 (here 3)"),
+        ({"points": 200, "start": "up"}, None, "start = sweep (here up)"),
+        ({"points": 200, "transient": 100.0, "seconds": 100.0}, False, "otherwise"),
+    ],
+)
+def test_m7_is_decided_by_a_fine_diagram_of_the_papers_wheel(diagram, options, holds, words):
+    rows, _ = diagram
+    (claim,) = phase_diagram.report(rows, Setting(1, OPTIONS | options)).claims
+    assert (claim.id, claim.holds) == ("M7", holds)
+    assert words in claim.note
+
+
 def test_a_cell_done_twice_is_the_same_bits():
     options = {**OPTIONS, "points": 6, "transient": 5.0, "seconds": 5.0}
     cell = {"panel": "plane", "first": 0, "end": 6}
