@@ -1,0 +1,104 @@
+"""A copy of the checkout, the packages built from it, and an environment that has kickctl from the wheel."""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import venv
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+# What may stand at the top of a checkout without being part of it.
+FOREIGN = (".*", "build", "logs", "results", "*.egg-info")
+
+
+def succeed(*command, cwd, **environment):
+    """Run a command that has to succeed. Returns its standard output."""
+    done = subprocess.run(
+        command,
+        cwd=cwd,
+        env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def build_wheel(source, target):
+    """Build a wheel of a folder with sources, with the setuptools of this environment and no network."""
+    options = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir")
+    succeed(sys.executable, "-m", "pip", "wheel", *options, target, source, cwd=target)
+    (wheel,) = target.glob("*.whl")
+    return wheel
+
+
+@pytest.fixture(scope="session")
+def source(tmp_path_factory):
+    """A copy of the checkout."""
+    folder = tmp_path_factory.mktemp("source") / "kickctl"
+    foreign = shutil.ignore_patterns(*FOREIGN)
+    compiled = shutil.ignore_patterns("__pycache__")
+
+    def ignored(path, names):
+        return (foreign if Path(path) == ROOT else compiled)(path, names)
+
+    shutil.copytree(ROOT, folder, symlinks=True, ignore=ignored)
+    shutil.copytree(ROOT / ".ci", folder / ".ci")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def wheel(source, tmp_path_factory):
+    """The wheel that is built from the checkout."""
+    return build_wheel(source, tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="session")
+def sdist(source, tmp_path_factory):
+    """The source distribution."""
+    target = tmp_path_factory.mktemp("sdist")
+    build = "import setuptools.build_meta as b, sys; b.build_sdist(sys.argv[1])"
+    succeed(sys.executable, "-c", build, target, cwd=source)
+    (archive,) = target.glob("*.tar.gz")
+    return archive
+
+
+@pytest.fixture(scope="session")
+def wheel_of_sdist(sdist, tmp_path_factory):
+    """The wheel that is built from the unpacked source distribution."""
+    folder = tmp_path_factory.mktemp("unpacked")
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder, filter="data")
+    (unpacked,) = folder.iterdir()
+    return build_wheel(unpacked, tmp_path_factory.mktemp("wheel-of-sdist"))
+
+
+@pytest.fixture(scope="session")
+def installed(wheel, tmp_path_factory):
+    """The bin folder of a new environment that has kickctl from the wheel, and others' packages from this one."""
+    folder = tmp_path_factory.mktemp("installed") / "environment"
+    venv.create(folder, symlinks=True, with_pip=False)
+    python = folder / "bin" / "python"
+    pip = (sys.executable, "-m", "pip", "--python", python, "install")
+    succeed(*pip, "--quiet", "--no-deps", "--no-index", wheel, cwd=folder)
+    paths = {"base": str(folder), "platbase": str(folder)}
+    packages = Path(sysconfig.get_path("purelib", vars=paths))
+    # A line of a .pth file leads to modules, but no .pth file there counts: of these packages
+    # kickctl itself, installed to be edited, would be found by its own .pth only.
+    (packages / "others.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
+    return folder / "bin"
+
+
+def files_of(wheel):
+    """The content of a wheel's files, by name."""
+    with zipfile.ZipFile(wheel) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
