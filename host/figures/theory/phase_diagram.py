@@ -1,62 +1,53 @@
-"""std(omega) and |mean(omega)| over (k, tau), with the inset, the phases, the lines between them, and what differs with k swept down."""
+"""std(omega) and |mean(omega)| over (k, tau), with the inset, the phases and their lines.
+
+Where k is swept, the picture shows it swept up; a dotted line shows what differs with k swept down.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 from host.theory.analysis.hopf import critical_k, estimate
+from host.theory.analysis.phases import Phase
 from host.theory.model.wheel import Array, Wheel
-from host.theory.studies.phase_diagram import phases
+from host.theory.studies.phase_diagram_rows import (
+    Panel,
+    PhaseDiagramRow,
+    PointRow,
+    of_panel,
+    points,
+)
 
-_QUANTITIES = (
+Quantity = Literal["omega_std", "omega_mean"]
+_QUANTITIES: tuple[tuple[Quantity, str], ...] = (
     ("omega_std", r"std($\omega$) (rad/s)"),
     ("omega_mean", r"$|\langle\omega\rangle|$ (rad/s)"),
 )
+# The phases that are named in each panel.
+_NAMED: dict[Panel, tuple[Phase, ...]] = {"plane": ("LLM", "C"), "inset": ("S", "FB", "LLM")}
 _DARK: Any = {"frameon": True, "facecolor": "#444444", "labelcolor": "white"}
 _INSET = (0.5, 0.48, 0.47, 0.45)
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[PhaseDiagramRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    diagram = [row for row in rows if row["panel"] != "accuracy"]
-    for row, name in zip(diagram, phases(diagram, findings.numbers["constants"]), strict=True):
-        row["chaotic"], row["phase"] = float(name == "C"), name
+    diagram = points(rows)
     constants = findings.numbers["constants"]
-    wheel, way = (
-        Wheel(a=constants["a"], friction=constants["f"], inertia=constants["I"]),
-        diagram[0]["way"],
-    )
+    wheel = Wheel(a=constants["a"], friction=constants["f"], inertia=constants["I"])
     with styled():
         figure = Figure(**{**SIZE, "figsize": (12.5, 6.4)})
-        for axes, (quantity, label) in zip(
-            figure.subplots(1, 2, sharey=True), _QUANTITIES, strict=True
-        ):
-            inset = axes.inset_axes(_INSET)
-            for own, panel in ((axes, "plane"), (inset, "inset")):
-                shown = [row for row in diagram if row["panel"] == panel]
-                image = _draw(own, [row for row in shown if row["way"] == way], quantity)
-                _draw_lines(own, wheel)
-                if panel == "plane":
-                    figure.colorbar(image, ax=axes, label=label, location="top", shrink=0.8)
-                    _draw_edge_of_chaos(own, [row for row in shown if row["way"] == "down"])
-                if quantity == "omega_std":
-                    _name_phases(
-                        own,
-                        [row for row in shown if row["way"] == way],
-                        ("S", "FB", "LLM") if own is inset else ("LLM", "C"),
-                    )
-            inset.set_title(
-                f"colours to {image.get_clim()[1]:.2g} rad/s", color="white", fontsize=10, pad=3
-            )
-            inset.tick_params(colors="white", labelsize=10)
-            for spine in inset.spines.values():
-                spine.set(color="white", visible=True)
+        panels = figure.subplots(1, 2, sharey=True)
+        for axes, (quantity, label) in zip(panels, _QUANTITIES, strict=True):
+            image = _draw_panel(axes, diagram, "plane", quantity, wheel)
+            figure.colorbar(image, ax=axes, label=label, location="top", shrink=0.8)
+            _draw_edge_of_chaos(axes, of_panel(diagram, "plane", "down"))
+            _draw_inset(axes.inset_axes(_INSET), diagram, quantity, wheel)
             axes.set_xlabel(r"spring constant $k$")
         figure.axes[0].set_ylabel(r"time constant $\tau$ (s)")
         figure.legend(
@@ -69,29 +60,46 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     return figure
 
 
-def _grid(rows: list[Row], name: str) -> tuple[Array, Array, Array]:
-    """(k, tau, |values| (tau, k)) of a panel's rows."""
-    ks, taus = (np.unique([row[axis] for row in rows]) for axis in ("k", "tau"))
+def _draw_panel(
+    axes: Axes, diagram: list[PointRow], panel: Panel, quantity: Quantity, wheel: Wheel
+) -> Any:
+    """A quantity over (k, tau), with the lines and the names of the phases; returns the image."""
+    shown = of_panel(diagram, panel, diagram[0]["way"])
+    ks, taus, values = _grid(shown, quantity)
+    image = axes.imshow(
+        values,
+        origin="lower",
+        extent=(0.0, float(ks[-1] + ks[0]), 0.0, float(taus[-1] + taus[0])),
+        aspect="auto",
+        vmin=0.0,
+        cmap="inferno",
+        interpolation="nearest",
+    )
+    _draw_lines(axes, wheel)
+    if quantity == "omega_std":
+        _name_phases(axes, shown, _NAMED[panel])
+    return image
+
+
+def _draw_inset(inset: Axes, diagram: list[PointRow], quantity: Quantity, wheel: Wheel) -> None:
+    image = _draw_panel(inset, diagram, "inset", quantity, wheel)
+    inset.set_title(
+        f"colours to {image.get_clim()[1]:.2g} rad/s", color="white", fontsize=10, pad=3
+    )
+    inset.tick_params(colors="white", labelsize=10)
+    for spine in inset.spines.values():
+        spine.set(color="white", visible=True)
+
+
+def _grid(rows: list[PointRow], name: Literal[Quantity, "chaotic"]) -> tuple[Array, Array, Array]:
+    """k, (ks,), tau, (taus,), and the absolute values of a column, (taus, ks)."""
+    ks, taus = np.unique([row["k"] for row in rows]), np.unique([row["tau"] for row in rows])
     values = np.full((len(taus), len(ks)), np.nan)
     values[
         np.searchsorted(taus, [row["tau"] for row in rows]),
         np.searchsorted(ks, [row["k"] for row in rows]),
     ] = [abs(row[name]) for row in rows]
     return ks, taus, values
-
-
-def _draw(axes: Axes, rows: list[Row], quantity: str) -> Any:
-    ks, taus, values = _grid(rows, quantity)
-    extent = (0.0, float(ks[-1] + ks[0]), 0.0, float(taus[-1] + taus[0]))
-    return axes.imshow(
-        values,
-        origin="lower",
-        extent=extent,
-        aspect="auto",
-        vmin=0.0,
-        cmap="inferno",
-        interpolation="nearest",
-    )
 
 
 def _draw_lines(axes: Axes, wheel: Wheel) -> None:
@@ -113,7 +121,7 @@ def _draw_lines(axes: Axes, wheel: Wheel) -> None:
     axes.set(xlim=(0.0, k_to), ylim=(0.0, tau_to))
 
 
-def _draw_edge_of_chaos(axes: Axes, rows: list[Row]) -> None:
+def _draw_edge_of_chaos(axes: Axes, rows: list[PointRow]) -> None:
     """Where it is with k swept down, if it was; the picture itself has k swept up."""
     if any(row["chaotic"] for row in rows):
         axes.contour(
@@ -133,7 +141,7 @@ def _draw_edge_of_chaos(axes: Axes, rows: list[Row]) -> None:
         )
 
 
-def _name_phases(axes: Axes, rows: list[Row], names: tuple[str, ...]) -> None:
+def _name_phases(axes: Axes, rows: list[PointRow], names: tuple[Phase, ...]) -> None:
     """Each name in the middle of its phase, below the inset."""
     below = 0.5 * axes.get_ylim()[1]
     for name in names:

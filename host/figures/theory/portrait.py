@@ -1,34 +1,53 @@
 """Portraits in (phi, nu), one for each k.
 
-As the paper's figure of the homoclinic route, from locomotion down to rest.
+Laid out like the paper's figure of the homoclinic route, from locomotion down to rest.
 """
 
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
+from host.theory.analysis.phases import Phase
 from host.theory.model.wheel import Array
+from host.theory.studies.portrait_rows import (
+    LinePart,
+    PointRow,
+    PortraitRow,
+    SummaryRow,
+    points,
+    summaries,
+)
 
-_NAMES = {"S": "rest", "FB": "forth and back", "LLM": "locomotion", "C": "irregular"}
-_MARKERS = {"saddle": ("s", "white"), "stable": ("o", "black"), "unstable": ("o", "white")}
+Marked = Literal["saddle", "stable", "unstable"]
+_NAMES: dict[Phase, str] = {
+    "S": "rest",
+    "FB": "forth and back",
+    "LLM": "locomotion",
+    "C": "irregular",
+}
+_MARKERS: dict[Marked, tuple[str, str]] = {
+    "saddle": ("s", "white"),
+    "stable": ("o", "black"),
+    "unstable": ("o", "white"),
+}
 _STABLE, _UNSTABLE, _CYCLE = COLOURS[4], COLOURS[0], "#c00000"
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    found = [row for row in rows if row["part"] == "found"]
+    found = sorted(summaries(rows), key=lambda row: -row["k"])
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 2.4 + 2.6 * len(found))})
         panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
-        for axes, row in zip(panels, sorted(found, key=lambda row: -float(row["k"])), strict=True):
-            _draw(axes, [point for point in rows if point["k"] == row["k"]], row)
+        for axes, row in zip(panels, found, strict=True):
+            _draw(axes, points(rows, row["k"]), row)
         panels[-1].set_xlabel(r"wheel angle $\varphi$")
         panels[-1].set_xticks(
             np.arange(-4, 5) * pi / 4, [f"{degrees}°" for degrees in range(-180, 181, 45)]
@@ -39,7 +58,16 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, rows: list[Row], found: Row) -> None:
+def _draw(axes: Axes, rows: list[PointRow], found: SummaryRow) -> None:
+    _draw_lines(axes, rows)
+    _draw_fixpoints(axes, rows)
+    most = found["fastest"] / (2 * pi)
+    axes.set(xlim=(-pi, pi), ylim=(-most, most), ylabel=r"$\nu = \omega/2\pi$ (Hz)")
+    axes.set_title(rf"$k$ = {found['k']:g}: {_NAMES[found['kind']]}", fontsize=14)
+
+
+def _draw_lines(axes: Axes, rows: list[PointRow]) -> None:
+    """Manifolds, trajectories and limit cycles."""
     edges = _points(rows, "stable manifold")
     for turns in range(-2, 3):
         for sign in (1.0, -1.0):
@@ -64,14 +92,11 @@ def _draw(axes: Axes, rows: list[Row], found: Row) -> None:
         for sign in (1.0, -1.0):
             _draw_turned(axes, sign * cycle, range(4), color=_CYCLE, linewidth=2.6)
     axes.plot([], [], color=_CYCLE, linewidth=2.6, label="limit cycles")
+
+
+def _draw_fixpoints(axes: Axes, rows: list[PointRow]) -> None:
     for kind, (marker, face) in _MARKERS.items():
-        angles = np.array(
-            [
-                row["phi"]
-                for row in rows
-                if row["part"].startswith(kind) and "manifold" not in row["part"]
-            ]
-        )
+        angles = np.array([row["phi"] for row in rows if _marked(row) == kind])
         angles = np.concatenate([angles, angles - 2 * pi])
         angles = angles[np.abs(angles) < pi + 0.01]
         label = "saddles" if kind == "saddle" else f"{kind} rest"
@@ -87,13 +112,19 @@ def _draw(axes: Axes, rows: list[Row], found: Row) -> None:
                 clip_on=False,
                 zorder=5,
             )
-    most = found["fastest"] / (2 * pi)
-    axes.set(xlim=(-pi, pi), ylim=(-most, most), ylabel=r"$\nu = \omega/2\pi$ (Hz)")
-    axes.set_title(rf"$k$ = {found['k']:g}: {_NAMES[found['kind']]}", fontsize=14)
 
 
-def _points(rows: list[Row], part: str, line: int = 0) -> Array:
-    """(phi, nu) of a line's points, (points, 2)."""
+def _marked(row: PointRow) -> Marked | None:
+    """The kind of fixpoint as it is marked; None for a point of a line."""
+    if row["part"] == "saddle":
+        return "saddle"
+    if row["part"] in ("stable focus", "stable node"):
+        return "stable"
+    return "unstable" if row["part"] in ("unstable focus", "unstable node") else None
+
+
+def _points(rows: list[PointRow], part: LinePart, line: int = 0) -> Array:
+    """(phi in rad, nu in Hz) of a line's points, (points, 2)."""
     own = [
         (row["phi"], row["omega"] / (2 * pi))
         for row in rows
@@ -103,10 +134,8 @@ def _points(rows: list[Row], part: str, line: int = 0) -> Array:
 
 
 def _draw_turned(axes: Axes, points: Array, quarters: Any, **style: Any) -> None:
-    """A line, turned by these quarter turns, with its angle wrapped into one turn."""
+    """A line in copies that are turned by quarter turns; its angle is wrapped into one turn."""
     for quarter in quarters:
         phi = (points[:, 0] + quarter * pi / 2 + pi) % (2 * pi) - pi
-        broken = np.insert(
-            points[:, 1], jumps := np.flatnonzero(np.abs(np.diff(phi)) > pi) + 1, np.nan
-        )
-        axes.plot(np.insert(phi, jumps, np.nan), broken, **style)
+        jumps = np.flatnonzero(np.abs(np.diff(phi)) > pi) + 1
+        axes.plot(np.insert(phi, jumps, np.nan), np.insert(points[:, 1], jumps, np.nan), **style)

@@ -9,7 +9,7 @@ is 0, where g(u) = x_t(u) / u is even and falls with |u|.
 from __future__ import annotations
 
 from math import e, pi
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from host.theory.model.symbolic import jacobian_at
 from host.theory.model.wheel import Array, Wheel, rates, resting
 
 NDComplex = NDArray[np.complex128]
+Kind = Literal["saddle", "stable focus", "stable node", "unstable focus", "unstable node"]
 
 ANGLES = tuple(n * pi / 4 for n in range(8))
 # The time course that is held against the eigenvalues begins so near to the fixpoint, and grows or
@@ -41,16 +42,18 @@ class Fixpoint(NamedTuple):
         return bool(self.eigenvalues.real.max() < 0.0)
 
     @property
-    def kind(self) -> str:
-        """A saddle has one direction in which a disturbance grows without turning.
+    def kind(self) -> Kind:
+        """A saddle, a node or a focus.
 
-        A focus turns about.
+        A disturbance of a saddle grows along one direction; around a focus a disturbance spirals.
         """
-        if self.eigenvalues[0].imag == 0.0 and not self.stable:
+        leading = self.eigenvalues[0]
+        if leading.imag == 0.0 and not self.stable:
             return "saddle"
-        return ("stable " if self.stable else "unstable ") + (
-            "focus" if np.any(self.eigenvalues.imag != 0.0) else "node"
-        )
+        spirals = bool(np.any(self.eigenvalues.imag != 0.0))
+        if self.stable:
+            return "stable focus" if spirals else "stable node"
+        return "unstable focus" if spirals else "unstable node"
 
 
 def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:

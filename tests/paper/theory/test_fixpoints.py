@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from host.errors import WrongUse
 from host.theory.analysis.fixpoints import ANGLES, fixpoint, fixpoints, growth_by_time_course
 from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, critical_k, estimate, hopf
+from host.theory.analysis.trajectories import limit_cycle, phase_of_cycle
 from host.theory.model.symbolic import jacobian_at, jacobian_by_differences
 from host.theory.model.wheel import OMEGA, PHI, Wheel, numpy_rates, rates, resting
-from host.theory.studies.portrait import cycle, kind_of
 from robot.controller import target_position
 
 WHEELS = st.builds(
@@ -124,16 +124,16 @@ def test_a_cycle_just_above_is_as_large_as_the_lyapunov_coefficient_says():
     critical = fixpoint(0.0, near._replace(k=found.k))
     share = abs(critical.eigenvectors[PHI, 0]) / np.linalg.norm(critical.eigenvectors[:, 0])
     predicted = 2 * share * np.sqrt(point.eigenvalues[0].real / (-found.l1 * found.omega))
-    swing = cycle(near)
-    assert kind_of(swing) == "FB"
+    swing = limit_cycle(near)
+    assert phase_of_cycle(swing) == "FB"
     assert np.ptp(swing[:, PHI]) / 2 == pytest.approx(predicted, rel=0.03)
 
 
 def test_slow_neurons_bear_unstable_cycles_so_that_a_wheel_jumps_away():
     below, above = hopf(Wheel(tau_s=1.0)), hopf(Wheel(tau_s=3.0))
     assert below.l1 < 0.0 < above.l1
-    swing = cycle(Wheel(tau_s=3.0, k=1.005 * above.k))
-    assert kind_of(swing) != "FB" or np.ptp(swing[:, PHI]) > 1.0
+    swing = limit_cycle(Wheel(tau_s=3.0, k=1.005 * above.k))
+    assert phase_of_cycle(swing) != "FB" or np.ptp(swing[:, PHI]) > 1.0
 
 
 @pytest.mark.parametrize(("change", "letter"), [({"k": 0.0}, "k = 0"), ({"a": 0.0}, "a = 0")])

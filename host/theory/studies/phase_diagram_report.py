@@ -1,0 +1,137 @@
+"""What the phase diagram shows: shares of the phases, hysteresis, accuracy, and the claim M7."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from host.runs.claims import Claim
+from host.runs.contract import Findings, Setting
+from host.theory.analysis.hopf import critical_k, estimate
+from host.theory.analysis.phases import PHASES, STILL, phase
+from host.theory.model.wheel import Wheel, wheel_of
+from host.theory.studies.phase_diagram_rows import (
+    PANELS,
+    PhaseDiagramRow,
+    PointRow,
+    StepCheckRow,
+    Way,
+    of_panel,
+    points,
+    step_checks,
+)
+from host.theory.studies.registry import PAPER
+
+# Close to the line, decay takes longer than the transient: this share may be on the wrong side.
+MISJUDGED = 0.01
+
+
+def report(rows: list[PhaseDiagramRow], setting: Setting) -> Findings:
+    """M7."""
+    options = setting.options
+    wheel = wheel_of(options)
+    diagram = points(rows)
+    ways: tuple[Way, ...] = ("up", "down") if options["start"] == "sweep" else (options["start"],)
+    numbers: dict[str, Any] = {
+        "constants": {name: options[name] for name in ("a", "f", "I")},
+        "shares": {},
+        "rest_misjudged": {},
+        "accuracy": _accuracy(step_checks(rows), wheel),
+    }
+    for panel in PANELS:
+        for way in ways:
+            own = of_panel(diagram, panel, way)
+            counts = Counter(row["phase"] for row in own)
+            numbers["shares"][f"{panel}, {way}"] = {
+                name: counts[name] / len(own) for name in PHASES
+            }
+            numbers["rest_misjudged"][f"{panel}, {way}"] = _misjudged(own, wheel)
+    if options["start"] == "sweep":
+        numbers["hysteresis"] = {panel: _hysteresis(of_panel(diagram, panel)) for panel in PANELS}
+    constants = {name: value for name, value in PAPER.items() if name in options}
+    foreign = setting.elsewhere(**constants, k_to=20.0, tau_to=1.5, start="sweep")
+    coarse = setting.short_of(points=200, transient=100.0, seconds=100.0)
+    return Findings([_claim(numbers, ways[0]).doubted(foreign, coarse)], numbers)
+
+
+def _misjudged(rows: list[PointRow], wheel: Wheel) -> dict[str, float]:
+    """The share of points at which a wheel rests above the line or moves below it."""
+    by_hopf, by_estimate = 0, 0
+    for row in rows:
+        there = wheel._replace(tau_s=row["tau"])
+        rests = row["phase"] == "S"
+        by_hopf += (row["k"] < critical_k(there)) != rests
+        by_estimate += (row["k"] < estimate(there)) != rests
+    return {
+        "by the Hopf line": by_hopf / len(rows),
+        "by 2 f / (a tau)": by_estimate / len(rows),
+    }
+
+
+def _accuracy(sample: list[StepCheckRow], wheel: Wheel) -> dict[str, Any]:
+    """By how much averages change with finer steps.
+
+    Chaotic wheels are left out: they never repeat.
+    """
+    changes = np.array(
+        [
+            max(row["mean_off_by"], row["std_off_by"])
+            for row in sample
+            if _phase_of(row, wheel) != "C"
+        ]
+    )
+    regular = len(changes) > 0
+    return {
+        "points": len(changes),
+        "median_rad_s": float(np.median(changes)) if regular else None,
+        "p90_rad_s": float(np.quantile(changes, 0.9)) if regular else None,
+        "share_not_reproduced": float(np.mean(changes > STILL)) if regular else None,
+    }
+
+
+def _phase_of(row: StepCheckRow, wheel: Wheel) -> str:
+    k_hopf = critical_k(wheel._replace(tau_s=row["tau"]))
+    return phase(row["omega_mean"], row["omega_std"], row["k"], k_hopf)
+
+
+def _hysteresis(rows: list[PointRow]) -> dict[str, float]:
+    """The share of points that are in one phase with k going up and in another with k going down.
+
+    By the names of the two phases.
+    """
+    phases: dict[tuple[float, float], dict[Way, str]] = {}
+    for row in rows:
+        phases.setdefault((row["tau"], row["k"]), {})[row["way"]] = row["phase"]
+    changes = Counter(
+        f"{found['up']} up, {found['down']} down"
+        for found in phases.values()
+        if found["up"] != found["down"]
+    )
+    return {name: count / len(phases) for name, count in sorted(changes.items())}
+
+
+def _claim(numbers: dict[str, Any], way: Way) -> Claim:
+    shares, misjudged = numbers["shares"], numbers["rest_misjudged"][f"inset, {way}"]
+    expected = {"plane": PHASES, "inset": ("S", "FB", "LLM")}
+    missing = [
+        f"{name} in the {panel}"
+        for panel, names in expected.items()
+        for name in names
+        if not shares[f"{panel}, {way}"][name]
+    ]
+    by_hopf, by_estimate = misjudged["by the Hopf line"], misjudged["by 2 f / (a tau)"]
+    not_found = f"not found: {', '.join(missing)}; " if missing else ""
+    in_plane = ", ".join(f"{share:.1%} {name}" for name, share in shares[f"plane, {way}"].items())
+    return Claim(
+        "M7",
+        "four phases in (k, tau): S, FB, LLM and C; rest ends near k tau = 2 f / a",
+        "std(omega), |mean(omega)|, the inset, the numeric and the analytic line",
+        by_hopf,
+        "of the inset's points rest otherwise than the exact Hopf line says",
+        None,
+        not missing and by_hopf < MISJUDGED,
+        f"{not_found}{by_estimate:.2%} otherwise than k tau = 2 f / a says;"
+        f" of the plane {in_plane}",
+    )

@@ -1,0 +1,89 @@
+"""The cells and rows of the study `phase-diagram`, with the meaning of each column."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal, TypedDict
+
+from host.theory.analysis.phases import Phase
+
+Panel = Literal["plane", "inset"]
+Way = Literal["up", "down", "rest", "roll"]
+PANELS: tuple[Panel, ...] = ("plane", "inset")
+
+
+class BandCell(TypedDict):
+    """A band of a panel.
+
+    panel: the diagram or its inset. first, end: the band holds the time constants number `first` to
+    `end` - 1 of the panel's axis.
+    """
+
+    panel: Panel
+    first: int
+    end: int
+
+
+class AccuracyCell(TypedDict):
+    """A sample of points, each computed with two step sizes."""
+
+    panel: Literal["accuracy"]
+
+
+class Point(TypedDict):
+    """A wheel at one point of the diagram.
+
+    way: the direction of the sweep in k, or the start if k is not swept. tau: time constant, s.
+    k: spring constant. omega_mean, omega_std: mean and standard deviation of omega, rad/s. chaotic:
+    1 in phase C, else 0. phase: S, FB, LLM or C.
+    """
+
+    way: Way
+    tau: float
+    k: float
+    omega_mean: float
+    omega_std: float
+    chaotic: float
+    phase: Phase
+
+
+class StepCheck(TypedDict):
+    """A wheel anywhere in the diagram, from rest.
+
+    tau, k, omega_mean, omega_std: as of a Point. mean_off_by, std_off_by: by how much |omega_mean|
+    and omega_std change with finer steps, rad/s.
+    """
+
+    tau: float
+    k: float
+    omega_mean: float
+    omega_std: float
+    mean_off_by: float
+    std_off_by: float
+
+
+class PointRow(BandCell, Point):
+    """A row of the diagram."""
+
+
+class StepCheckRow(AccuracyCell, StepCheck):
+    """A row of the sample."""
+
+
+PhaseDiagramCell = BandCell | AccuracyCell
+PhaseDiagramRow = PointRow | StepCheckRow
+
+
+def points(rows: Iterable[PhaseDiagramRow]) -> list[PointRow]:
+    """The rows of the diagram and its inset."""
+    return [row for row in rows if row["panel"] != "accuracy"]
+
+
+def step_checks(rows: Iterable[PhaseDiagramRow]) -> list[StepCheckRow]:
+    """The rows of the sample."""
+    return [row for row in rows if row["panel"] == "accuracy"]
+
+
+def of_panel(rows: Iterable[PointRow], panel: Panel, way: Way | None = None) -> list[PointRow]:
+    """The points of a panel, of one way or of all."""
+    return [row for row in rows if row["panel"] == panel and way in (None, row["way"])]
