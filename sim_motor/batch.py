@@ -20,7 +20,7 @@ from robot.loop import SHORTEST_STEP_TICKS
 from robot.params import LONGEST_STEP_TICKS, Params
 from robot.safety import limit_duty
 from sim_motor.brick import lateness_s
-from sim_motor.compiled import assembled, assembled_parallel, compiled, prange
+from sim_motor.compiled import compiled, jit, parallel_jit, prange
 from sim_motor.motor import (
     ANGLE,
     LAST_ANGLE,
@@ -206,7 +206,7 @@ def _kick_numbers(kick: Kick | None) -> KickNumbers:
     return QUENCHED, kick.begin, kick.ticks, kick.pulse, kick.smooth, kick.values[0]
 
 
-@assembled
+@jit
 def _under_kick(
     tick: int,
     x1: float,
@@ -237,7 +237,14 @@ def _under_kick(
     return x1, x2, a, tau_s, k, beta, shift_rad
 
 
-@assembled
+@jit
+def _travel(phis: Array, tick: int) -> float:
+    """How far (rad) a wheel came in the DIRECTION_TICKS ticks up to this one."""
+    travel: float = phis[tick] - phis[tick - DIRECTION_TICKS]
+    return travel
+
+
+@jit
 def _run_wheel(
     phis: Array,
     start: Array,
@@ -291,14 +298,7 @@ def _run_wheel(
             record[tick, 3], record[tick, 4], record[tick, 5] = force, torque, next_duty
 
 
-@assembled
-def _travel(phis: Array, tick: int) -> float:
-    """How far (rad) a wheel came in the DIRECTION_TICKS ticks up to this one."""
-    travel: float = phis[tick] - phis[tick - DIRECTION_TICKS]
-    return travel
-
-
-@assembled_parallel
+@parallel_jit
 def _run_all(
     states: Array,
     potentials: Array,

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_motor.compiled import jit
+from sim_motor.compiled import inlined_jit
 from sim_motor.own_motors import own_motor
 
 Array = NDArray[np.float64]
@@ -202,19 +202,19 @@ def load(name: str = "pybricks") -> Constants:
     )
 
 
-@jit
+@inlined_jit
 def substep_at(time_s: float) -> int:
     """The number of whole substeps up to a time; one that is missing by rounding counts."""
     return floor(time_s * SUBSTEPS_PER_S + 1e-6)
 
 
-@jit
+@inlined_jit
 def substep_from(time_s: float) -> int:
     """The first substep that begins at a time or after it."""
     return -floor(1e-6 - time_s * SUBSTEPS_PER_S)
 
 
-@jit
+@inlined_jit
 def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int:
     """The tacho position in degrees that the kernel reports.
 
@@ -225,7 +225,7 @@ def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int
     return raw // 2 if raw >= 0 else -(-raw // 2)
 
 
-@jit
+@inlined_jit
 def _sense(speed: float, torque: float, static: float) -> float:
     """The sign of the motion that friction opposes.
 
@@ -236,7 +236,7 @@ def _sense(speed: float, torque: float, static: float) -> float:
     return copysign(1.0, torque) if abs(torque) > static else 0.0
 
 
-@jit
+@inlined_jit
 def _leaves(sense: float, speed: float, drive: float, load: float, end: float, c: Array) -> bool:
     """Whether a touching pair parts: its contact, at this end of the play, would have to pull."""
     side = copysign(1.0, end)
@@ -248,7 +248,7 @@ def _leaves(sense: float, speed: float, drive: float, load: float, end: float, c
     return leaves
 
 
-@jit
+@inlined_jit
 def _turn_motor(
     sense: float, speed: float, current: float, volts: float, torque: float, row: Array
 ) -> tuple[float, float, float]:
@@ -268,7 +268,7 @@ def _turn_motor(
     return turned, 0.0, row[12] * current + row[13] * volts
 
 
-@jit
+@inlined_jit
 def _turn_wheel(sense: float, speed: float, acceleration: float) -> tuple[float, float]:
     """(turned angle, speed) of a wheel within the play after a substep.
 
@@ -280,7 +280,7 @@ def _turn_wheel(sense: float, speed: float, acceleration: float) -> tuple[float,
     return (0.5 * SUBSTEP_S * speed * speed / (speed - new_speed) if speed != 0.0 else 0.0), 0.0
 
 
-@jit
+@inlined_jit
 def advance(
     substeps: int,
     duty: int,
@@ -350,7 +350,7 @@ def advance(
     return angle, last_angle, speed, current, gap, wheel_speed
 
 
-@jit
+@inlined_jit
 def advance_in_place(
     state: Array, substeps: int, duty: int, battery_v: float, load: float, tables: Array, c: Array
 ) -> None:

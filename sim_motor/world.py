@@ -22,7 +22,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from sim_motor.compiled import assembled
+from sim_motor.compiled import jit
 from sim_motor.motor import GRAVITY, SUBSTEP_S, WHEEL_SPEED, Array, Constants, advance, data
 
 BodyNumbers = tuple[float, float, float, float, float, float]
@@ -161,7 +161,7 @@ def alone(constants: Constants) -> Constants:
     return constants.with_wheel(data()["robot"]["wheel_inertia"][0])
 
 
-@assembled
+@jit
 def tyre_force(
     stretch: Array, slip: float, side_slip: float, most: float, tyre: TyreNumbers
 ) -> tuple[float, float]:
@@ -183,7 +183,7 @@ def tyre_force(
     return forward, sideways
 
 
-@assembled
+@jit
 def wall_push(place: Array, ahead: float, aside: float, walls: WallNumbers) -> tuple[float, float]:
     """(force along x in N, torque on the body in N m) of both walls at one corner, so far ahead and to the left of the centre (m)."""
     half_distance, stiffness, damping = walls
@@ -199,7 +199,7 @@ def wall_push(place: Array, ahead: float, aside: float, walls: WallNumbers) -> t
     return force, -arm_y * force
 
 
-@assembled
+@jit
 def move_body(
     place: Array,
     forward: tuple[float, float],
@@ -233,7 +233,7 @@ def move_body(
             place[index] += step_s * place[index + 3]
 
 
-@assembled
+@jit
 def _advance(
     substeps: int,
     place: Array,

@@ -16,6 +16,11 @@ settings.register_profile(
 )
 settings.load_profile("house")
 
+# Compiled functions are named by what went into them, so that tests may share them with each other
+# and with everything else.
+CACHES = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
+
 
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robot import kicks
 from robot.controller import actual_positions, step_wheel
-from sim_motor.compiled import assembled, compiled
+from sim_motor.compiled import compiled, jit
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -50,7 +50,7 @@ class Wheels:
         )
 
 
-@assembled
+@jit
 def drive(
     step: int,
     dt_s: float,

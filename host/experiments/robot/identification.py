@@ -22,7 +22,7 @@ from scipy.stats import t as student
 
 from host.errors import NotDone
 from host.util.intervals import CONFIDENCE
-from sim_motor.compiled import assembled
+from sim_motor.compiled import jit
 from sim_motor.motor import (
     ANGLE,
     LAST_ANGLE,
@@ -132,7 +132,7 @@ def middle(reading_rad: Array, polarity: int) -> Array:
     )
 
 
-@assembled
+@jit
 def _follow(
     times: Array, latency_s: float, duties: NDArray[np.int64], volts: float, tables: Array, c: Array
 ) -> Array:

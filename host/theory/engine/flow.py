@@ -19,7 +19,7 @@ from scipy.integrate import DOP853
 from host.theory.engine.ensemble import rate_per_s, too_stiff
 from host.theory.model.symbolic import CONSTANTS, field, function, jacobian
 from host.theory.model.wheel import Array, Wheel, rates
-from sim_motor.compiled import assembled, compiled, retold
+from sim_motor.compiled import compiled, jit, retold
 
 # The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is
 # the step's own.
@@ -49,7 +49,7 @@ def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
 
 
 # Loops over rows and columns instead of slices: these take the compiler ten times as long.
-@assembled
+@jit
 def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: int) -> Array:
     """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns). own_rates.
 
@@ -76,7 +76,7 @@ def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: in
     return path
 
 
-@assembled
+@jit
 def plain(states: Array, constants: Any, out: Array) -> None:
     """Rates of a state alone, (4, 1)."""
     out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(
@@ -107,4 +107,4 @@ def varied(followed: int) -> Any:
         out[2, 5] += direct[2]
         out[3, 5] += direct[3]
 
-    return assembled(own_rates)
+    return jit(own_rates)

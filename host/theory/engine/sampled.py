@@ -25,7 +25,7 @@ from host.theory.model.wheel import PHI, Array, Wheel
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS, Kick, seen_positions
 from robot.params import Params
-from sim_motor.compiled import assembled_parallel, compiled, prange, retold
+from sim_motor.compiled import compiled, parallel_jit, prange, retold
 
 HELD = 4
 # A wheel that needs more ticks has a tick too short for what it is asked.
@@ -143,7 +143,7 @@ _coast: Any = compiled(coast)
 _tick: Any = retold(tick, {**MATHEMATICS, "tanh": _unsaturated}, inlined)
 
 
-@assembled_parallel
+@parallel_jit
 def _run(
     states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int
 ) -> Array:

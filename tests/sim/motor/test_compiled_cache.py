@@ -1,0 +1,168 @@
+"""Compiled functions on disk: the same bits, not another function's, no harm if it fails."""
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import sim_motor.compiled_cache
+from sim_motor.compiled_cache import place
+from tests.sim.motor.compiled_line import build, counts, line
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """The folder of compiled functions: this test's own."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
+    sim_motor.compiled_cache._say_once.cache_clear()
+    yield place()
+    sim_motor.compiled_cache._say_once.cache_clear()
+
+
+def run(script):
+    """What another process prints."""
+    command = [sys.executable, "-c", "from tests.sim.motor.compiled_line import *; " + script]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
+    return done.stdout.strip()
+
+
+def test_a_function_is_compiled_once(folder):
+    first, again = line(3.0), line(3.0)
+    assert (first(2.0), counts(first)) == (6.0, (1, 0))
+    assert (again(2.0), counts(again)) == (6.0, (0, 1))
+    assert len(list(folder.iterdir())) == 2
+
+
+def test_each_kind_of_argument_is_kept_by_itself():
+    line(3)(2.0)
+    again = line(3)
+    assert (again(2), type(again(2))) == (6, int)
+    assert counts(again) == (1, 0)
+    assert again(2.0) == 6.0
+    assert counts(again) == (1, 1)
+
+
+def test_a_change_in_what_went_into_a_function_is_another_function():
+    assert [line(factor)(2.0) for factor in (3.0, 4.0, 3.0, 4.0)] == [6.0, 8.0, 6.0, 8.0]
+
+
+def test_a_change_after_definition_is_neither_kept_nor_missed():
+    source = "def f(x):\n    return factor * x"
+    for _ in range(2):
+        changed, names = build(source, factor=3.0)
+        names["factor"] = 5.0
+        assert changed(2.0) == 10.0
+        assert build(source, factor=3.0)[0](2.0) == 6.0
+
+
+def test_functions_of_the_same_name_loaded_side_by_side_stay_apart():
+    for factor in (3.0, 4.0):
+        run(f"line({factor})(2.0)")
+    script = "f, g = line(4.0), line(3.0); print(f(2.0), g(2.0), counts(f), counts(g))"
+    assert run(script) == "8.0 6.0 (0, 1) (0, 1)"
+
+
+BATCH = """
+import hashlib
+from numba.core import event
+from sim_motor.batch import run
+with event.install_recorder("numba:compile") as recorder:
+    result = run(64, 60, seed=1, record=64)
+print(hashlib.sha256(result.records.tobytes()).hexdigest(), bool(recorder.buffer))
+"""
+
+
+def test_a_warm_start_has_the_same_bits_and_compiles_nothing():
+    cold, compiled = run(BATCH).split()
+    assert compiled == "True"
+    assert run(BATCH).split() == [cold, "False"]
+
+
+def test_processes_that_compile_at_the_same_time_do_not_harm_each_other(folder):
+    values = ("2.0", "2")
+    script = "f = line(3); print(f({}), counts(f))"
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(run, [script.format(value) for value in 2 * values]))
+    assert [one.split()[0] for one in found] == 2 * ["6.0", "6"]
+    assert len(list(folder.iterdir())) == 4
+    assert [run(script.format(value)) for value in values] == [
+        f"{result} (0, 1)" for result in ("6.0", "6")
+    ]
+
+
+def test_a_damaged_file_is_compiled_again(folder):
+    line(3.0)(2.0)
+    for path in folder.iterdir():
+        content = bytearray(path.read_bytes())
+        content[-200] ^= 1
+        path.write_bytes(content)
+    again, warm = line(3.0), line(3.0)
+    assert (again(2.0), counts(again)) == (6.0, (1, 0))
+    assert (warm(2.0), counts(warm)) == (6.0, (0, 1))
+
+
+def test_where_nothing_can_be_kept_it_is_said_once_and_all_works(capsys, tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
+    assert (line(3.0)(2.0), line(4.0)(2.0)) == (6.0, 8.0)
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert "compiled functions cannot be kept" in err
+    assert "Not a directory" in err
+
+
+def test_without_a_home_folder_nothing_is_kept(capsys, tmp_path, monkeypatch):
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name)
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    assert place() is None
+    assert line(3.0)(2.0) == 6.0
+    assert "no home folder" in capsys.readouterr().err
+    assert not (tmp_path / "~").exists()
+
+
+def test_a_full_disk_leaves_nothing_behind(capsys, folder, monkeypatch):
+    def full(source, target):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    assert line(3.0)(2.0) == 6.0
+    assert "No space left on device" in capsys.readouterr().err
+    assert list(folder.iterdir()) == []
+
+
+def test_the_files_that_were_not_used_for_longest_are_removed(folder, monkeypatch):
+    for factor in (3.0, 4.0):
+        line(factor)(2.0)
+    files = list(folder.iterdir())
+    for path in files:
+        os.utime(path, (1, 1))
+    line(3.0)(2.0)
+    used = [path for path in files if path.stat().st_mtime > 1]
+    assert len(used) == 1
+    room = 3.5 * max(path.stat().st_size for path in files)
+    monkeypatch.setattr(sim_motor.compiled_cache, "MOST_BYTES", room)
+    line(5.0)(2.0)
+    assert [path for path in files if path.exists()] == used
+
+
+def test_the_files_of_others_are_left_alone(tmp_path, monkeypatch):
+    other = tmp_path / "numba" / "other" / "file"
+    other.parent.mkdir(parents=True)
+    other.write_text("theirs")
+    monkeypatch.setattr(sim_motor.compiled_cache, "MOST_BYTES", 0)
+    line(3.0)(2.0)
+    assert other.exists()
+
+
+def test_a_function_that_is_given_functions_is_not_kept(folder):
+    apply, _ = build("def f(g, x):\n    return g(x)")
+    assert apply(line(3.0), 2.0) == 6.0
+    again, _ = build("def f(g, x):\n    return g(x)")
+    assert again(line(4.0), 2.0) == 8.0
+    assert len(list(folder.iterdir())) == 4
