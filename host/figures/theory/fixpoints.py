@@ -10,22 +10,28 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 from host.theory.model.wheel import OMEGA, Wheel, numpy_rates, resting
+from host.theory.studies.fixpoints_rows import (
+    FixpointsRow,
+    OneWheelRow,
+    eigenvalues,
+    of_one_wheel,
+)
 
 _KINDS = (("even $n$", 0, COLOURS[0], "o"), ("odd $n$", 1, COLOURS[1], "s"))
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[FixpointsRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    one = [row for row in rows if row["part"] == "one wheel"]
+    one = of_one_wheel(rows)
     with styled():
         figure = Figure(**SIZE)
         left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
         _draw_force(left, one)
         for name, odd, colour, marker in _KINDS:
             row = one[odd]
-            parts = np.array([[row[f"re_{i}"], row[f"im_{i}"]] for i in range(4)])
+            parts = np.array(eigenvalues(row))
             right.plot(
                 *parts.T,
                 marker,
@@ -46,7 +52,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     return figure
 
 
-def _draw_force(axes: Axes, one: list[Row]) -> None:
+def _draw_force(axes: Axes, one: list[OneWheelRow]) -> None:
     """In units of the spring constant, which does not move the zeros."""
     angles = np.linspace(-0.2, 2 * np.pi + 0.2, 1000)
     unit = Wheel(k=1.0, inertia=1.0, friction=0.0)

@@ -1,6 +1,6 @@
 """The Hopf line over tau with the paper's estimate.
 
-Below, its first Lyapunov coefficient and the frequency with which wheels swing.
+Below: the first Lyapunov coefficient, and the frequency with which wheels swing.
 """
 
 from __future__ import annotations
@@ -11,17 +11,18 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
+from host.theory.studies.hopf_rows import HopfRow, line_of, point_of
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[HopfRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    line = [row for row in rows if row["part"] == "line"]
-    point = next(row for row in rows if row["part"] == "point")
-    tau, k, estimate, l1, omega = (
-        np.array([row[name] for row in line])
-        for name in ("tau", "k_hopf", "k_estimate", "l1", "omega_hopf")
-    )
+    line, point = line_of(rows), point_of(rows)
+    tau = np.array([row["tau"] for row in line])
+    k = np.array([row["k_hopf"] for row in line])
+    estimate = np.array([row["k_estimate"] for row in line])
+    l1 = np.array([row["l1"] for row in line])
+    omega = np.array([row["omega_hopf"] for row in line])
     born_stable = l1 < 0.0
     with styled():
         figure = Figure(**SIZE)

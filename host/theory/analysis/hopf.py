@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from host.errors import WrongUse
 from host.theory.analysis.fixpoints import ANGLES, fixpoint
 from host.theory.model.symbolic import STATE, Floats, field, function, jacobian_at
-from host.theory.model.wheel import Array, Wheel
+from host.theory.model.wheel import Wheel
 from robot.controller import target_position
 
 
@@ -149,8 +149,3 @@ def by_eigenvalues(wheel: Wheel) -> float:
         return float(fixpoint(ANGLES[0], wheel._replace(k=factor * k)).eigenvalues[0].real)
 
     return k * float(brentq(growth, 0.5, 2.0, xtol=1e-14, rtol=1e-13))
-
-
-def line(wheel: Wheel, taus_s: Array) -> list[tuple[float, Hopf]]:
-    """(tau, Hopf bifurcation) at each of these time constants."""
-    return [(tau_s, hopf(wheel._replace(tau_s=tau_s))) for tau_s in map(float, taus_s)]

@@ -1,4 +1,4 @@
-"""The fixpoints of one wheel, with their eigenvalues, and the resting states of two."""
+"""The study `fixpoints`: the fixpoints of one wheel, and the resting states of two (M1, M2)."""
 
 from __future__ import annotations
 
@@ -8,62 +8,71 @@ from typing import Any
 import numpy as np
 
 from host.runs.claims import Claim
-from host.runs.contract import Cell, Findings, Row, Setting
-from host.theory.analysis.fixpoints import fixpoints, growth_by_time_course
+from host.runs.contract import Findings, Setting
+from host.theory.analysis.fixpoints import Fixpoint, fixpoints, growth_by_time_course
 from host.theory.model.symbolic import jacobian_at, jacobian_by_differences
-from host.theory.model.wheel import wheel_of
+from host.theory.model.wheel import Wheel, wheel_of
+from host.theory.studies.fixpoints_rows import (
+    FixpointsCell,
+    FixpointsRow,
+    PairOfRests,
+    Rest,
+    eigenvalues,
+    of_one_wheel,
+    of_two_wheels,
+)
 from host.theory.studies.registry import PAPER
 
 # The k of the paper's portrait of a wheel that rests.
 PAPER_K = 1.4
 
 
-def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
-    """One wheel, and two. Raises WrongUse if it can rest anywhere."""
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[FixpointsCell]:
+    """One wheel, and two. Raises WrongUse if a wheel can rest at any angle."""
     fixpoints(wheel_of(options))
     return [{"part": "one wheel"}, {"part": "two wheels"}]
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """The fixpoints of one wheel, or of two that do not feel each other."""
+def simulate(cell: FixpointsCell, setting: Setting) -> list[Rest] | list[PairOfRests]:
+    """The fixpoints of one wheel, or of two that do not act on each other."""
     wheel = wheel_of(setting.options)
     found = fixpoints(wheel)
     if cell["part"] == "two wheels":
-        return [
-            {"phi": left.phi, "right_phi": right.phi, "stable": left.stable and right.stable}
-            for left, right in product(found, found)
-        ]
-    rows = []
-    for n, point in enumerate(found):
-        values = {
-            f"{name}_{i}": part
-            for i, z in enumerate(point.eigenvalues)
-            for name, part in (("re", z.real), ("im", z.imag))
-        }
-        difference = np.abs(
-            jacobian_at(point.state.tolist(), wheel)
-            - jacobian_by_differences(point.state.tolist(), wheel)
-        ).max()
-        course = growth_by_time_course(point, wheel)
-        rows.append(
-            {
-                "n": n,
-                "phi": point.phi,
-                "kind": point.kind,
-                "stable": point.stable,
-                **{name: float(part) for name, part in values.items()},
-                "jacobian_off_by": float(difference),
-                "growth_off_by": float(abs(course - point.eigenvalues[0].real)),
-            }
-        )
-    return rows
+        return [_pair(left, right) for left, right in product(found, found)]
+    return [_rest(n, point, wheel) for n, point in enumerate(found)]
 
 
-def report(rows: list[Row], setting: Setting) -> Findings:
+def _rest(n: int, point: Fixpoint, wheel: Wheel) -> Rest:
+    """The fixpoint number n."""
+    state = point.state.tolist()
+    differences = jacobian_at(state, wheel) - jacobian_by_differences(state, wheel)
+    first, second, third, fourth = (complex(value) for value in point.eigenvalues)
+    growth_per_s = growth_by_time_course(point, wheel)
+    return {
+        "n": n,
+        "phi": point.phi,
+        "kind": point.kind,
+        "stable": point.stable,
+        "re_0": first.real,
+        "im_0": first.imag,
+        "re_1": second.real,
+        "im_1": second.imag,
+        "re_2": third.real,
+        "im_2": third.imag,
+        "re_3": fourth.real,
+        "im_3": fourth.imag,
+        "jacobian_off_by": float(np.abs(differences).max()),
+        "growth_off_by": abs(growth_per_s - first.real),
+    }
+
+
+def _pair(left: Fixpoint, right: Fixpoint) -> PairOfRests:
+    return {"phi": left.phi, "right_phi": right.phi, "stable": left.stable and right.stable}
+
+
+def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     """M1 and M2."""
-    one, two = (
-        [row for row in rows if row["part"] == part] for part in ("one wheel", "two wheels")
-    )
+    one, two = of_one_wheel(rows), of_two_wheels(rows)
     wheel = wheel_of(setting.options)
     numbers = [
         {
@@ -71,7 +80,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             "phi": row["phi"],
             "kind": row["kind"],
             "stable": row["stable"],
-            "eigenvalues": [[row[f"re_{i}"], row[f"im_{i}"]] for i in range(4)],
+            "eigenvalues": eigenvalues(row),
             "accuracy": {
                 "jacobian_against_differences": row["jacobian_off_by"],
                 "growth_against_time_course": row["growth_off_by"],

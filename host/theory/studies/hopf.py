@@ -1,6 +1,6 @@
-"""Where a resting wheel begins to swing.
+"""The study `hopf`: the exact line in (k, tau) above which rest is unstable (M3).
 
-The exact line in (k, tau), and the paper's estimate beside it.
+The paper's estimate stands beside it.
 """
 
 from __future__ import annotations
@@ -11,61 +11,68 @@ from typing import Any
 import numpy as np
 
 from host.runs.claims import Claim
-from host.runs.contract import Cell, Findings, Row, Setting
+from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import ANGLES
-from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, estimate, hopf, line
-from host.theory.model.wheel import wheel_of
+from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, estimate, hopf
+from host.theory.model.wheel import Wheel, wheel_of
+from host.theory.studies.hopf_rows import (
+    Bifurcation,
+    CheckedBifurcation,
+    HopfCell,
+    HopfRow,
+    limit_of,
+    line_of,
+    point_of,
+)
 from host.theory.studies.registry import PAPER
 
-# The line is drawn over time constants from a hundredth to a hundred times the wheel's.
+# Points of the line, whose tau goes from a hundredth to a hundred times the wheel's own.
 LINE = 101
-# f tau / I at which the estimate, meant for f tau much smaller than I, is held against the exact k.
+# The estimate is meant for f tau much smaller than I: here f tau / I is LIMIT.
 LIMIT = 0.01
 
 
-def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
-    """The point, the line through it, and the limit for which the estimate is made.
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[HopfCell]:
+    """The wheel, the line through it, and the limit for which the estimate is made.
 
-    Raises WrongUse as `hopf` does.
+    Raises WrongUse if there is no Hopf bifurcation.
     """
     hopf(wheel_of(options))
     return [{"part": "point"}, {"part": "line"}, {"part": "limit"}]
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """k, frequency and coefficient of the bifurcation; at the point, also by eigenvalues."""
+def simulate(cell: HopfCell, setting: Setting) -> list[Bifurcation] | list[CheckedBifurcation]:
+    """The bifurcations of one part; for the wheel itself also by eigenvalues."""
     wheel = wheel_of(setting.options)
-    parts: dict[str, Any] = {
-        "point": wheel.tau_s,
-        "line": wheel.tau_s * np.geomspace(0.01, 100.0, LINE),
-        "limit": LIMIT * wheel.inertia / wheel.friction,
+    if cell["part"] == "point":
+        return [_checked_bifurcation(wheel)]
+    if cell["part"] == "limit":
+        return [_bifurcation(wheel._replace(tau_s=LIMIT * wheel.inertia / wheel.friction))]
+    taus_s = wheel.tau_s * np.geomspace(0.01, 100.0, LINE)
+    return [_bifurcation(wheel._replace(tau_s=tau_s)) for tau_s in taus_s.tolist()]
+
+
+def _bifurcation(wheel: Wheel) -> Bifurcation:
+    found = hopf(wheel)
+    return {
+        "tau": wheel.tau_s,
+        "k_hopf": found.k,
+        "omega_hopf": found.omega,
+        "l1": found.l1,
+        "k_estimate": estimate(wheel),
     }
-    taus_s = np.atleast_1d(parts[cell["part"]])
-    rows = []
-    for tau_s, found in line(wheel, taus_s):
-        here = wheel._replace(tau_s=tau_s)
-        rows.append(
-            {
-                "tau": tau_s,
-                "k_hopf": found.k,
-                "omega_hopf": found.omega,
-                "l1": found.l1,
-                "k_estimate": estimate(here),
-            }
-        )
-        if cell["part"] == "point":
-            rows[-1]["k_by_eigenvalues"] = by_eigenvalues(here)
-    return rows
 
 
-def report(rows: list[Row], setting: Setting) -> Findings:
+def _checked_bifurcation(wheel: Wheel) -> CheckedBifurcation:
+    return {**_bifurcation(wheel), "k_by_eigenvalues": by_eigenvalues(wheel)}
+
+
+def report(rows: list[HopfRow], setting: Setting) -> Findings:
     """M3."""
-    point = next(row for row in rows if row["part"] == "point")
     wheel = wheel_of(setting.options)
-    through = [row for row in rows if row["part"] == "line"]
+    point, through, small = point_of(rows), line_of(rows), limit_of(rows)
     ratio = point["k_estimate"] / point["k_hopf"]
     slow = wheel.friction * wheel.tau_s / wheel.inertia
-    small = next(row for row in rows if row["part"] == "limit")
     changes = [
         row["tau"] for row, after in pairwise(through) if (row["l1"] < 0) != (after["l1"] < 0)
     ]

@@ -1,0 +1,97 @@
+"""The cells and rows of the study `fixpoints`, with the meaning of each column."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal, TypedDict
+
+from host.theory.analysis.fixpoints import Kind
+
+
+class OneWheelCell(TypedDict):
+    """The fixpoints of one wheel."""
+
+    part: Literal["one wheel"]
+
+
+class TwoWheelsCell(TypedDict):
+    """The pairs of fixpoints of two wheels."""
+
+    part: Literal["two wheels"]
+
+
+class Rest(TypedDict):
+    """A fixpoint of one wheel.
+
+    Attributes:
+        n: number of the fixpoint, from 0 to 7.
+        phi: angle, n pi / 4 (rad).
+        kind: saddle, or stable or unstable node or focus.
+        stable: whether every small disturbance dies out.
+        re_0: real part of the leading eigenvalue (1/s); re_1 to re_3 of the others, in descending
+            order.
+        im_0: imaginary part of the leading eigenvalue (rad/s); im_1 to im_3 of the others.
+        jacobian_off_by: greatest difference between the Jacobian and central differences (SI).
+        growth_off_by: difference between re_0 and the growth in a time course (1/s).
+    """
+
+    n: int
+    phi: float
+    kind: Kind
+    stable: bool
+    re_0: float
+    im_0: float
+    re_1: float
+    im_1: float
+    re_2: float
+    im_2: float
+    re_3: float
+    im_3: float
+    jacobian_off_by: float
+    growth_off_by: float
+
+
+class PairOfRests(TypedDict):
+    """A fixpoint of the left wheel beside one of the right wheel.
+
+    Attributes:
+        phi: angle of the left wheel (rad).
+        right_phi: angle of the right wheel (rad).
+        stable: whether both fixpoints are stable.
+    """
+
+    phi: float
+    right_phi: float
+    stable: bool
+
+
+class OneWheelRow(OneWheelCell, Rest):
+    """A row for one wheel."""
+
+
+class TwoWheelsRow(TwoWheelsCell, PairOfRests):
+    """A row for two wheels."""
+
+
+FixpointsCell = OneWheelCell | TwoWheelsCell
+FixpointsRow = OneWheelRow | TwoWheelsRow
+
+
+def of_one_wheel(rows: Iterable[FixpointsRow]) -> list[OneWheelRow]:
+    """The eight fixpoints of one wheel."""
+    return [row for row in rows if row["part"] == "one wheel"]
+
+
+def of_two_wheels(rows: Iterable[FixpointsRow]) -> list[TwoWheelsRow]:
+    """The pairs of fixpoints of two wheels."""
+    return [row for row in rows if row["part"] == "two wheels"]
+
+
+def eigenvalues(row: Rest) -> list[list[float]]:
+    """The four eigenvalues as (real part in 1/s, imaginary part in rad/s)."""
+    return [
+        [row["re_0"], row["im_0"]],
+        [row["re_1"], row["im_1"]],
+        [row["re_2"], row["im_2"]],
+        [row["re_3"], row["im_3"]],
+    ]
