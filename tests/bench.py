@@ -141,7 +141,7 @@ def bodies() -> None:
     import numpy as np
     from mujoco.rollout import rollout
 
-    from host.bodies.build import Asked, body_of
+    from host.bodies.build import BodyRequest, build_body
 
     full, pushed = (
         mujoco.mjtState.mjSTATE_FULLPHYSICS,
@@ -150,7 +150,7 @@ def bodies() -> None:
     for what, cars in (("car", 1), ("train", 5)):
         for preset in ("paper", "snake2019"):
             own_s, plain_s, steps = [], [], 3000
-            body = body_of(Asked(cars=cars, preset=preset))
+            body = build_body(BodyRequest(cars=cars, preset=preset))
             model, data = body.model, mujoco.MjData(body.model)
             step_s = float(model.opt.timestep)
             body.run(2.0)

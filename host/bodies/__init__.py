@@ -1,4 +1,1 @@
-"""Simulated cars and trains for people.
-
-Built from what was asked for, steered, written to files.
-"""
+"""Simulated cars and trains for people: build, kick and steer them, and write files."""

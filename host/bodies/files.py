@@ -1,6 +1,6 @@
-"""The course of a simulated body on disk.
+"""Write the motion of a simulated body to files with named columns.
 
-MCAP, which Foxglove, Lichtblick and PlotJuggler open, and CSV, both with named columns.
+MCAP, which Foxglove, Lichtblick and PlotJuggler open, and CSV.
 """
 
 from __future__ import annotations
@@ -21,13 +21,22 @@ _UNITS = {"t_s": "s", "_rad": "rad", "_rad_s": "rad/s", "_nm": "N m", "_m": "m"}
 
 
 def unit(column: str) -> str:
-    """The unit of a column, which its name ends with; 1 if it has none."""
-    endings = sorted((ending for ending in _UNITS if column.endswith(ending)), key=len)
-    return _UNITS[endings[-1]] if endings else "1"
+    """The unit at the end of a column's name; '1' if there is none."""
+    endings = [ending for ending in _UNITS if column.endswith(ending)]
+    return _UNITS[max(endings, key=len)] if endings else "1"
 
 
 def write_csv(path: Path, columns: tuple[str, ...], rows: NDArray[np.float64]) -> Path:
-    """A row for each time, with every bit of the numbers."""
+    """Write a line for each time, with every bit of the numbers.
+
+    Args:
+        path: the file.
+        columns: names of the columns.
+        rows: (times, columns).
+
+    Returns:
+        The path.
+    """
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
@@ -38,36 +47,38 @@ def write_csv(path: Path, columns: tuple[str, ...], rows: NDArray[np.float64]) -
 def write_mcap(
     path: Path, columns: tuple[str, ...], rows: NDArray[np.float64], info: dict[str, Any]
 ) -> Path:
-    """A message for each time on the channel /state; the log time is the simulated one. info.
+    """Write a message for each time on the channel /state; log times are simulated times.
 
-    Plain data, kept as metadata.
+    Args:
+        path: the file.
+        columns: names of the columns; the first is the time in s.
+        rows: (times, columns).
+        info: plain data about the run, kept as metadata.
+
+    Returns:
+        The path.
     """
-    properties = {
-        column: {"type": "number", "description": f"[{unit(column)}]"} for column in columns
-    }
     schema = {
         "title": "state",
         "description": "a simulated body",
         "type": "object",
-        "properties": properties,
+        "properties": {
+            column: {"type": "number", "description": f"[{unit(column)}]"} for column in columns
+        },
         "required": list(columns),
     }
+    metadata = {name: json.dumps(value) for name, value in info.items()}
     with path.open("wb") as file:
         writer: Any = Writer(file, compression=CompressionType.LZ4, enable_data_crcs=True)
         writer.start(library=f"kickctl {__version__}")
-        writer.add_metadata("kickctl", {name: json.dumps(value) for name, value in info.items()})
-        identity = writer.register_schema(
+        writer.add_metadata("kickctl", metadata)
+        schema_id = writer.register_schema(
             "kickctl.State", "jsonschema", json.dumps(schema).encode()
         )
-        channel = writer.register_channel(TOPIC, "json", identity)
+        channel = writer.register_channel(TOPIC, "json", schema_id)
         for number, row in enumerate(rows.tolist()):
             time_ns = round(row[0] * 1e9)
-            writer.add_message(
-                channel,
-                time_ns,
-                json.dumps(dict(zip(columns, row, strict=True))).encode(),
-                time_ns,
-                number,
-            )
+            message = json.dumps(dict(zip(columns, row, strict=True))).encode()
+            writer.add_message(channel, time_ns, message, time_ns, number)
         writer.finish()
     return path

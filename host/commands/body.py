@@ -1,23 +1,29 @@
 """kickctl body."""
 
+from __future__ import annotations
+
 import argparse
 import json
+from collections.abc import Callable
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from host.commands._terminal import say, show
 from host.errors import KickctlError
 
-HELP = (
-    "a simulated car, or a train of cars that nobody steers: one rod and one neuron for each wheel,"
-    " in MuJoCo"
-)
+if TYPE_CHECKING:
+    from host.bodies.build import BodyRequest
+    from host.bodies.kicks import ScheduledKick
+    from sim_motor.bodies.body import Body
+
+HELP = "simulate a car, or a train of cars, with one rod and one neuron for each wheel, in MuJoCo"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The body, where it is, and what to make of it."""
     parser.add_argument("body", choices=("car", "train"), help="one car, or a train")
-    parser.add_argument("--cars", type=int, metavar="N", help="how long the train is (default 5)")
+    parser.add_argument("--cars", type=int, metavar="N", help="length of the train (default 5)")
     parser.add_argument(
         "--scene",
         default="flat",
@@ -35,15 +41,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--preset",
         default="paper",
         metavar="NAME",
-        help="paper or snake2019: sizes, masses, drag, controller",
+        help="sizes, masses, drag and controller: paper or snake2019 (default %(default)s)",
     )
     for name, words in (
         ("a", "gain of the neurons"),
         ("k", "spring constant of the rods, N"),
         ("tau", "time constant of the neurons, s"),
-        ("drag", "viscous: of bodies, N s/m (paper), or of wheels, N s/rad (snake2019)"),
-        ("angle", "of the scene's slopes, rad"),
-        ("torque", "a constant torque of every wheel instead of its controller, N m"),
+        ("drag", "viscous drag: of bodies, N s/m (paper), or of wheels, N s/rad (snake2019)"),
+        ("angle", "angle of the scene's slopes, rad"),
+        ("torque", "constant torque of every wheel instead of its controller, N m"),
     ):
         parser.add_argument("--" + name, type=float, metavar="X", help=words)
     parser.add_argument(
@@ -52,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="wheels: all pushed forward (default of a car), or at random angles (of a train)",
     )
     parser.add_argument(
-        "--bouncy", action="store_true", help="walls that throw back, as the authors' did"
+        "--bouncy", action="store_true", help="walls throw back, as in the authors' program"
     )
     parser.add_argument(
         "--kick",
@@ -60,11 +66,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="WORDS",
         help=(
-            'as in "t=5,mode=membrane,wheel=all"; also seconds, shift, param, value ...; may be'
-            " given more than once"
+            'for example "t=5,mode=membrane,wheel=all"; also seconds, shift, param, value ...; may'
+            " be given more than once"
         ),
     )
-    parser.add_argument("--film", type=Path, metavar="FILE", help="a film of it, .mp4 or .gif")
+    parser.add_argument("--film", type=Path, metavar="FILE", help="film it, as .mp4 or .gif")
     parser.add_argument(
         "--live", action="store_true", help="watch it in MuJoCo's viewer, in real time"
     )
@@ -85,50 +91,67 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Simulate, and keep what there is even if it ends early."""
-    from host.bodies.build import CARS_OF_A_TRAIN, Asked, body_of, push_of, spec_of
+    from host.bodies.build import CARS_OF_A_TRAIN, BodyRequest, build_body, build_scene
+    from host.bodies.kicks import parse_kick
     from host.errors import WrongUse
 
     if options.body == "car" and options.cars not in (None, 1):
         raise WrongUse(f"a car is one car, not {options.cars}", "kickctl body train --cars N")
     if not 0.01 <= options.time <= 36000.0:
         raise WrongUse(f"time cannot be {options.time!r}", "give seconds, from 0.01 to 36000")
-    cars = 1 if options.body == "car" else CARS_OF_A_TRAIN if options.cars is None else options.cars
-    numbers = {
-        name: getattr(options, name)
-        for name in ("a", "k", "tau", "drag", "angle", "torque", "bouncy", "start")
-    }
-    seed = 1 if options.seed is None else options.seed
-    asked = Asked(cars=cars, scene=options.scene, preset=options.preset, seed=seed, **numbers)
-    spec = spec_of(asked)
-    body = body_of(asked, spec)
+    cars = options.cars
+    if cars is None:
+        cars = 1 if options.body == "car" else CARS_OF_A_TRAIN
+    request = BodyRequest(
+        cars=cars,
+        scene=options.scene,
+        preset=options.preset,
+        seed=1 if options.seed is None else options.seed,
+        a=options.a,
+        k=options.k,
+        tau=options.tau,
+        drag=options.drag,
+        angle=options.angle,
+        bouncy=options.bouncy,
+        torque=options.torque,
+        start=options.start,
+    )
+    scene = build_scene(request)
+    body = build_body(request, scene)
     if options.model:
-        options.model.write_text(spec.to_xml(), encoding="utf-8")
-    pushes = [push_of(words, body.wheels) for words in options.kick]
-    if any(push.t_s >= options.time for push in pushes):
+        options.model.write_text(scene.to_xml(), encoding="utf-8")
+    kicks = [parse_kick(words, body.wheels) for words in options.kick]
+    if any(kick.t_s >= options.time for kick in kicks):
         raise WrongUse(
             f"a kick comes after the {options.time:g} s that are simulated",
             "kick earlier, or give a longer --time",
         )
-    summary = _run(options, asked._asdict(), body, pushes)
+    summary = _simulate(options, request, body, kicks)
     if options.json:
         show(summary)
     else:
-        _tell(summary)
+        _print_summary(summary)
     return 0
 
 
-def _run(
-    options: argparse.Namespace, asked: dict[str, Any], body: Any, pushes: list[Any]
+def _simulate(
+    options: argparse.Namespace,
+    request: BodyRequest,
+    body: Body,
+    kicks: list[ScheduledKick],
 ) -> dict[str, Any]:
-    """Run it, and write everything, also if it is interrupted or cannot be followed."""
-    from contextlib import ExitStack
-
-    from host.bodies.build import run as let_run
+    """Run it, and write everything, also if it is interrupted or becomes unstable."""
+    from host.bodies.kicks import run_with_kicks
     from host.runs.folder import digest
     from host.util.progress import progress
     from host.util.provenance import commit
 
-    info = {**asked, "kicks": options.kick, "time_s": options.time, "commit": commit()}
+    info = {
+        **request._asdict(),
+        "kicks": options.kick,
+        "time_s": options.time,
+        "commit": commit(),
+    }
     folder = options.out / f"body-{digest(info)}"
     with ExitStack() as stack:
         watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
@@ -143,38 +166,43 @@ def _run(
                 for watcher in watchers:
                     watcher(body.data)
 
-            let_run(body, options.time, pushes, watch)
+            run_with_kicks(body, options.time, kicks, watch)
         except (KickctlError, KeyboardInterrupt):
-            _write(folder, info, body, pushes)
+            _write(folder, info, body, kicks)
             say(f"the first {body.time_s:g} s are kept in {folder}")
             raise
-    return _write(folder, info, body, pushes)
+    return _write(folder, info, body, kicks)
 
 
-def _watchers(options: argparse.Namespace, body: Any) -> list[Any]:
-    """What looks on while it runs."""
-    found: list[Any] = []
+def _watchers(
+    options: argparse.Namespace, body: Body
+) -> list[AbstractContextManager[Callable[[Any], None]]]:
+    """What looks at the body while it runs."""
+    watchers: list[AbstractContextManager[Callable[[Any], None]]] = []
     if options.film:
         from host.films.body import Film
 
-        found.append(Film(options.film, body.model, body.cars))
+        watchers.append(Film(options.film, body.model, body.cars))
     if options.live:
         from host.films.body import live
 
-        found.append(live(body.model, body.data))
-    return found
+        watchers.append(live(body.model, body.data))
+    return watchers
 
 
-def _write(folder: Path, info: dict[str, Any], body: Any, pushes: list[Any]) -> dict[str, Any]:
+def _write(
+    folder: Path, info: dict[str, Any], body: Body, kicks: list[ScheduledKick]
+) -> dict[str, Any]:
+    """Write all files, and return the summary."""
     from host.bodies.files import write_csv, write_mcap
     from host.figures.bodies.body import draw
-    from sim_motor.bodies.measures import summary as summary_of
+    from sim_motor.bodies.measures import summary as summarize
 
-    rows = body.rows
-    summary = {**info, **summary_of(body.columns, rows), "folder": str(folder)}
-    write_csv(folder / "state.csv", body.columns, rows)
-    write_mcap(folder / "state.mcap", body.columns, rows, info)
-    figure = draw(body.columns, rows, summary, [push.t_s for push in pushes])
+    columns, rows = body.columns, body.rows
+    summary = {**info, **summarize(columns, rows), "folder": str(folder)}
+    write_csv(folder / "state.csv", columns, rows)
+    write_mcap(folder / "state.mcap", columns, rows, info)
+    figure = draw(columns, rows, summary, [kick.t_s for kick in kicks])
     for ending in ("png", "svg"):
         figure.savefig(folder / f"body.{ending}")
     (folder / "summary.json").write_text(
@@ -183,7 +211,7 @@ def _write(folder: Path, info: dict[str, Any], body: Any, pushes: list[Any]) -> 
     return summary
 
 
-def _tell(summary: dict[str, Any]) -> None:
+def _print_summary(summary: dict[str, Any]) -> None:
     times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
     print(
         f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter"

@@ -1,100 +1,160 @@
-"""Whether a train with a wheel that is weaker than the others, or dead, or one with wheels of different size, still goes one way."""
+"""Trains with a faulty wheel: does such a train still go one way?
+
+One wheel is weaker than the others, or dead; or the wheels have different sizes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, TypedDict, final
 
 import numpy as np
 
-from host.experiments.bodies.stage import pushed_off, ran
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.simulation import Array, EditScene, build_pushed_train, run_body
+from host.runs.contract import Findings, Options, Setting
 from sim_motor.bodies.presets import preset
 
 if TYPE_CHECKING:
     import mujoco
 
-# Which wheel is weak while its k is varied, and by how much (%); and which is dead, one at a time.
+Part = Literal["weaker", "dead", "sizes"]
+
+# One wheel's k is varied, by this many percent.
 WEAK = "car2_left"
 WEAKER = (0, -10, -20, -30, -40, -50, -60, -70, -80, -90, -100)
+# One of these wheels is dead.
 DEAD = ("car0_left", "car1_left", "car3_left", "car4_left")
-# By how much (%) radii differ, evenly distributed.
+# Radii differ by up to this many percent, evenly distributed.
 SIZES = 5.0
+# Positions are this far apart (s); a train is judged by this last part of its time.
 EVERY_S, LATE = 0.1, 0.5
 
 
+class Fault(TypedDict):
+    """What is wrong with a train.
+
+    part: the kind of fault. wheel: the faulty wheel; None if all radii differ. percent: by how much
+    its k differs, or by how much radii differ at most.
+    """
+
+    part: Part
+    wheel: str | None
+    percent: float
+
+
+class Cell(Fault):
+    """One train.
+
+    number: of its random start, a slight bend, and of its wheels' radii.
+    """
+
+    number: int
+
+
+class Run(TypedDict):
+    """The second half of a run.
+
+    order: mean order parameter. speed_m_s: speed along the path (m/s). turning_rad_s: how fast the
+    train turns, to the left above 0 (rad/s). omega_rad_s: mean |omega| of all wheels (rad/s);
+    own_rad_s: of the faulty wheel, or None.
+    """
+
+    order: float
+    speed_m_s: float
+    turning_rad_s: float
+    omega_rad_s: float
+    own_rad_s: float | None
+
+
+class Position(TypedDict):
+    """Where the train's head is at one time: t_s (s), x_m and y_m (m)."""
+
+    t_s: float
+    x_m: float
+    y_m: float
+
+
+@final
+class RunRow(Cell, Run):
+    """A line of the table about a whole run."""
+
+
+@final
+class PositionRow(Cell, Position):
+    """A line of the table about one moment of a run."""
+
+
+Row = RunRow | PositionRow
+
+
+class FaultNumbers(Fault):
+    """All runs of trains with one fault.
+
+    Means over them, or the value of each; see `Run`. own_of_all: |omega| of the faulty wheel as a
+    part of all wheels'.
+    """
+
+    runs: int
+    order: float
+    lowest_order: float
+    speed_m_s: float
+    turning_rad_s: list[float]
+    own_of_all: float | None
+
+
+class Numbers(TypedDict):
+    """What the experiment found: an entry for each fault."""
+
+    faults: list[FaultNumbers]
+
+
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A train each, that is pushed off.
-
-    Its chance is a slight bend at the start, and its wheels' radii.
-    """
-    numbers = range(options["seeds"])
-    weak = [
-        {"part": "weaker", "wheel": WEAK, "percent": percent, "number": number}
-        for percent in WEAKER
-        for number in numbers
-    ]
-    dead = [
-        {"part": "dead", "wheel": wheel, "percent": -100, "number": number}
-        for wheel in DEAD
-        for number in numbers
-    ]
-    return (
-        weak
-        + dead
-        + [
-            {"part": "sizes", "wheel": None, "percent": SIZES, "number": number}
-            for number in numbers
-        ]
-    )
+    """Each cell is one train, which starts with all wheels pushed forward."""
+    faults: list[Fault] = []
+    faults += [{"part": "weaker", "wheel": WEAK, "percent": percent} for percent in WEAKER]
+    faults += [{"part": "dead", "wheel": wheel, "percent": -100} for wheel in DEAD]
+    faults += [{"part": "sizes", "wheel": None, "percent": SIZES}]
+    return [{**fault, "number": number} for fault in faults for number in range(options["seeds"])]
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """The run's second half in a row.
-
-    Order parameter, speed, turning (left > 0), and omega of the faulty wheel and of all.
-
-    Of each first also its head's way, every EVERY_S.
-    """
+def simulate(cell: Cell, setting: Setting) -> list[Run | Position]:
+    """The run, and for number 0 also the head's positions, every EVERY_S."""
     seconds, own = setting.options["seconds"], preset(setting.options["preset"])
-    seed = setting.seed_of({"number": cell["number"]})  # the same start whatever the fault
+    seed = setting.seed_of({"number": cell["number"]})  # the same start for all faults
     radii = np.ones(10)
     if cell["part"] == "sizes":
         radii += np.random.default_rng(seed).uniform(-SIZES / 100, SIZES / 100, len(radii))
-    body = pushed_off(own, seed=seed, prepare=sized(radii))
+    body = build_pushed_train(own, seed=seed, edit=scale_wheels(radii))
     body.neurons.radius_m[:] *= radii
-    if cell["wheel"] is not None:
-        body.neurons.k[body.wheels.index(cell["wheel"])] *= 1 + cell["percent"] / 100
-    did = ran(body, seconds)
-    late, t = did.last(LATE * seconds), did.moved.t_s
-    heading = np.unwrap(did.head[late, 2])
-    way = np.hypot(*np.diff(did.moved.centre_m[late, :2], axis=0).T).sum()
-    omega = did.moved.omega[late]
-    rows: list[Row] = [
+    faulty = None if cell["wheel"] is None else body.wheels.index(cell["wheel"])
+    if faulty is not None:
+        body.neurons.k[faulty] *= 1 + cell["percent"] / 100
+    run = run_body(body, seconds)
+    late, t = run.last(LATE * seconds), run.course.t_s
+    heading = np.unwrap(run.head[late, 2])
+    path_m = np.hypot(*np.diff(run.course.centre_m[late, :2], axis=0).T).sum()
+    omega, late_s = np.abs(run.course.omega[late]), t[late][-1] - t[late][0]
+    rows: list[Run | Position] = [
         {
-            "order": float(did.order[late].mean()),
-            "speed_m_s": float(way / (t[late][-1] - t[late][0])),
-            "turning_rad_s": float((heading[-1] - heading[0]) / (t[late][-1] - t[late][0])),
-            "omega_rad_s": float(np.abs(omega).mean()),
-            "own_rad_s": (
-                None
-                if cell["wheel"] is None
-                else float(np.abs(omega[:, body.wheels.index(cell["wheel"])]).mean())
-            ),
+            "order": float(run.order[late].mean()),
+            "speed_m_s": float(path_m / late_s),
+            "turning_rad_s": float((heading[-1] - heading[0]) / late_s),
+            "omega_rad_s": float(omega.mean()),
+            "own_rad_s": None if faulty is None else float(omega[:, faulty].mean()),
         }
     ]
     if cell["number"] == 0:
         rows += [
-            {"t_s": float(t[at]), "x_m": float(did.head[at, 0]), "y_m": float(did.head[at, 1])}
-            for at in did.every(EVERY_S)
+            {"t_s": float(t[at]), "x_m": float(run.head[at, 0]), "y_m": float(run.head[at, 1])}
+            for at in run.every(EVERY_S)
         ]
     return rows
 
 
-def sized(factors: Any) -> Callable[[mujoco.MjSpec], None]:
-    """For `prepare`: each wheel's radius, in the order of a Body's wheels, is its preset's times one of these."""
+def scale_wheels(factors: Sequence[float] | Array) -> EditScene:
+    """For `edit`: multiply each wheel's radius by its factor, in the order of a Body's wheels."""
 
-    def prepare(spec: mujoco.MjSpec) -> None:
+    def edit(spec: mujoco.MjSpec) -> None:
         wheels = [
             f"car{car}_{side}_wheel"
             for car in range(len(factors) // 2)
@@ -103,37 +163,48 @@ def sized(factors: Any) -> Callable[[mujoco.MjSpec], None]:
         for name, factor in zip(wheels, factors, strict=True):
             spec.geom(name).size[0] *= factor
 
-    return prepare
+    return edit
+
+
+def whole_runs(rows: list[Row]) -> list[RunRow]:
+    """The rows about whole runs."""
+    return [row for row in rows if "order" in row]
+
+
+def positions(rows: list[Row]) -> list[PositionRow]:
+    """The rows about single moments."""
+    return [row for row in rows if "t_s" in row]
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """Means over the runs of each fault; no claim of the paper."""
-    runs = [row for row in rows if "order" in row]
+    """Means over the runs with each fault; no claim of the paper."""
+    runs = whole_runs(rows)
     kinds = dict.fromkeys((row["part"], row["wheel"], row["percent"]) for row in runs)
-    return Findings(
-        [],
-        {
-            "faults": [
-                _kind([row for row in runs if (row["part"], row["wheel"], row["percent"]) == kind])
-                for kind in kinds
-            ]
-        },
-    )
+    numbers: Numbers = {
+        "faults": [
+            _summarize_fault(
+                {"part": part, "wheel": wheel, "percent": percent},
+                [
+                    row
+                    for row in runs
+                    if (row["part"], row["wheel"], row["percent"]) == (part, wheel, percent)
+                ],
+            )
+            for part, wheel, percent in kinds
+        ]
+    }
+    return Findings([], numbers)
 
 
-def _kind(own: list[Row]) -> dict[str, Any]:
-    def mean(name: str) -> float:
-        return float(np.mean([row[name] for row in own]))
-
-    first = own[0]
+def _summarize_fault(fault: Fault, runs: list[RunRow]) -> FaultNumbers:
+    own = [row["own_rad_s"] for row in runs if row["own_rad_s"] is not None]
+    omega = float(np.mean([row["omega_rad_s"] for row in runs]))
     return {
-        **{name: first[name] for name in ("part", "wheel", "percent")},
-        "runs": len(own),
-        "order": mean("order"),
-        "lowest_order": min(row["order"] for row in own),
-        "speed_m_s": mean("speed_m_s"),
-        "turning_rad_s": [row["turning_rad_s"] for row in own],
-        "own_of_all": (
-            None if first["wheel"] is None else mean("own_rad_s") / max(mean("omega_rad_s"), 1e-9)
-        ),
+        **fault,
+        "runs": len(runs),
+        "order": float(np.mean([row["order"] for row in runs])),
+        "lowest_order": min(row["order"] for row in runs),
+        "speed_m_s": float(np.mean([row["speed_m_s"] for row in runs])),
+        "turning_rad_s": [row["turning_rad_s"] for row in runs],
+        "own_of_all": float(np.mean(own)) / max(omega, 1e-9) if own else None,
     }

@@ -1,16 +1,17 @@
-"""Whether kicks can drive a train that nobody steers to a goal (beyond the paper).
+"""Can kicks drive a train, which nobody steers, to a goal?
 
-Planned ones, beside random ones and none.
+Planned kicks, beside random ones and none. Beyond the paper.
 
-The goal is 3 m from the train's middle, anywhere around it, and reached if the middle comes within
-0.2 m of it, a quarter of the train's length. The train of 2019 is taken: the same kicks turn the
-paper's, which has weaker wheels and springs as stiff, on a circle of 10 m instead of 2 m.
+The goal is 3 m from the train's middle, in any direction. It is reached if the middle comes within
+0.2 m, a quarter of the train's length. The train is that of 2019: the same kicks turn the paper's
+train, which has weaker wheels and equally stiff springs, on a circle of 10 m instead of 2 m.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import TypedDict
 
 import numpy as np
 
@@ -18,52 +19,123 @@ from host.bodies.steering import (
     CHOICES,
     KICK_S,
     LOOK_S,
-    ON,
+    NO_KICK,
     Array,
     Drive,
-    environment,
+    build_environment,
     learn,
     plan,
-    seen_from,
+    relative_to,
 )
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import wilson
 
-# What to do at a pose, after a last choice, to come to a goal.
+# Chooses what to do at a pose, after the last choice, to get to a goal.
 Chooser = Callable[[Array, int, Array], int]
 
 PRESET = "snake2019"
 PLANNED, RANDOM, NONE = "planned kicks", "random kicks", "no kicks"
 WAYS = (PLANNED, RANDOM, NONE)
-# A goal is so far away (m), and reached if it is as near as this (m) within so long (s).
+# How far away a goal is (m), how near counts as there (m), and how long the train may take (s).
 AWAY_M, REACHED_M, LIMIT_S = 3.0, 0.2, 30.0
 # How often a train that plans has tried every choice after every other.
 ROUNDS = 2
 
 
+class Cell(TypedDict):
+    """One train on its way to a goal.
+
+    goal: number of the goal. way: one of WAYS.
+    """
+
+    goal: int
+    way: str
+
+
+class Trip(TypedDict):
+    """What the train did, as seen from its pose at the start.
+
+    goal_m: where the goal is (m ahead, m to the left). reached_s: when the train was there (s), or
+    None. nearest_m: how near it came (m). choices: what it chose, every KICK_S, as in CHOICES.
+    course: (m ahead, m to the left, rad to the left), every LOOK_S. effects: what it learned that a
+    choice does in KICK_S, by last choice and choice, as (m ahead, m to the left, rad to the left);
+    None if it did not plan.
+    """
+
+    goal_m: list[float]
+    reached_s: float | None
+    nearest_m: float
+    choices: list[int]
+    course: list[list[float]]
+    effects: list[list[list[float]]] | None
+
+
+class Row(Cell, Trip):
+    """One line of the table: the cell, and what its train did."""
+
+
+class WayNumbers(TypedDict):
+    """All trains that were kicked in one way.
+
+    goals: how many there were; reached: how many trains came there; interval: of that rate (95 %).
+    median_s: when they came there (s), or None. median_nearest_m: how near all trains came (m).
+    mean_kicks: how often a train was kicked.
+    """
+
+    way: str
+    goals: int
+    reached: int
+    interval: list[float]
+    median_s: float | None
+    median_nearest_m: float
+    mean_kicks: float
+
+
+class Effect(TypedDict):
+    """What a choice does in KICK_S, mean over all trains that learned it.
+
+    after, choice: 'on' (no kick), 'left' or 'right'.
+    """
+
+    after: str
+    choice: str
+    m_ahead_m_left_rad_left: list[float]
+
+
+class Numbers(TypedDict):
+    """What the experiment found, with what it was done with."""
+
+    preset: str
+    away_m: float
+    reached_m: float
+    limit_s: float
+    ways: list[WayNumbers]
+    learned: list[Effect]
+
+
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """Every goal, each way."""
+    """Every goal, in each way."""
     return [{"goal": goal, "way": way} for goal in range(options["goals"]) for way in WAYS]
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """A train on its way to a goal: when it was there, if so; how near it came.
+def simulate(cell: Cell, setting: Setting) -> list[Trip]:
+    """Drive one train to its goal.
 
-    And its course, as seen from where it was asked to go.
-
-    What a train begins with and where its goal is are the same for all ways. One that plans learns
-    on another drive first.
+    The train's start and its goal are the same for all ways. A train that plans learns on another
+    drive first.
     """
     rng = np.random.default_rng(setting.seed_of({"goal": cell["goal"]}))
     bearing = rng.uniform(-np.pi, np.pi)
     goal, seed = AWAY_M * np.array([np.cos(bearing), np.sin(bearing)]), int(rng.integers(2**31))
-    train, effects = environment(PRESET), None
-    choose: Chooser = partial(_at_random, rng) if cell["way"] == RANDOM else _never
+    train, effects = build_environment(PRESET), None
+    choose: Chooser = _choose_nothing
+    if cell["way"] == RANDOM:
+        choose = partial(_choose_by_chance, rng)
     if cell["way"] == PLANNED:
         effects = learn(train, int(rng.integers(2**31)), ROUNDS)
         choose = partial(plan, effects)
     drive = Drive(train, seed)
-    course = go(drive, goal, choose)
+    course = drive_to(drive, goal, choose)
     away = np.hypot(*(course[:, :2] - goal).T)
     there = np.flatnonzero(away <= REACHED_M)
     return [
@@ -78,52 +150,42 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     ]
 
 
-def go(drive: Drive, goal: Array, choose: Chooser) -> Array:
-    """Let a train go to the goal, as seen from where it is, or until LIMIT_S.
+def drive_to(drive: Drive, goal: Array, choose: Chooser) -> Array:
+    """Drive a train until it is at the goal, or until LIMIT_S.
 
-    Returns its course, (times, 3), seen from there.
+    Args:
+        drive: the train on its way.
+        goal: (m ahead, m to the left) of where the train is now.
+        choose: decides what to do next.
+
+    Returns:
+        Its course as seen from where it is now, (times, 3), every LOOK_S.
     """
     origin = drive.poses[-1]
     while True:
-        course = seen_from(origin, drive.poses)
-        if (
-            np.hypot(*(course[:, :2] - goal).T).min() <= REACHED_M
-            or len(drive.choices) * KICK_S >= LIMIT_S
-        ):
+        course = relative_to(origin, drive.poses)
+        reached = np.hypot(*(course[:, :2] - goal).T).min() <= REACHED_M
+        if reached or len(drive.choices) * KICK_S >= LIMIT_S:
             return course
         drive.choose(choose(course[-1], drive.last, goal))
 
 
-def _at_random(rng: np.random.Generator, start: Array, last: int, goal: Array) -> int:
+def _choose_by_chance(rng: np.random.Generator, start: Array, last: int, goal: Array) -> int:
     return int(rng.choice(CHOICES))
 
 
-def _never(start: Array, last: int, goal: Array) -> int:
-    return ON
+def _choose_nothing(start: Array, last: int, goal: Array) -> int:
+    return NO_KICK
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """How often, how soon and with how many kicks each way leads there; no claim of the paper."""
-    ways = []
-    for way in WAYS:
-        own = [row for row in rows if row["way"] == way]
-        times = [row["reached_s"] for row in own if row["reached_s"] is not None]
-        ways.append(
-            {
-                "way": way,
-                "goals": len(own),
-                "reached": len(times),
-                "interval": list(wilson(len(times), len(own))),
-                "median_s": float(np.median(times)) if times else None,
-                "median_nearest_m": float(np.median([row["nearest_m"] for row in own])),
-                "mean_kicks": float(
-                    np.mean([sum(choice != ON for choice in row["choices"]) for row in own])
-                ),
-            }
-        )
+    """How many trains reach the goal in each way, when, and with how many kicks.
+
+    No claim of the paper.
+    """
     effects = np.array([row["effects"] for row in rows if row["effects"] is not None])
     names = ("on", "left", "right")
-    learned = [
+    learned: list[Effect] = [
         {
             "after": names[last],
             "choice": names[choice],
@@ -132,14 +194,26 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         for last in CHOICES
         for choice in CHOICES
     ]
-    return Findings(
-        [],
-        {
-            "preset": PRESET,
-            "away_m": AWAY_M,
-            "reached_m": REACHED_M,
-            "limit_s": LIMIT_S,
-            "ways": ways,
-            "learned": learned,
-        },
-    )
+    numbers: Numbers = {
+        "preset": PRESET,
+        "away_m": AWAY_M,
+        "reached_m": REACHED_M,
+        "limit_s": LIMIT_S,
+        "ways": [_summarize_way(way, [row for row in rows if row["way"] == way]) for way in WAYS],
+        "learned": learned,
+    }
+    return Findings([], numbers)
+
+
+def _summarize_way(way: str, trains: list[Row]) -> WayNumbers:
+    times = [row["reached_s"] for row in trains if row["reached_s"] is not None]
+    kicks = [sum(choice != NO_KICK for choice in row["choices"]) for row in trains]
+    return {
+        "way": way,
+        "goals": len(trains),
+        "reached": len(times),
+        "interval": list(wilson(len(times), len(trains))),
+        "median_s": float(np.median(times)) if times else None,
+        "median_nearest_m": float(np.median([row["nearest_m"] for row in trains])),
+        "mean_kicks": float(np.mean(kicks)),
+    }

@@ -1,19 +1,20 @@
-"""How many of a running train's wheels must be kicked, and for how long, that all of it reverses (beyond the paper).
+"""How many wheels of a running train must be kicked, and for how long, to reverse all of it?
 
-The kicks are the paper's membrane and position inversion, on wheels drawn by chance, at a moment
-drawn by chance. The train weighs much more than its rods can stop within a turn of the wheels: so
-the position inversion is also tried for so long that it brakes the train.
+Beyond the paper. The kicks are its membrane and position inversion, on randomly chosen wheels, at a
+random moment. A train is too heavy to be stopped by its rods within one turn of the wheels; so the
+position inversion is also tried for so long that it brakes the train.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
-from host.experiments.bodies.stage import ORDERED, pushed_off
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.simulation import ORDERED, build_pushed_train
+from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import wilson
 from robot.kicks import MEMBRANE, POSITION, PULSE_BETA, Kick
 from sim_motor.bodies.measures import order
@@ -24,49 +25,106 @@ if TYPE_CHECKING:
 
 WHEELS = (4, 6, 7, 8, 9, 10)
 LENGTHS_S = (0.1, 0.5, 1.0, 1.25, 1.5, 2.0, 2.5, 3.5)
-# A train is let run for so long (s) before the first kick; then for up to a little longer, and
-# after the kick.
+# A train runs for START_S (s) before its first kick, then randomly up to CHANCE_S longer before
+# each kick, and for WATCH_S after it.
 START_S, CHANCE_S, WATCH_S = 5.0, 0.3, 5.0
-# A train whose wheels turn more slowly than the first part of the speed before the kick is stopped;
-# a kick has braked it at the second.
+# Below this part of the speed before the kick, a train is stopped, and a kick has braked it.
 STOPPED, BRAKED = 0.2, 0.25
-REVERSED, STOPS, ON, MIXED = "reversed", "stopped", "goes on", "wheels disagree"
+REVERSED, STOPS, GOES_ON, MIXED = "reversed", "stopped", "goes on", "wheels disagree"
+
+
+class Cell(TypedDict):
+    """All trials of one kick.
+
+    mode: membrane or position. wheels: how many are kicked. seconds: how long; None for the
+    membrane inversion, which acts at once.
+    """
+
+    mode: str
+    wheels: int
+    seconds: float | None
+
+
+class Trial(TypedDict):
+    """One trial.
+
+    trial: its number. before_rad_s, end_rad_s, after_rad_s: mean omega of the wheels (rad/s) before
+    the kick, when it ends, and WATCH_S later. outcome: 'reversed', 'stopped', 'goes on' or 'wheels
+    disagree'.
+    """
+
+    trial: int
+    before_rad_s: float
+    end_rad_s: float
+    after_rad_s: float
+    outcome: str
+
+
+class Row(Cell, Trial):
+    """One line of the table: the kick, and one of its trials."""
+
+
+class KickNumbers(Cell):
+    """All trials of one kick.
+
+    reversed: how many reversed the train; interval: of that rate (95 %). outcomes: how many came to
+    each outcome. end_of_before: median of end_rad_s / before_rad_s.
+    """
+
+    trials: int
+    reversed: int
+    interval: list[float]
+    outcomes: dict[str, int]
+    end_of_before: float
+
+
+class Numbers(TypedDict):
+    """What the experiment found.
+
+    fewest_wheels_that_reversed: of all kicks that ever reversed the train. surest: the kick that
+    reverses it most often. Both are None if no kick reverses it.
+    """
+
+    preset: str
+    kicks: list[KickNumbers]
+    fewest_wheels_that_reversed: int | None
+    surest: KickNumbers | None
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """All trials of a kick on so many wheels."""
-    inversions = [{"mode": MEMBRANE, "wheels": wheels, "seconds": None} for wheels in WHEELS]
-    return inversions + [
+    """Each cell is all trials of one kick."""
+    kicks: list[Cell] = []
+    kicks += [{"mode": MEMBRANE, "wheels": wheels, "seconds": None} for wheels in WHEELS]
+    kicks += [
         {"mode": POSITION, "wheels": wheels, "seconds": seconds}
         for wheels in WHEELS
         for seconds in LENGTHS_S
     ]
+    return kicks
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """A trial each: the wheels' mean omega (rad/s) before the kick, when it ends, and WATCH_S later. What then runs is kicked again."""
+def simulate(cell: Cell, setting: Setting) -> list[Trial]:
+    """Kick a train again and again; a train that no longer runs is replaced by another."""
     rng = np.random.default_rng(setting.seed_of(cell))
-    rows: list[Row] = []
+    trials: list[Trial] = []
     body: Body | None = None
-    for trial in range(setting.options["trials"]):
+    for number in range(setting.options["trials"]):
         if body is None:
-            body = pushed_off(preset(setting.options["preset"]), seed=int(rng.integers(2**31)))
+            own = preset(setting.options["preset"])
+            body = build_pushed_train(own, seed=int(rng.integers(2**31)))
             body.run(START_S)
         body.run(rng.uniform(0.0, CHANCE_S))
         before = body.omega.copy()
-        kicked = [
-            body.wheels[wheel]
-            for wheel in rng.permutation(len(body.wheels))[: cell["wheels"]].tolist()
-        ]
-        body.kick(kick_of(cell, kicked, body))
+        drawn = rng.permutation(len(body.wheels))[: cell["wheels"]].tolist()
+        body.kick(build_kick(cell, [body.wheels[wheel] for wheel in drawn], body))
         body.run(cell["seconds"] or 0.0)
         end = float(body.omega.mean())
         body.run(WATCH_S)
         after = body.omega.copy()
-        outcome = outcome_of(before, after)
-        rows.append(
+        outcome = classify_outcome(before, after)
+        trials.append(
             {
-                "trial": trial,
+                "trial": number,
                 "before_rad_s": float(before.mean()),
                 "end_rad_s": end,
                 "after_rad_s": float(after.mean()),
@@ -75,12 +133,12 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
         )
         if outcome in (STOPS, MIXED):
             body = None
-    return rows
+    return trials
 
 
-def kick_of(cell: Cell, wheels: list[str], body: Body) -> Kick:
-    """The cell's kick on these wheels, now."""
-    if cell["mode"] == MEMBRANE:
+def build_kick(cell: Cell, wheels: list[str], body: Body) -> Kick:
+    """The cell's kick on these wheels of the body, which begins now."""
+    if cell["seconds"] is None:
         return Kick("membrane", MEMBRANE, wheels, 1, begin=body.step)
     ticks = round(cell["seconds"] / body.model.opt.timestep)
     return Kick(
@@ -88,39 +146,48 @@ def kick_of(cell: Cell, wheels: list[str], body: Body) -> Kick:
     )
 
 
-def outcome_of(before: Any, after: Any) -> str:
-    """What became of a train whose wheels turned at omega `before` and then `after`, (wheels,)."""
+def classify_outcome(before: NDArray[np.float64], after: NDArray[np.float64]) -> str:
+    """Say what a kick did, by the wheels' omega before it and well after it, (wheels,)."""
     if np.abs(after).mean() < STOPPED * np.abs(before).mean():
         return STOPS
     if order(after) <= ORDERED:
         return MIXED
-    return ON if np.sign(after.mean()) == np.sign(before.mean()) else REVERSED
+    return GOES_ON if np.sign(after.mean()) == np.sign(before.mean()) else REVERSED
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """By kick: how many trials reversed the train, or ended otherwise; no claim of the paper."""
+    """By kick: how many trials came to each outcome; no claim of the paper."""
     kinds = dict.fromkeys((row["mode"], row["wheels"], row["seconds"]) for row in rows)
     kicks = [
-        _kind(kind, [row for row in rows if (row["mode"], row["wheels"], row["seconds"]) == kind])
-        for kind in kinds
+        _summarize_kick(
+            {"mode": mode, "wheels": wheels, "seconds": seconds},
+            [
+                row
+                for row in rows
+                if (row["mode"], row["wheels"], row["seconds"]) == (mode, wheels, seconds)
+            ],
+        )
+        for mode, wheels, seconds in kinds
     ]
     reversing = [kick["wheels"] for kick in kicks if kick["reversed"]]
-    best = max(kicks, key=lambda kick: kick["reversed"] / kick["trials"])
-    numbers = {
+    surest = max(kicks, key=lambda kick: kick["reversed"] / kick["trials"])
+    numbers: Numbers = {
         "preset": setting.options["preset"],
         "kicks": kicks,
         "fewest_wheels_that_reversed": min(reversing, default=None),
+        "surest": surest if surest["reversed"] else None,
     }
-    return Findings([], {**numbers, "surest": best if best["reversed"] else None})
+    return Findings([], numbers)
 
 
-def _kind(kind: tuple[str, int, float | None], own: list[Row]) -> dict[str, Any]:
-    outcomes = Counter(row["outcome"] for row in own)
+def _summarize_kick(kick: Cell, trials: list[Row]) -> KickNumbers:
+    outcomes = Counter(row["outcome"] for row in trials)
+    speeds = [row["end_rad_s"] / row["before_rad_s"] for row in trials]
     return {
-        **dict(zip(("mode", "wheels", "seconds"), kind, strict=True)),
-        "trials": len(own),
+        **kick,
+        "trials": len(trials),
         "reversed": outcomes[REVERSED],
-        "interval": list(wilson(outcomes[REVERSED], len(own))),
+        "interval": list(wilson(outcomes[REVERSED], len(trials))),
         "outcomes": dict(outcomes),
-        "end_of_before": float(np.median([row["end_rad_s"] / row["before_rad_s"] for row in own])),
+        "end_of_before": float(np.median(speeds)),
     }

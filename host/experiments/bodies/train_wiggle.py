@@ -1,93 +1,227 @@
 """The wiggling of a fast train on a flat floor.
 
-How far each joint yaws, how often, and how much later than the one before it.
+How far does each joint yaw, how often, and how much later than the joint before it?
 
-Beside it what the authors' program of 2019 did. A train that begins quite straight wiggles late,
-and meanwhile gets faster than it can stay; so its highest speed is shown against how much its
+Beside it stands what the authors' program of 2019 did. A train that starts quite straight wiggles
+late, and meanwhile gets faster than it can stay. So its highest speed is shown against how much its
 joints were bent at the start.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Literal, NotRequired, TypedDict, final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from host.experiments.bodies.stage import BENT, pushed_off, ran
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.experiments.bodies.simulation import BENT, Array, build_pushed_train, run_body
+from host.runs.contract import Findings, Options, Setting
 from sim_motor.bodies.presets import preset
 
-Array = NDArray[np.float64]
+JOINTS = 4
+# The authors' engine limits friction by a box. These are its limit along an axis, that of a circle
+# of the same area, the mean of all directions, and the corners. The late speed depends on it.
+FRICTIONS = (0.64, 0.722, 0.815, 0.905)
+BENTS = (0.0, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
+# The last seconds are shown, with angles this far apart (s).
+SHOWN_S, EVERY_S = 1.5, 0.01
+# A joint that yaws less (degrees) does not wiggle.
+STILL_DEG = 0.1
+# The lag of the authors' joints, from one to the next (degrees).
+AUTHORS_LAG_DEG = (-150.0, -110.0)
 
-# What the authors' program of 2019 does in 60 s, by its wheels' drag (N s/rad): standard deviations
-# of the yaw joints (degrees), their frequency (Hz), and of the wheels the highest and the late
-# speed (rad/s). Run for this project; of the drag 0.01 the speed that is exceeded in a tenth of the
-# time only, in place of the highest.
-AUTHORS: dict[float, dict[str, Any]] = {
+
+Part = Literal["wiggle", "friction", "bent"]
+
+
+class AuthorsRun(TypedDict):
+    """What the authors' program did in 60 s.
+
+    std_deg: standard deviation of each yaw joint (degrees). hz: their frequency (Hz). peak_rad_s,
+    late_rad_s: highest and late speed of the wheels (rad/s).
+    """
+
+    std_deg: list[float]
+    hz: float
+    peak_rad_s: float
+    late_rad_s: float
+
+
+class Train(TypedDict):
+    """One kind of train.
+
+    preset: its name. drag: of wheels, N s/rad (snake2019), or of bodies, N s/m (paper).
+    """
+
+    preset: str
+    drag: float
+
+
+class Cell(Train):
+    """One train.
+
+    part: what it is run for. bent: how much its joints are bent at the start (rad, standard
+    deviation). friction: of its tyres, for part 'friction' only; else the preset's.
+    """
+
+    part: Part
+    bent: float
+    friction: NotRequired[float]
+
+
+class Speeds(TypedDict):
+    """The wheels' mean speed (rad/s): its peak, and its mean in the second half of the run."""
+
+    peak_rad_s: float
+    late_rad_s: float
+
+
+class Wiggle(TypedDict):
+    """How one joint wiggles in the second half of the run.
+
+    joint: its number from the head, from 1 on. std_deg: standard deviation of its yaw (degrees).
+    hz: frequency (Hz); None if the train does not wiggle. lag_deg: its phase minus that of the
+    joint before (degrees, below 0 is later); None for the first.
+    """
+
+    joint: int
+    std_deg: float
+    hz: float | None
+    lag_deg: float | None
+
+
+class JointAngle(TypedDict):
+    """One joint at one time: joint (number from 1 on), t_s (s), deg (yaw in degrees)."""
+
+    joint: int
+    t_s: float
+    deg: float
+
+
+@final
+class SpeedsRow(Cell, Speeds):
+    """A line of the table about a train's speeds."""
+
+
+@final
+class WiggleRow(Cell, Wiggle):
+    """A line of the table about the wiggling of one joint."""
+
+
+@final
+class JointAngleRow(Cell, JointAngle):
+    """A line of the table about one joint at one time."""
+
+
+Row = SpeedsRow | WiggleRow | JointAngleRow
+
+
+class TrainNumbers(Train, Speeds):
+    """One train of part 'wiggle'.
+
+    std_deg: of each joint. lag_deg: of each but the first. hz: of the last. authors: what the
+    authors' program did with this drag, or None.
+    """
+
+    std_deg: list[float]
+    lag_deg: list[float | None]
+    hz: float | None
+    authors: AuthorsRun | None
+
+
+class FrictionNumbers(TypedDict):
+    """One train of part 'friction'.
+
+    hz, std_deg: of the last joint.
+    """
+
+    friction: float
+    late_rad_s: float
+    hz: float | None
+    std_deg: float
+
+
+class Numbers(TypedDict):
+    """What the experiment found.
+
+    bent_rad_peak_late_rad_s: for each train of part 'bent', how much it is bent (rad), and its
+    highest and late speed (rad/s).
+    """
+
+    trains: list[TrainNumbers]
+    authors_lag_deg: list[float]
+    bent_rad_peak_late_rad_s: list[list[float]]
+    by_friction: list[FrictionNumbers]
+
+
+# The authors' program of 2019, by its wheels' drag (N s/rad), run for this project. For the drag
+# 0.01, in place of the highest speed, the one that is exceeded in a tenth of the time only.
+AUTHORS: dict[float, AuthorsRun] = {
     0.002: {"std_deg": [6.9, 10.7, 16.3, 19.8], "hz": 3.80, "peak_rad_s": 49.2, "late_rad_s": 34.8},
     0.005: {"std_deg": [4.9, 7.4, 11.9, 15.0], "hz": 3.95, "peak_rad_s": 52.7, "late_rad_s": 38.4},
     0.01: {"std_deg": [4.4, 6.2, 8.9, 11.1], "hz": 4.10, "peak_rad_s": 38.6, "late_rad_s": 30.8},
 }
-# Their joints' lag, from one to the next (degrees).
-AUTHORS_LAG_DEG = (-150.0, -110.0)
-TRAINS: tuple[Cell, ...] = (
-    *({"preset": "snake2019", "drag": drag} for drag in AUTHORS),
+# One train for each drag of the authors', and the paper's.
+TRAINS: tuple[Train, ...] = (
+    {"preset": "snake2019", "drag": 0.002},
+    {"preset": "snake2019", "drag": 0.005},
+    {"preset": "snake2019", "drag": 0.01},
     {"preset": "paper", "drag": 0.1},
 )
-# Between what the authors' engine holds along an axis of its box of friction, the same area as a
-# circle, the mean of all directions, and the box's corners: the late speed depends on it.
-FRICTIONS = (0.64, 0.722, 0.815, 0.905)
-BENTS = (0.0, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
-SHOWN_S, EVERY_S = 1.5, 0.01
-# A joint that yaws less (degrees) does not wiggle.
-STILL_DEG = 0.1
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """Trains that begin a little bent, for the wiggling.
+    """Each cell is one train.
 
-    And one with tyres that hold more and less, and more and less bent.
+    They start a little bent, for the wiggling; then the first of them with tyres of more and less
+    friction, and more and less bent.
     """
-    wiggling: list[Cell] = [{"part": "wiggle", **train, "bent": BENT} for train in TRAINS]
-    held: list[Cell] = [
-        {"part": "friction", **TRAINS[0], "bent": BENT, "friction": friction}
-        for friction in FRICTIONS
-    ]
-    return wiggling + held + [{"part": "bent", **TRAINS[0], "bent": bent} for bent in BENTS]
+    first, found = TRAINS[0], list[Cell]()
+    found += [_cell("wiggle", train, BENT) for train in TRAINS]
+    found += [{**_cell("friction", first, BENT), "friction": friction} for friction in FRICTIONS]
+    found += [_cell("bent", first, bent) for bent in BENTS]
+    return found
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """The wheels' highest and late mean speed (late.
+def _cell(part: Part, train: Train, bent: float) -> Cell:
+    return {"part": part, "preset": train["preset"], "drag": train["drag"], "bent": bent}
 
-    The second half), the wiggling of each joint in it, and the joints in its end.
-    """
-    own = preset(cell["preset"]).with_drag(cell["drag"])
+
+def simulate(cell: Cell, setting: Setting) -> list[Speeds | Wiggle | JointAngle]:
+    """The speeds, the wiggling of each joint, and the joints' angles in the last SHOWN_S."""
+    seconds, own = setting.options["seconds"], preset(cell["preset"]).with_drag(cell["drag"])
     own = own._replace(friction=cell.get("friction", own.friction))
-    did = ran(pushed_off(own, seed=setting.seed, bent=cell["bent"]), setting.options["seconds"])
-    speed, late = np.abs(did.moved.omega.mean(axis=1)), did.last(setting.options["seconds"] / 2)
-    rows: list[Row] = [{"peak_rad_s": float(speed.max()), "late_rad_s": float(speed[late].mean())}]
+    run = run_body(build_pushed_train(own, seed=setting.seed, bent=cell["bent"]), seconds)
+    speed, late = np.abs(run.course.omega.mean(axis=1)), run.last(seconds / 2)
+    rows: list[Speeds | Wiggle | JointAngle] = [
+        {"peak_rad_s": float(speed.max()), "late_rad_s": float(speed[late].mean())}
+    ]
     if cell["part"] == "bent":
         return rows
-    yaws = np.degrees(did.joints[:, : did.joints.shape[1] // 2])
-    t, shown = did.moved.t_s, did.last(SHOWN_S)
-    rows += wiggling(yaws[late], float(t[1] - t[0]))
+    yaws = np.degrees(run.joints[:, : run.joints.shape[1] // 2])
+    t, shown = run.course.t_s, run.last(SHOWN_S)
+    rows += measure_wiggling(yaws[late], float(t[1] - t[0]))
     if cell["part"] == "friction":
         return rows
-    series = [
+    rows += [
         {"joint": joint + 1, "t_s": float(t[at]), "deg": float(yaws[at, joint])}
-        for joint in range(4)
-        for at in did.every(EVERY_S)
+        for joint in range(JOINTS)
+        for at in run.every(EVERY_S)
         if shown[at]
     ]
-    return rows + series
+    return rows
 
 
-def wiggling(yaws: Array, dt_s: float) -> list[Row]:
-    """Of each joint: its standard deviation, its frequency, and its phase less that of the joint before (degrees; below 0 is later).
+def measure_wiggling(yaws: Array, dt_s: float) -> list[Wiggle]:
+    """Measure the wave along the joints.
 
-    yaws: (times, joints), in degrees. The frequency is where the spectrum of the last joint, which
-    swings the most, has its peak.
+    The frequency is the peak of the last joint's spectrum, as that joint swings the most.
+
+    Args:
+        yaws: (times, joints), in degrees.
+        dt_s: time between rows (s).
+
+    Returns:
+        One entry for each joint.
     """
     std = yaws.std(axis=0)
     window = np.hanning(len(yaws))[:, None]
@@ -107,55 +241,61 @@ def wiggling(yaws: Array, dt_s: float) -> list[Row]:
     ]
 
 
+def speeds(rows: list[Row]) -> list[SpeedsRow]:
+    """The rows about speeds."""
+    return [row for row in rows if "peak_rad_s" in row]
+
+
+def wiggles(rows: list[Row]) -> list[WiggleRow]:
+    """The rows about the wiggling of single joints."""
+    return [row for row in rows if "std_deg" in row]
+
+
+def joint_angles(rows: list[Row]) -> list[JointAngleRow]:
+    """The rows about single joints at single times."""
+    return [row for row in rows if "deg" in row]
+
+
 def report(rows: list[Row], setting: Setting) -> Findings:
     """By drag, beside what the authors' program did; no claim of the paper."""
-    trains = []
-    for train in TRAINS:
-        own = [
-            row
-            for row in rows
-            if row["part"] == "wiggle" and all(row[name] == value for name, value in train.items())
-        ]
-        joints, (speeds,) = (
-            [row for row in own if "std_deg" in row],
-            [row for row in own if "peak_rad_s" in row],
-        )
-        theirs = AUTHORS.get(train["drag"]) if train["preset"] == "snake2019" else None
-        trains.append(
-            {
-                **train,
-                "std_deg": [row["std_deg"] for row in joints],
-                "lag_deg": [row["lag_deg"] for row in joints[1:]],
-                "hz": joints[-1]["hz"],
-                "peak_rad_s": speeds["peak_rad_s"],
-                "late_rad_s": speeds["late_rad_s"],
-                "authors": theirs,
-            }
-        )
-    held = []
-    for friction in FRICTIONS:
-        own = [row for row in rows if row.get("friction") == friction]
-        (speeds,), joints = (
-            [row for row in own if "peak_rad_s" in row],
-            [row for row in own if "std_deg" in row],
-        )
-        held.append(
-            {
-                "friction": friction,
-                "late_rad_s": speeds["late_rad_s"],
-                "hz": joints[-1]["hz"],
-                "std_deg": joints[-1]["std_deg"],
-            }
-        )
-    bent = [
-        [row["bent"], row["peak_rad_s"], row["late_rad_s"]] for row in rows if row["part"] == "bent"
-    ]
-    return Findings(
-        [],
-        {
-            "trains": trains,
-            "authors_lag_deg": list(AUTHORS_LAG_DEG),
-            "bent_rad_peak_late_rad_s": bent,
-            "by_friction": held,
-        },
-    )
+    numbers: Numbers = {
+        "trains": [
+            _summarize_train(train, [row for row in rows if row["part"] == "wiggle"])
+            for train in TRAINS
+        ],
+        "authors_lag_deg": list(AUTHORS_LAG_DEG),
+        "bent_rad_peak_late_rad_s": [
+            [row["bent"], row["peak_rad_s"], row["late_rad_s"]]
+            for row in speeds(rows)
+            if row["part"] == "bent"
+        ],
+        "by_friction": [
+            _summarize_friction(friction, [row for row in rows if row.get("friction") == friction])
+            for friction in FRICTIONS
+        ],
+    }
+    return Findings([], numbers)
+
+
+def _summarize_train(train: Train, rows: list[Row]) -> TrainNumbers:
+    rows = [row for row in rows if train.items() <= row.items()]
+    (speed,), joints = speeds(rows), wiggles(rows)
+    return {
+        **train,
+        "std_deg": [row["std_deg"] for row in joints],
+        "lag_deg": [row["lag_deg"] for row in joints[1:]],
+        "hz": joints[-1]["hz"],
+        "peak_rad_s": speed["peak_rad_s"],
+        "late_rad_s": speed["late_rad_s"],
+        "authors": AUTHORS.get(train["drag"]) if train["preset"] == "snake2019" else None,
+    }
+
+
+def _summarize_friction(friction: float, rows: list[Row]) -> FrictionNumbers:
+    (speed,), last = speeds(rows), wiggles(rows)[-1]
+    return {
+        "friction": friction,
+        "late_rad_s": speed["late_rad_s"],
+        "hz": last["hz"],
+        "std_deg": last["std_deg"],
+    }

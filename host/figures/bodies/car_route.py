@@ -1,7 +1,4 @@
-"""The route to locomotion of the car.
-
-What its starts come to over k, and how fast it rolls beside the formula.
-"""
+"""The car's route to locomotion: what its starts come to over k, and how fast it rolls."""
 
 from __future__ import annotations
 
@@ -11,9 +8,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.bodies.car_route import KINDS, KS, NEURONS, car, rolling_rad_s
+from host.experiments.bodies.car_route import (
+    KINDS,
+    KS,
+    NEURONS,
+    Numbers,
+    Route,
+    Row,
+    car_preset,
+    rolling_rad_s,
+)
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 
 _SHADES = dict(zip(KINDS, ("#bbbbbb", COLOURS[4], COLOURS[5], COLOURS[0], COLOURS[1]), strict=True))
 _TICKS = (0.01, 0.03, 0.1, 0.3, 1.0)
@@ -21,41 +27,39 @@ _TICKS = (0.01, 0.03, 0.1, 0.3, 1.0)
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
+    numbers: Numbers = findings.numbers
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 8.0)})
         grid = figure.subplots(2, len(NEURONS), sharey="row", sharex="col")
         for (shares, speeds), (a, tau) in zip(grid.T, NEURONS, strict=True):
-            route = [one for one in findings.numbers["route"] if (one["a"], one["tau"]) == (a, tau)]
+            route = [one for one in numbers["route"] if (one["a"], one["tau"]) == (a, tau)]
             _draw_shares(shares, route)
             shares.set_title(rf"$a$ = {a:g}, $\tau$ = {tau:g} s", fontsize=13)
             _draw_speeds(speeds, route, a, tau)
         grid[0, 0].set_ylabel("starts (%)")
         grid[1, 0].set_ylabel(r"$|\omega|$ of the wheels (rad/s)")
+        handles, labels = grid[0, 0].get_legend_handles_labels()
+        more_handles, more_labels = grid[1, 0].get_legend_handles_labels()
         style: Any = {"loc": "outside lower center", "ncols": 3, "fontsize": 11}
-        handles = [
-            *zip(*grid[0, 0].get_legend_handles_labels(), strict=True),
-            *zip(*grid[1, 0].get_legend_handles_labels(), strict=True),
-        ]
-        figure.legend(*zip(*handles, strict=True), **style)
+        figure.legend([*handles, *more_handles], [*labels, *more_labels], **style)
         figure.suptitle(
             "A car with one rod for each wheel: rest, forth and back, rolling", fontsize=16
         )
     return figure
 
 
-def _draw_shares(axes: Axes, route: list[dict[str, Any]]) -> None:
+def _draw_shares(axes: Axes, route: list[Route]) -> None:
     ks, below = np.array([one["k"] for one in route]), np.zeros(len(route))
+    starts = np.array([sum(one["kinds"].values()) for one in route])
     for kind in KINDS:
-        shares = np.array(
-            [100 * one["kinds"].get(kind, 0) / sum(one["kinds"].values()) for one in route]
-        )
+        shares = 100 * np.array([one["kinds"].get(kind, 0) for one in route]) / starts
         axes.bar(ks, shares, bottom=below, color=_SHADES[kind], label=kind, width=0.26 * ks)
         below += shares
 
 
-def _draw_speeds(axes: Axes, route: list[dict[str, Any]], a: float, tau: float) -> None:
+def _draw_speeds(axes: Axes, route: list[Route], a: float, tau: float) -> None:
     ks = np.geomspace(KS[0], KS[-1], 400)
-    speeds = [rolling_rad_s(car({"a": a, "tau": tau, "k": float(k)})) for k in ks]
+    speeds = [rolling_rad_s(car_preset({"a": a, "tau": tau, "k": float(k)})) for k in ks]
     axes.plot(
         ks,
         [np.nan if speed is None else speed for speed in speeds],

@@ -4,74 +4,70 @@ from __future__ import annotations
 
 from itertools import groupby
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from host.experiments.bodies.simulation import ORDERED
+from host.experiments.bodies.train_start import Numbers, Row
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 
-_WAYS = {1: ("forward", COLOURS[0], "-"), -1: ("backward", COLOURS[1], "--")}
+_FORWARD = ("forward", COLOURS[0], "-")
+_BACKWARD = ("backward", COLOURS[1], "--")
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
+    numbers: dict[str, Numbers] = findings.numbers
     with styled():
         figure = Figure(**SIZE)
-        lines = figure.subplots(len(findings.numbers), 2, sharex="col", squeeze=False)
-        for (order, speed), (name, told) in zip(lines, findings.numbers.items(), strict=True):
-            for _, train in groupby(
-                (row for row in rows if row["preset"] == name), key=lambda row: row["number"]
-            ):
-                own = list(train)
-                word, colour, dashes = _WAYS[1 if own[-1]["omega_rad_s"] >= 0 else -1]
-                t = [row["t_s"] for row in own]
-                order.plot(
-                    t,
-                    [row["order"] for row in own],
-                    color=colour,
-                    linestyle=dashes,
-                    linewidth=1,
-                    alpha=0.7,
-                )
-                speed.plot(
-                    t,
-                    [row["omega_rad_s"] for row in own],
-                    color=colour,
-                    linestyle=dashes,
-                    linewidth=1.2,
-                    label=word,
-                )
-            order.plot(
-                t, _means(rows, name), color="black", linewidth=2.5, label="mean of all trains"
-            )
-            order.axhline(0.9, color="black", linewidth=1, linestyle=":")
-            order.set(ylim=(-0.03, 1.04), ylabel="order parameter")
+        grid = figure.subplots(len(numbers), 2, sharex="col", squeeze=False)
+        for (order, speed), (name, count) in zip(grid, numbers.items(), strict=True):
+            _draw_trains(order, speed, [row for row in rows if row["preset"] == name])
             order.set_title(
-                f"{name}: {told['ordered']} of {told['trains']} above 0.9", loc="left", fontsize=13
+                f"{name}: {count['ordered']} of {count['trains']} above {ORDERED:g}",
+                loc="left",
+                fontsize=13,
             )
-            speed.axhline(0, color="lightgrey", linewidth=1, zorder=0)
-            speed.set_ylabel(r"mean $\omega$ (rad/s)")
             speed.set_title(
-                f"{told['forward']} forward, {told['backward']} backward", loc="left", fontsize=13
+                f"{count['forward']} forward, {count['backward']} backward", loc="left", fontsize=13
             )
-        for axes in lines[-1]:
+        for axes in grid[-1]:
             axes.set_xlabel("time (s)")
             axes.margins(x=0)
-        named = {
+        handles = {
             label: handle
             for axes in figure.axes
             for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
         }
         figure.legend(
-            named.values(), named.keys(), loc="outside lower center", ncols=4, fontsize=12
+            handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=12
         )
         figure.suptitle("A train of five cars starts from random wheel phases", fontsize=16)
     return figure
 
 
-def _means(rows: list[Row], name: str) -> list[float]:
-    """The order parameter's mean over the trains of a preset, by time."""
+def _draw_trains(order: Axes, speed: Axes, rows: list[Row]) -> None:
+    """Draw the order parameter and the speed of all trains of a preset."""
+    for _, train in groupby(rows, key=lambda row: row["number"]):
+        samples = list(train)
+        label, colour, dashes = _FORWARD if samples[-1]["omega_rad_s"] >= 0 else _BACKWARD
+        t_s = [row["t_s"] for row in samples]
+        orders = [row["order"] for row in samples]
+        omegas = [row["omega_rad_s"] for row in samples]
+        order.plot(t_s, orders, color=colour, linestyle=dashes, linewidth=1, alpha=0.7)
+        speed.plot(t_s, omegas, color=colour, linestyle=dashes, linewidth=1.2, label=label)
+    means = _mean_orders(rows)
+    order.plot(*zip(*means, strict=True), color="black", linewidth=2.5, label="mean of all trains")
+    order.axhline(ORDERED, color="black", linewidth=1, linestyle=":")
+    order.set(ylim=(-0.03, 1.04), ylabel="order parameter")
+    speed.axhline(0, color="lightgrey", linewidth=1, zorder=0)
+    speed.set_ylabel(r"mean $\omega$ (rad/s)")
+
+
+def _mean_orders(rows: list[Row]) -> list[tuple[float, float]]:
+    """The order parameter's mean over all trains, as (time in s, mean)."""
     by_time: dict[float, list[float]] = {}
     for row in rows:
-        if row["preset"] == name:
-            by_time.setdefault(row["t_s"], []).append(row["order"])
-    return [sum(orders) / len(orders) for orders in by_time.values()]
+        by_time.setdefault(row["t_s"], []).append(row["order"])
+    return [(t_s, sum(orders) / len(orders)) for t_s, orders in by_time.items()]

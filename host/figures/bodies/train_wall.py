@@ -1,4 +1,7 @@
-"""A train between two walls: its middle's way, dead and bouncy walls, controller and constant torque; and how often it reversed."""
+"""A train between two walls: the way of its middle, and how often it reversed.
+
+With dead and bouncy walls, with its controller and with a constant torque.
+"""
 
 from __future__ import annotations
 
@@ -7,65 +10,62 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.bodies.train_wall import LEAST, TRAINS, name_of
+from host.experiments.bodies.train_wall import (
+    LEAST,
+    TRAINS,
+    KindNumbers,
+    Numbers,
+    Row,
+    Train,
+    moments,
+    name_train,
+)
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Cell, Findings, Row
+from host.runs.contract import Findings
 
 _WALL_M = 4.35
-_LINES: tuple[tuple[str, dict[str, bool], dict[str, Any]], ...] = (
-    ("dead walls", {"controller": True, "bouncy": False}, {"color": COLOURS[0]}),
-    ("bouncy walls", {"controller": True, "bouncy": True}, {"color": COLOURS[1]}),
-    (
-        "constant torque, dead walls",
-        {"controller": False, "bouncy": False},
-        {"color": "black", "linestyle": "--"},
-    ),
+# What is drawn: a name, whether there is a controller, whether walls are bouncy, and a style.
+_LINES: tuple[tuple[str, bool, bool, dict[str, Any]], ...] = (
+    ("dead walls", True, False, {"color": COLOURS[0]}),
+    ("bouncy walls", True, True, {"color": COLOURS[1]}),
+    ("constant torque, dead walls", False, False, {"color": "black", "linestyle": "--"}),
 )
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
+    numbers: Numbers = findings.numbers
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 8.4)})
         grid = figure.subplots(len(TRAINS), 2, width_ratios=(3.2, 1), sharex="col")
         for (way, counts), train in zip(grid, TRAINS, strict=True):
             _draw_way(way, rows, train)
             _draw_counts(
-                counts,
-                [
-                    kind
-                    for kind in findings.numbers["kinds"]
-                    if all(kind[name] == train[name] for name in train)
-                ],
+                counts, [kind for kind in numbers["kinds"] if train.items() <= kind.items()]
             )
         grid[-1][0].set_xlabel("time (s)")
         style: Any = {"loc": "outside lower center", "ncols": len(_LINES), "fontsize": 12}
         figure.suptitle(
-            "A train between two walls 8.7 m apart (grey): first run of each, and all runs'"
-            " reversals",
+            f"A train between two walls {2 * _WALL_M:g} m apart (grey): first run of each, and all"
+            " runs' reversals",
             fontsize=15,
         )
         figure.legend(*grid[0][0].get_legend_handles_labels(), **style)
     return figure
 
 
-def _draw_way(axes: Axes, rows: list[Row], train: Cell) -> None:
+def _draw_way(axes: Axes, rows: list[Row], train: Train) -> None:
     for wall in (-_WALL_M, _WALL_M):
         axes.axhline(wall, color="grey", linewidth=5, alpha=0.5)
-    for name, kind, style in _LINES:
-        fields = {**train, **kind}
-        own = [
-            row
-            for row in rows
-            if "t_s" in row and all(row[field] == value for field, value in fields.items())
-        ]
-        axes.plot([row["t_s"] for row in own], [row["x_m"] for row in own], label=name, **style)
-    axes.set_title(name_of(train), loc="left", fontsize=13)
+    for name, controller, bouncy, style in _LINES:
+        way = moments(rows, {**train, "controller": controller, "bouncy": bouncy})
+        axes.plot([row["t_s"] for row in way], [row["x_m"] for row in way], label=name, **style)
+    axes.set_title(name_train(train), loc="left", fontsize=13)
     axes.set(ylabel="middle, $x$ (m)", ylim=(-5, 5))
     axes.margins(x=0)
 
 
-def _draw_counts(axes: Axes, kinds: list[dict[str, Any]]) -> None:
+def _draw_counts(axes: Axes, kinds: list[KindNumbers]) -> None:
     axes.axhline(LEAST, color="black", linewidth=1, linestyle=":")
     for kind in kinds:
         place, count = int(kind["bouncy"]), len(kind["reversals"])

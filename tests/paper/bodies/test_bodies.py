@@ -24,7 +24,7 @@ from host.experiments.bodies import (
     train_wall,
     train_wiggle,
 )
-from host.experiments.bodies.stage import Ran, pushed_off
+from host.experiments.bodies.simulation import BodyRun, build_pushed_train
 from host.experiments.registry import BODIES, TABLE
 from host.perform import reproduce
 from host.perform.run import perform
@@ -200,7 +200,7 @@ def ran(omega, x=0.0, y=0.0, dt_s=0.005):
     centre = np.stack(
         [np.broadcast_to(x, t.shape), np.broadcast_to(y, t.shape), np.zeros_like(t)], axis=1
     )
-    return Ran(Course(t, omega, centre, np.zeros_like(t)), np.zeros((len(t), 8)), centre, None)
+    return BodyRun(Course(t, omega, centre, np.zeros_like(t)), np.zeros((len(t), 8)), centre, None)
 
 
 def shuttling(reversals, leg=600, wheels=10):
@@ -211,17 +211,19 @@ def shuttling(reversals, leg=600, wheels=10):
 def test_a_train_that_shuttles_is_told_from_one_that_is_stuck():
     omega = shuttling(3)
     away = np.cumsum(omega[:, 0]) * 0.005 * 0.04
-    row = train_wall.told(ran(omega, x=away))
+    row = train_wall.summarize_run(ran(omega, x=away))
     assert row["reversals_s"] == pytest.approx([3.0, 6.0, 9.0], abs=0.01)
     assert (row["whole"], row["ended"]) == (3, train_wall.RUNS)
-    still = train_wall.told(ran(np.full((2400, 10), 40.0), x=3.8))  # its wheels slip at the wall
+    still = train_wall.summarize_run(
+        ran(np.full((2400, 10), 40.0), x=3.8)
+    )  # its wheels slip at the wall
     assert (still["reversals_s"], still["ended"]) == ([], train_wall.STUCK)
 
 
 def test_a_reversal_of_some_wheels_is_not_one_of_the_whole_train():
     omega = shuttling(1)
     omega[600:, :2] *= -1
-    row = train_wall.told(ran(omega, x=np.linspace(0, 5, 1200)))
+    row = train_wall.summarize_run(ran(omega, x=np.linspace(0, 5, 1200)))
     assert (len(row["reversals_s"]), row["whole"]) == (1, 0)
 
 
@@ -234,14 +236,14 @@ def test_a_wave_that_travels_has_its_frequency_its_lag_and_its_amplitudes():
         ],
         axis=1,
     )
-    rows = train_wiggle.wiggling(waves, 0.005)
+    rows = train_wiggle.measure_wiggling(waves, 0.005)
     assert [row["std_deg"] for row in rows] == pytest.approx(
         np.array((5, 10, 15, 20)) / np.sqrt(2), rel=0.01
     )
     assert [row["lag_deg"] for row in rows[1:]] == pytest.approx([-np.degrees(2.2)] * 3, abs=1.0)
     assert rows[0]["lag_deg"] is None
     assert [row["hz"] for row in rows] == pytest.approx([3.8] * 4, abs=0.05)
-    assert train_wiggle.wiggling(0.001 * waves, 0.005)[-1]["hz"] is None
+    assert train_wiggle.measure_wiggling(0.001 * waves, 0.005)[-1]["hz"] is None
 
 
 def turning(*speeds):
@@ -252,7 +254,7 @@ def test_a_cars_motion_has_one_name():
     t = np.arange(1000) * 0.005
     swing = np.stack([5 * np.cos(3 * t), 0 * t], axis=1)
     found = [
-        car_route.kind_of(omega, 0.005)
+        car_route.classify_motion(omega, 0.005)
         for omega in (turning(0, 0), swing, turning(9, -9), turning(9, 8), turning(-9, -8))
     ]
     assert found == [
@@ -273,20 +275,24 @@ def test_the_formula_gives_the_speed_of_the_car_of_2019_and_none_below_its_onset
     ("after", "outcome"),
     [
         (-40.0, train_kick.REVERSED),
-        (40.0, train_kick.ON),
+        (40.0, train_kick.GOES_ON),
         (1.0, train_kick.STOPS),
         (np.array([40.0] * 5 + [-40.0] * 5), train_kick.MIXED),
     ],
 )
 def test_a_kicks_outcome_is_told_by_all_wheels(after, outcome):
-    assert train_kick.outcome_of(np.full(10, 50.0), np.broadcast_to(after, (10,))) == outcome
+    assert train_kick.classify_outcome(np.full(10, 50.0), np.broadcast_to(after, (10,))) == outcome
 
 
 def test_a_kick_takes_the_wheels_it_names_only():
-    body = pushed_off(preset("paper"), seed=1)
+    body = build_pushed_train(preset("paper"), seed=1)
     body.run(0.2)
     before = body.neurons.x1.copy()
-    body.kick(train_kick.kick_of({"mode": "membrane"}, ["car1_left"], body))
+    body.kick(
+        train_kick.build_kick(
+            {"mode": "membrane", "wheels": 1, "seconds": None}, ["car1_left"], body
+        )
+    )
     body.run(0.001)
     signs = np.sign(body.neurons.x1 * before)
     assert signs.tolist() == [1, 1, -1, *[1] * 7]
@@ -294,7 +300,7 @@ def test_a_kick_takes_the_wheels_it_names_only():
 
 def test_a_wheel_is_as_large_and_as_weak_as_the_fault_has_it():
     radii = np.linspace(0.95, 1.05, 10)
-    body = pushed_off(preset("paper"), seed=1, prepare=train_fault.sized(radii))
+    body = build_pushed_train(preset("paper"), seed=1, edit=train_fault.scale_wheels(radii))
     sizes = [body.model.geom(name + "_wheel").size[0] for name in body.wheels]
     assert sizes == pytest.approx(0.03 * radii)
     dead = train_fault.simulate(

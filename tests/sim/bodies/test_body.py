@@ -6,7 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from host.bodies.build import Asked, body_of, preset_of, push_of, run, spec_of
+from host.bodies.build import BodyRequest, build_body, build_scene, choose_preset
+from host.bodies.kicks import parse_kick, run_with_kicks
 from host.errors import NotDone, WrongUse
 from robot.kicks import MEMBRANE, PHASE, WHEELS, Kick, parse
 from robot.params import Params
@@ -36,7 +37,7 @@ def column(body, ending):
 
 @pytest.fixture(scope="module")
 def train():
-    body = body_of(Asked(cars=5, scene="walls", seed=3))
+    body = build_body(BodyRequest(cars=5, scene="walls", seed=3))
     body.run(15.0)
     return body
 
@@ -91,7 +92,7 @@ def test_at_rest_a_train_stands_on_its_wheels_and_weighs_what_the_preset_says():
 
 
 def test_shorter_steps_move_reversals_by_less_than_a_fifth_of_a_second(train):
-    own = preset_of(Asked(cars=5))
+    own = choose_preset(BodyRequest(cars=5))
     finer = Body(compose(own, "walls", 5, timestep=0.0005).compile(), own, seed=3)
     finer.run(15.0)
     plain, halved = (reversals_s(course(body.columns, body.rows)) for body in (train, finer))
@@ -100,7 +101,7 @@ def test_shorter_steps_move_reversals_by_less_than_a_fifth_of_a_second(train):
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_does_not(train):
-    again, other = (body_of(Asked(cars=5, scene="walls", seed=seed)) for seed in (3, 4))
+    again, other = (build_body(BodyRequest(cars=5, scene="walls", seed=seed)) for seed in (3, 4))
     for body in (again, other):
         body.run(1.0)
     count = len(again.rows)
@@ -173,7 +174,7 @@ def test_the_order_parameter_is_that_of_signs():
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_in_every_scene_a_train_stands_on_the_ground(scene):
-    body = body_of(Asked(cars=5, scene=scene, k=0.0))
+    body = build_body(BodyRequest(cars=5, scene=scene, k=0.0))
     body.run(0.4)
     assert np.abs(body.omega).max() < 8.0
     assert (column(body, "_z_m")[-1] > 0.02).all()
@@ -190,7 +191,7 @@ def test_the_file_for_a_viewer_is_the_papers_car_on_a_floor():
 
 def test_slopes_take_their_angle():
     for angle in (0.1, 0.35):
-        model = spec_of(Asked(scene="slopes", angle=angle)).compile()
+        model = build_scene(BodyRequest(scene="slopes", angle=angle)).compile()
         for side in ("east", "north", "west", "south"):
             normal = model.geom(f"slope_{side}").quat
             matrix = np.empty(9)
@@ -203,7 +204,9 @@ def test_slopes_take_their_angle():
 
 def test_boxes_and_hills_come_from_the_seed():
     for scene in ("octagon", "hills"):
-        one, same, other = (spec_of(Asked(scene=scene, seed=seed)).compile() for seed in (1, 1, 2))
+        one, same, other = (
+            build_scene(BodyRequest(scene=scene, seed=seed)).compile() for seed in (1, 1, 2)
+        )
         fields = [
             (model.body_pos.tobytes(), model.hfield_data.tobytes()) for model in (one, same, other)
         ]
@@ -212,15 +215,15 @@ def test_boxes_and_hills_come_from_the_seed():
 
 def test_words_make_kicks_of_wheels_and_wrong_words_are_refused():
     wheels = ("car0_left", "car0_right", "car1_left", "car1_right")
-    assert push_of("t=5,mode=membrane,wheel=all", wheels).wheels == wheels
-    assert push_of("t=5,mode=membrane,wheel=left", wheels).wheels == ("car0_left", "car1_left")
-    assert push_of("t=1, mode=phase, wheel=car1, shift=-pi/2, seconds=0.2", wheels).wheels == (
+    assert parse_kick("t=5,mode=membrane,wheel=all", wheels).wheels == wheels
+    assert parse_kick("t=5,mode=membrane,wheel=left", wheels).wheels == ("car0_left", "car1_left")
+    assert parse_kick("t=1, mode=phase, wheel=car1, shift=-pi/2, seconds=0.2", wheels).wheels == (
         "car1_left",
         "car1_right",
     )
-    kick = push_of("t=1,mode=phase,wheel=car1_left,seconds=0.2", wheels).kicks(1000, 0.001, [-3.0])[
-        0
-    ]
+    kick = parse_kick("t=1,mode=phase,wheel=car1_left,seconds=0.2", wheels).kicks(
+        1000, 0.001, [-3.0]
+    )[0]
     assert (kick.begin, kick.ticks, kick.wheels, kick.values[0]) == (
         1000,
         200,
@@ -241,13 +244,13 @@ def test_words_make_kicks_of_wheels_and_wrong_words_are_refused():
         ("t=1,t=2,mode=phase", "one t"),
     ):
         with pytest.raises(WrongUse, match=reason):
-            push_of(words, wheels)
+            parse_kick(words, wheels)
 
 
 def test_a_body_that_cannot_be_followed_says_so_and_keeps_what_there_was():
-    body = body_of(Asked(cars=5, k=1e9))
+    body = build_body(BodyRequest(cars=5, k=1e9))
     with pytest.raises(NotDone, match="cannot be followed"):
-        run(body, 5.0, [], lambda time_s: None)
+        run_with_kicks(body, 5.0, [], lambda time_s: None)
     assert 0.0 < body.time_s < 5.0
     assert np.isfinite(body.rows).all()
 
@@ -258,17 +261,17 @@ def test_what_cannot_be_is_refused_in_words(tmp_path):
     torn = tmp_path / "torn.xml"
     torn.write_text("<mujoco><worldbody>")
     for asked, reason in (
-        (Asked(scene="moon"), "no scene"),
-        (Asked(scene=str(broken)), "size"),
-        (Asked(scene=str(torn)), "XML"),
-        (Asked(scene=str(tmp_path / "none.xml")), "none.xml"),
-        (Asked(cars=0), "0 cars"),
-        (Asked(scene="flat", angle=0.2), "no slopes"),
-        (Asked(scene="slopes", angle=2.0), "slopes of"),
-        (Asked(k=float("nan")), "k cannot"),
-        (Asked(tau=0.0), "tau"),
-        (Asked(drag=-1.0), "drag"),
-        (Asked(preset="porsche"), "no preset"),
+        (BodyRequest(scene="moon"), "no scene"),
+        (BodyRequest(scene=str(broken)), "size"),
+        (BodyRequest(scene=str(torn)), "XML"),
+        (BodyRequest(scene=str(tmp_path / "none.xml")), "none.xml"),
+        (BodyRequest(cars=0), "0 cars"),
+        (BodyRequest(scene="flat", angle=0.2), "no slopes"),
+        (BodyRequest(scene="slopes", angle=2.0), "slopes of"),
+        (BodyRequest(k=float("nan")), "k cannot"),
+        (BodyRequest(tau=0.0), "tau"),
+        (BodyRequest(drag=-1.0), "drag"),
+        (BodyRequest(preset="porsche"), "no preset"),
     ):
         with pytest.raises(WrongUse, match=reason):
-            body_of(asked)
+            build_body(asked)

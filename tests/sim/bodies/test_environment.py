@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from host.bodies import steering
-from host.bodies.steering import ALL_PAIRS, CHOICES, LEFT, ON, RIGHT, plan, seen_from
+from host.bodies.steering import ALL_PAIRS, CHOICES, LEFT, NO_KICK, RIGHT, plan, relative_to
 from host.errors import WrongUse
 from host.experiments.bodies import train_goal
 from host.figures.bodies.train_goal import draw
@@ -175,14 +175,18 @@ def arc(turn_rad):
 def test_a_plan_turns_to_its_goal_whatever_the_kicks_are_called():
     turns = np.array([arc(0.0), arc(0.5), arc(-0.5)])
     true = np.broadcast_to(turns, (3, 3, 10, 3))
-    mirrored = true[:, [ON, RIGHT, LEFT]]
-    for bearing, choice, other in ((0.0, ON, ON), (0.7, LEFT, RIGHT), (-0.7, RIGHT, LEFT)):
+    mirrored = true[:, [NO_KICK, RIGHT, LEFT]]
+    for bearing, choice, other in (
+        (0.0, NO_KICK, NO_KICK),
+        (0.7, LEFT, RIGHT),
+        (-0.7, RIGHT, LEFT),
+    ):
         for start in ((0.0, 0.0, 0.0), (5.0, -2.0, 2.5)):
             goal = np.array(
                 [start[0] + 3.0 * cos(start[2] + bearing), start[1] + 3.0 * sin(start[2] + bearing)]
             )
-            assert plan(true, start, ON, goal) == choice
-            assert plan(mirrored, start, ON, goal) == other
+            assert plan(true, start, NO_KICK, goal) == choice
+            assert plan(mirrored, start, NO_KICK, goal) == other
 
 
 def test_a_plan_that_is_followed_ends_at_goals_all_around():
@@ -190,11 +194,11 @@ def test_a_plan_that_is_followed_ends_at_goals_all_around():
     for bearing in (-pi, -2.0, 0.5, 1.6):
         goal, pose, nearest = 3.0 * np.array([cos(bearing), sin(bearing)]), np.zeros(3), 3.0
         for _ in range(12):
-            step = effects[0, plan(effects, pose, ON, goal)]
+            step = effects[0, plan(effects, pose, NO_KICK, goal)]
             turn = np.array([[cos(pose[2]), sin(pose[2])], [-sin(pose[2]), cos(pose[2])]])
             way = pose[:2] + step[:, :2] @ turn
             nearest = min(nearest, np.hypot(*(way - goal).T).min())
-            assert seen_from(pose, np.column_stack([way, pose[2] + step[:, 2]])) == pytest.approx(
+            assert relative_to(pose, np.column_stack([way, pose[2] + step[:, 2]])) == pytest.approx(
                 step
             )
             pose = np.array([*way[-1], pose[2] + step[-1, 2]])
@@ -204,7 +208,7 @@ def test_a_plan_that_is_followed_ends_at_goals_all_around():
 def test_every_choice_is_tried_after_every_other():
     pairs = list(zip((ALL_PAIRS[-1], *ALL_PAIRS), ALL_PAIRS, strict=False))
     assert sorted(pairs) == [(last, choice) for last in CHOICES for choice in CHOICES]
-    assert ALL_PAIRS[-1] == ON
+    assert ALL_PAIRS[-1] == NO_KICK
 
 
 def test_a_train_learns_what_kicks_do_and_drives_to_a_goal_which_one_that_is_not_kicked_misses(
@@ -226,7 +230,7 @@ def test_a_train_learns_what_kicks_do_and_drives_to_a_goal_which_one_that_is_not
     turned = np.array(planned["effects"])[..., 2]
     assert turned[LEFT, LEFT] > 0.3
     assert turned[RIGHT, RIGHT] < -0.3
-    assert abs(turned[ON, ON]) < 0.1
+    assert abs(turned[NO_KICK, NO_KICK]) < 0.1
     rows = json.loads(json.dumps([planned, left_alone], allow_nan=False))
     findings = train_goal.report(rows + [{**left_alone, "way": train_goal.RANDOM}], setting)
     assert [way["reached"] for way in findings.numbers["ways"]] == [1, 0, 0]
@@ -237,5 +241,5 @@ def test_a_train_learns_what_kicks_do_and_drives_to_a_goal_which_one_that_is_not
 def test_without_gymnasium_it_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     with pytest.raises(WrongUse) as told:
-        steering.environment("snake2019")
+        steering.build_environment("snake2019")
     assert install_command("gym") in told.value.hint

@@ -15,7 +15,7 @@ import pytest
 from imageio_ffmpeg import get_ffmpeg_exe
 from PIL import Image
 
-from host.bodies.build import Asked, body_of
+from host.bodies.build import BodyRequest, build_body
 from host.errors import NotDone, WrongUse
 from host.figures.robot import rods as figure
 from host.films import body as film
@@ -58,7 +58,7 @@ def yellow(pictures):
 
 @pytest.mark.parametrize("ending", ["mp4", "gif"])
 def test_a_film_has_a_picture_for_each_moment_and_shows_what_moves(tmp_path, ending):
-    path, car = tmp_path / f"car.{ending}", body_of(Asked(seed=3))
+    path, car = tmp_path / f"car.{ending}", build_body(BodyRequest(seed=3))
     with Film(path, car.model, 1, size=SMALL, fps=10) as watch:
         car.run(0.505, lambda _: watch(car.data))
     seen = read(path)
@@ -73,7 +73,7 @@ def test_a_film_has_a_picture_for_each_moment_and_shows_what_moves(tmp_path, end
 
 
 def test_filming_changes_nothing_of_what_is_filmed(tmp_path):
-    train, filmed = (body_of(Asked(cars=2, seed=3)) for _ in range(2))
+    train, filmed = (build_body(BodyRequest(cars=2, seed=3)) for _ in range(2))
     train.run(0.3)
     with Film(tmp_path / "train.mp4", filmed.model, 2, size=SMALL) as watch:
         filmed.run(0.3, lambda _: watch(filmed.data))
@@ -81,7 +81,7 @@ def test_filming_changes_nothing_of_what_is_filmed(tmp_path):
 
 
 def test_the_camera_follows_smoothly_and_keeps_the_whole_train_in_the_picture():
-    train = body_of(Asked(cars=5, seed=3))
+    train = build_body(BodyRequest(cars=5, seed=3))
     camera, looked, edges = Camera(train.model, 5, SMALL, follow=0.08 / film.FOLLOW_S), [], []
 
     def watch(time_s):
@@ -101,7 +101,7 @@ def test_the_camera_follows_smoothly_and_keeps_the_whole_train_in_the_picture():
 
 
 def test_a_run_that_is_interrupted_leaves_a_film_that_plays(tmp_path):
-    path, car = tmp_path / "car.mp4", body_of(Asked(seed=3))
+    path, car = tmp_path / "car.mp4", build_body(BodyRequest(seed=3))
 
     def watch_until(watch, time_s):
         watch(car.data)
@@ -125,7 +125,7 @@ def test_a_run_that_is_interrupted_leaves_a_film_that_plays(tmp_path):
 def test_a_film_that_cannot_be_written_is_refused_before_anything_runs(tmp_path, name, word):
     (tmp_path / "d.gif").mkdir()
     with pytest.raises(WrongUse, match=word) as refused:
-        Film(tmp_path / name, body_of(Asked()).model, 1)
+        Film(tmp_path / name, build_body(BodyRequest()).model, 1)
     assert refused.value.hint
     assert [path.name for path in tmp_path.iterdir()] == ["d.gif"]
 
@@ -145,11 +145,11 @@ def test_a_full_disk_is_told_and_an_empty_film_leaves_no_file(tmp_path):
 NO_GL = """
 import sys
 from pathlib import Path
-from host.bodies.build import Asked, body_of
+from host.bodies.build import BodyRequest, build_body
 from host.errors import NotDone
 from host.films.body import Film
 try:
-    Film(Path(sys.argv[1]), body_of(Asked()).model, 1)
+    Film(Path(sys.argv[1]), build_body(BodyRequest()).model, 1)
 except NotDone as error:
     print(error.message, error.hint)
 """
@@ -173,7 +173,7 @@ def test_without_egl_and_osmesa_it_says_so(monkeypatch):
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setattr(film, "find_library", lambda name: None)
     with pytest.raises(NotDone, match="neither EGL nor OSMesa") as refused:
-        Film(Path("car.mp4"), body_of(Asked()).model, 1)
+        Film(Path("car.mp4"), build_body(BodyRequest()).model, 1)
     assert "libosmesa6" in refused.value.hint
 
 
@@ -215,7 +215,7 @@ def test_live_keeps_to_real_time_and_ends_with_its_window(monkeypatch):
     monkeypatch.setattr(film, "_try_window", lambda: None)
     monkeypatch.setattr(film, "time", clock)
     monkeypatch.setattr(viewer, "launch_passive", lambda *given, **options: Window(30))
-    car = body_of(Asked(seed=3))
+    car = build_body(BodyRequest(seed=3))
     with film.live(car.model, car.data) as watch:
         car.run(60.0, lambda _: watch(car.data))
     assert car.time_s == pytest.approx(
