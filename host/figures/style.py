@@ -1,16 +1,20 @@
-"""What all figures look like.
+"""What all figures look like, and parts that several of them share.
 
-Legible on a projector, colours that people who do not see all of them can tell apart (Okabe and
-Ito).
+They are legible on a projector, in colours that people with any colour vision can tell apart
+(Okabe and Ito).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 STYLE: Any = {
@@ -27,6 +31,31 @@ SIZE: Any = {"figsize": (10.0, 6.4), "dpi": 160, "layout": "constrained"}
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Within it, figures are drawn in this style."""
+    """Draw figures in this style within the context."""
     with rc_context(STYLE):
         yield
+
+
+def share_legend(place: Axes | Figure, panels: Iterable[Axes], **style: Any) -> None:
+    """Put one legend for several panels into a panel or the figure, each label once."""
+    known: dict[str, Any] = {}
+    for axes in panels:
+        handles, labels = axes.get_legend_handles_labels()
+        known |= dict(zip(labels, handles, strict=True))
+    place.legend(list(known.values()), list(known), **style)
+
+
+def draw_shares(axes: Axes, shares: NDArray[np.float64], **text: Any) -> None:
+    """Draw a table of shares (%) as coloured fields with their numbers; NaN stays empty."""
+    axes.pcolormesh(shares, cmap="cividis", vmin=0, vmax=100, edgecolors="white", linewidth=1)
+    for (row, column), share in np.ndenumerate(shares):
+        if not np.isnan(share):
+            axes.text(
+                column + 0.5,
+                row + 0.5,
+                f"{share:.0f}",
+                ha="center",
+                va="center",
+                color="black" if share > 60 else "white",
+                **text,
+            )

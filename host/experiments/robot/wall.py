@@ -1,136 +1,133 @@
-"""A robot at k = 2 runs against a wall and turns back by itself, or does not (R13).
+"""A robot with k = 2 runs against a wall and reverses by itself, or does not (R13).
 
-No sensor and no kick tells it of the wall.
+No sensor and no kick reports the wall. A trial sets both wheels going forward at once and watches
+them; the log alone says how the hit went (see wall_hits).
 
-A trial sets both wheels going forward at once and watches them. What came of it is read from the
-log alone: the wall is where the wheels slow down, and a bounce is where the torque M of both wheels
-has changed its sign, and both run the other way, for good.
-
-A floor without grip cannot stop the wheels: they turn on. A wheel that is stopped obeys the rods
-alone, which draw it to the next of four angles: forward or backward, as its phase wills. If it is
-drawn forward, it presses against the wall until the wall's spring, or the other wheel, throws it
-over that point; or it rests there. If one wheel goes before the other, the robot turns on the spot.
+On a floor without grip the wheels do not stop at the wall: they turn on. A wheel that does stop
+obeys its rods alone. They draw it to the next of four angles, forward or backward, as its phase
+decides. If that is forward, the wheel presses against the wall until the wall's spring or the other
+wheel throws it over that point, or it rests there. If one wheel goes before the other, the robot
+turns on the spot.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from itertools import pairwise
 from math import ceil, pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from host.client.robot import Robot
 from host.experiments.robot import unattended
+from host.experiments.robot.wall_hits import Motion, bounces, motion_since, read_hit, read_series
+from host.experiments.robot.wall_rows import (
+    ON_SMOOTH,
+    PAPER,
+    ROBOT,
+    SMOOTH,
+    SPRINGY,
+    WIDE_M,
+    WITH_BUMPER,
+    Condition,
+    Hit,
+    HitRow,
+    HitsCell,
+    NumberedHit,
+    OneHit,
+    SeriesCell,
+    Tick,
+    TrialCell,
+    WallCell,
+    WallRow,
+    count_bounces,
+    hits_under,
+)
 from host.kicking.outcome import FORWARD
 from host.kicking.primitives import SHIFT_TOWARD
 from host.kicking.robot_claims import WHEEL_RADIUS_M
 from host.logs.log import Log
-from host.logs.motion import directions, travels
 from host.runs.claims import Claim, too_few
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
-from robot.kicks import DIRECTION_TICKS, PHASE, WHEELS
+from robot.kicks import DIRECTION_TICKS, PHASE
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
-from sim_motor.motor import GRAVITY, data
+from sim_motor.motor import GRAVITY
 from sim_motor.world import Scene
 
-Array = NDArray[Any]
-
-ROBOT = {name: float(entry[0]) for name, entry in data()["robot"].items()}
-CARPET, SMOOTH = ROBOT["grip_on_carpet"], ROBOT["grip"]
-WIDE_M, SPRINGY = 0.4, 1000.0
-# The paper's: on a rough surface, with wheels in phase, as the start of the robot's program leaves
-# them.
-PAPER: Cell = {
-    "k": 2.0,
-    "grip": CARPET,
-    "stiffness": ROBOT["wall_stiffness"],
-    "bumper": ROBOT["body_width"],
-    "apart": 0.0,
-}
-ON_SMOOTH, WITH_BUMPER = (
-    {**PAPER, "grip": SMOOTH},
-    {**PAPER, "bumper": WIDE_M, "stiffness": SPRINGY},
-)
+# The values that the maps vary.
 KS, GRIPS = (1.5, 2.0, 2.5, 3.0, 4.0), (0.7, 1.0, 1.34, 1.7, 2.0, 2.5)
 STIFFNESSES, BUMPERS = (500.0, 1000.0, 2000.0, 20000.0, 100000.0), (0.1, 0.16, 0.2, 0.3, 0.4)
 APARTS = (0.0, 0.2, 0.4, 0.8, 1.6, 2.4, 3.14)
 MAP_HITS = 12
 
-# So far apart at least are the walls; and a turn of the wheels farther, that all phases come to
-# them.
+# The least distance between the walls. Over all hits it grows by what two turns of the wheels
+# cover, so that the wheels come to the wall at all phases.
 NEAREST_M, TURN_M = 1.2, 2 * pi * WHEEL_RADIUS_M
-REST_S, SETTLE_S, WATCH_S, LOOK_S, SERIES_S = 1.5, 0.5, 8.0, 0.6, 40.0
-MEAN_S, LASTS_S = 0.5, 0.6
-SLOWED = 0.85
-# What part of how many hits the paper has to bounce.
+REST_S, WATCH_S, LOOK_S, SERIES_S = 1.5, 8.0, 0.6, 40.0
+# The paper asks that this share of this many hits bounces.
 TARGET, BOUNCES = 0.95, 50
 
-BOUNCED, NO_WALL = "bounced", "met no wall"
-SPUN, TURNED, ROUNDED, RESTED, UNSURE = (
-    "tyres spin",
-    "turns on the spot",
-    "turns around one wheel",
-    "rests at the wall",
-    "undecided",
-)
 
-
-def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A cell is a condition with all its hits for the simulation, and one hit on a robot, whose floor and body are as they are."""
+def cells(options: Options, *, batch: bool) -> list[WallCell]:
+    """All hits under one condition for the simulation, one hit for a robot."""
     hits = options["bounces"]
     if not batch:
         return [{"k": PAPER["k"], "hit": hit} for hit in range(hits)]
-    claimed = [PAPER, ON_SMOOTH, WITH_BUMPER]
-    mapped = [{**PAPER, "grip": grip, "k": k} for grip in GRIPS for k in KS]
-    mapped += [
+    work: list[WallCell] = []
+    done: list[Condition] = []
+    for condition in (PAPER, ON_SMOOTH, WITH_BUMPER):
+        work.append({"part": "claim", **condition, "hits": hits})
+        done.append(condition)
+    for condition in _mapped():
+        if condition not in done:
+            work.append({"part": "map", **condition, "hits": MAP_HITS})
+            done.append(condition)
+    work += [{"part": "series", **condition} for condition in (PAPER, WITH_BUMPER)]
+    return work
+
+
+def _mapped() -> list[Condition]:
+    """The conditions of the three maps; some stand in two of them."""
+    found: list[Condition] = [{**PAPER, "grip": grip, "k": k} for grip in GRIPS for k in KS]
+    found += [
         {**PAPER, "stiffness": stiffness, "bumper": bumper}
         for stiffness in STIFFNESSES
         for bumper in BUMPERS
     ]
-    mapped += [{**PAPER, "apart": apart} for apart in APARTS]
-    once = {
-        tuple(condition.values()): condition for condition in mapped if condition not in claimed
-    }
-    shown: list[Cell] = [{"part": "series", **condition} for condition in (PAPER, WITH_BUMPER)]
-    return (
-        [{"part": "claim", **condition, "hits": hits} for condition in claimed]
-        + [{"part": "map", **condition, "hits": MAP_HITS} for condition in once.values()]
-        + shown
-    )
+    found += [{**PAPER, "apart": apart} for apart in APARTS]
+    return found
 
 
-def world(cell: Cell) -> dict[str, str]:
-    """Walls, farther apart for each hit. To a real robot.
+def world(cell: OneHit | SeriesCell) -> dict[str, str]:
+    """Two walls, farther apart for each hit.
 
-    A wall ahead that it meets squarely, half a metre away or more.
+    A real robot needs a wall ahead that it meets squarely, half a metre away or more.
     """
-    walls = NEAREST_M + 2 * TURN_M * cell.get("hit", 0) / cell.get("hits", 1)
-    scene = {
-        str(name): str(cell[name])
-        for name in ("grip", "stiffness", "bumper", "apart")
-        if name in cell
+    farther_m = 0.0 if cell["part"] == "series" else 2 * TURN_M * cell["hit"] / cell["hits"]
+    return {
+        "walls": f"{NEAREST_M + farther_m:.4f}",
+        "grip": str(cell["grip"]),
+        "stiffness": str(cell["stiffness"]),
+        "bumper": str(cell["bumper"]),
+        "apart": str(cell["apart"]),
     }
-    return {"walls": f"{walls:.4f}", **scene}
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """Each hit of a robot of its own, in the robot's whole loop."""
+def simulate(cell: HitsCell | SeriesCell, setting: Setting) -> list[NumberedHit] | list[Tick]:
+    """Run the robot's whole loop against the wall, with a robot of its own for each hit."""
     if cell["part"] == "series":
-        return _series(*_watched(_run_into_wall(cell, setting, stop=False)))
-    hits = [{**cell, "hit": hit} for hit in range(cell["hits"])]
-    return [{"hit": hit["hit"], **told(*_watched(_run_into_wall(hit, setting)))} for hit in hits]
+        return read_series(*_run_into_wall(cell, setting, stop=False))
+    rows: list[NumberedHit] = []
+    for hit in range(cell["hits"]):
+        motion = _run_into_wall({**cell, "hit": hit}, setting, stop=True)
+        rows.append({"hit": hit, **read_hit(*motion)})
+    return rows
 
 
-def _run_into_wall(cell: Cell, setting: Setting, *, stop: bool = True) -> Log:
-    """The log of a simulated robot that is sent off, until it has bounced.
-
-    Or, if it is not to stop there, of SERIES_S.
-    """
+def _run_into_wall(cell: OneHit | SeriesCell, setting: Setting, *, stop: bool) -> Motion:
+    """Send a simulated robot off; to `stop`, end when it has bounced, else after SERIES_S."""
     seed = setting.seed_of(cell)
     scene = Scene(**{name: float(value) for name, value in world(cell).items()})
     brick = SimBrick(seed, motor=setting.motor, battery_v=setting.battery_v, scene=scene)
@@ -148,140 +145,29 @@ def _run_into_wall(cell: Cell, setting: Setting, *, stop: bool = True) -> Log:
     loop.kick({"id": "off", "mode": PHASE, "shift": SHIFT_TOWARD[FORWARD]})
     if not stop:
         run(SERIES_S)
-        return log
-    while log.seconds < WATCH_S and not bounces(*_watched(log)):
+    while stop and log.seconds < WATCH_S and not bounces(*motion_since(log)):
         run(LOOK_S)
-    return log
+    return motion_since(log)
 
 
-def _series(t: Array, phi: Array, torque: Array) -> list[Row]:
-    """Every tick, and whether the robot had bounced by then."""
-    turned = set(bounces(t, phi, torque))
-    rows = zip((t - t[0]).tolist(), torque.tolist(), strict=True)
-    return [
-        {"t_s": t_s, "left_torque": left, "right_torque": right, "bounce": tick in turned}
-        for tick, (t_s, (left, right)) in enumerate(rows)
-    ]
-
-
-def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """One hit of a robot that is there.
-
-    It is let rest for REST_S first, in which its user may face it to the wall.
-    """
+def trial(cell: TrialCell, robot: Robot, log: Log, setting: Setting) -> list[Hit]:
+    """Do one hit on a robot. It rests for REST_S first; then its user may turn it to the wall."""
     robot.set(k=0.0)
     robot.wait(REST_S)
     robot.set(k=cell["k"])
     begin = robot.kick(PHASE, shift=SHIFT_TOWARD[FORWARD])
-    robot.wait(
-        WATCH_S,
-        until=lambda: len(log) % DIRECTION_TICKS == 0 and bool(bounces(*_watched(log, begin))),
-    )
-    return [told(*_watched(log, begin))]
+
+    def bounced() -> bool:
+        return len(log) % DIRECTION_TICKS == 0 and bool(bounces(*motion_since(log, begin)))
+
+    robot.wait(WATCH_S, until=bounced)
+    return [read_hit(*motion_since(log, begin))]
 
 
-def _watched(log: Log, begin: int = 0) -> tuple[Array, Array, Array]:
-    """Times, and angles and torques of both wheels, (ticks, 2), since a tick."""
-    rows = log.column("tick") >= begin
-    angles, torques = (
-        np.stack([log.column(f"{side}_{name}") for side in WHEELS], axis=1)
-        for name in ("phi_rad", "torque")
-    )
-    return log.column("t_s")[rows], angles[rows], torques[rows]
-
-
-def _lasting(t: Array, phi: Array, torque: Array) -> list[tuple[int, int]]:
-    """(first tick, 1 or -1) of each stretch of LASTS_S or more in which both wheels run, and are driven, one way."""
-    both = np.concatenate([directions(phi), np.sign(torque)], axis=1)
-    way = np.where((both == both[:, :1]).all(axis=1), both[:, 0], 0).astype(int)
-    edges = [0, *(np.flatnonzero(np.diff(way)) + 1).tolist(), len(way)]
-    return [
-        (first, int(way[first]))
-        for first, end in pairwise(edges)
-        if way[first:end].any() and t[end - 1] - t[first] >= LASTS_S
-    ]
-
-
-def bounces(t: Array, phi: Array, torque: Array) -> list[int]:
-    """The ticks from which on both wheels run the other way than before, for LASTS_S at least.
-
-    t: (ticks,) in s; phi, torque: (ticks, 2) in rad and M of the left and the right wheel.
-    """
-    stretches = _lasting(t, phi, torque)
-    return [first for (_, before), (first, after) in pairwise(stretches) if after == -before]
-
-
-def told(t: Array, phi: Array, torque: Array) -> Row:
-    """What these ticks (as for `bounces`) tell of one hit.
-
-    ended: BOUNCED, or how else; before, after: mean M of both wheels in the last MEAN_S before the
-    wall and in the end; took_s: from the wall to the bounce; apart_rad: how far the right wheel's
-    phase was ahead at the wall. What there was not is None.
-    """
-    stretches, turned = _lasting(t, phi, torque), bounces(t, phi, torque)
-    wall = _wall(t, phi, stretches[0][0]) if stretches else None
-    row: Row = {
-        "ended": NO_WALL,
-        "reversed": False,
-        "before": None,
-        "after": None,
-        "took_s": None,
-        "apart_rad": None,
-    }
-    if wall is None:
-        return row
-    apart = float(phi[wall, 1] - phi[wall, 0])
-    return {
-        "ended": BOUNCED if turned else _stuck(directions(phi)[-1].tolist()),
-        "reversed": bool(turned),
-        "before": float(torque[(t < t[wall]) & (t >= t[wall] - MEAN_S)].mean()),
-        "after": float(torque[t >= t[-1] - MEAN_S].mean()),
-        "took_s": float(t[turned[0]] - t[wall]) if turned else None,
-        "apart_rad": (apart + pi) % (2 * pi) - pi,
-    }
-
-
-def _wall(t: Array, phi: Array, first: int) -> int | None:
-    """The last tick before a wheel, settled since tick `first`, is slowed down."""
-    speed = np.abs(travels(phi))
-    cruising = (t >= t[first] + SETTLE_S) & (t < t[first] + 2 * SETTLE_S)
-    slowed = (
-        (speed < SLOWED * np.median(speed[cruising], axis=0)).any(axis=1)
-        if cruising.any()
-        else np.zeros(len(t), dtype=bool)
-    )
-    late = np.flatnonzero(slowed & (t >= t[first] + SETTLE_S))
-    return int(late[0]) - 1 if len(late) else None
-
-
-def _stuck(ways: list[int]) -> str:
-    """What a robot does that has not bounced, from the ways of its wheels."""
-    left, right = ways
-    if left == right:
-        return {1: SPUN, 0: RESTED}.get(left, UNSURE)
-    return TURNED if left == -right else ROUNDED
-
-
-def of(rows: list[Row], condition: Cell) -> list[Row]:
-    """The hits under a condition; a real robot's, which do not say theirs, count as the paper's."""
-    hits = [row for row in rows if "hit" in row]
-    return [
-        row
-        for row in hits
-        if all(row.get(name, PAPER[name]) == value for name, value in condition.items())
-    ]
-
-
-def rate(rows: list[Row]) -> tuple[int, int]:
-    """(bounces, hits)."""
-    return sum(row["reversed"] for row in rows), len(rows)
-
-
-def report(rows: list[Row], setting: Setting) -> Findings:
+def report(rows: list[WallRow], setting: Setting) -> Findings:
     """R13."""
-    hits = of(rows, PAPER)
-    done, tried = rate(hits)
-    signs = [row["before"] * row["after"] < 0 for row in hits if row["reversed"]]
+    hits = hits_under(rows, PAPER)
+    done, tried = count_bounces(hits)
     share = fraction(done, tried)
     claim = Claim(
         "R13",
@@ -290,69 +176,68 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         share,
         "1",
         wilson(done, tried),
-        share >= TARGET and all(signs),
+        share >= TARGET and all(_changes_sign(row) for row in hits if row["reversed"]),
         _note(rows, hits),
     )
     few = too_few(tried, BOUNCES, "hits")
     return Findings([claim.doubted(setting.elsewhere(), few)], _numbers(rows, hits))
 
 
-def _note(rows: list[Row], hits: list[Row]) -> str:
+def _changes_sign(row: HitRow) -> bool:
+    before, after = row["before"], row["after"]
+    return before is not None and after is not None and before * after < 0
+
+
+def _note(rows: list[WallRow], hits: list[HitRow]) -> str:
+    notes = ["{} of {}".format(*count_bounces(hits))]
     failed = Counter(row["ended"] for row in hits if not row["reversed"])
-    notes = ["{} of {}".format(*rate(hits))]
     if failed:
+        ways = ", ".join(f"{how} ({count})" for how, count in failed.most_common())
+        notes.append("the others: " + ways)
+    done, tried = count_bounces(hits_under(rows, WITH_BUMPER))
+    if tried:
         notes.append(
-            "the others: " + ", ".join(f"{how} ({count})" for how, count in failed.most_common())
+            f"with a bumper {WIDE_M:g} m wide that gives way by {1000 / SPRINGY:g} mm to 1 N at"
+            f" each end: {done} of {tried}"
         )
-    most = SMOOTH * ROBOT["mass"] / 2 * GRAVITY * ROBOT["wheel_radius"]
-    for condition, words in (
-        (
-            WITH_BUMPER,
-            (
-                f"with a bumper {WIDE_M:g} m wide that gives way by {1000 / SPRINGY:g} mm to 1 N at"
-                " each end:"
-            ),
-        ),
-        (
-            ON_SMOOTH,
-            (
-                f"on a smooth floor of grip {SMOOTH:g}, which holds a wheel with {most:.2f} N m"
-                " only, so that it turns on at the wall:"
-            ),
-        ),
-    ):
-        done, tried = rate(of(rows, condition))
-        if tried:
-            notes.append(f"{words} {done} of {tried}")
+    done, tried = count_bounces(hits_under(rows, ON_SMOOTH))
+    if tried:
+        most = SMOOTH * ROBOT["mass"] / 2 * GRAVITY * ROBOT["wheel_radius"]
+        notes.append(
+            f"on a smooth floor of grip {SMOOTH:g}, which holds a wheel with {most:.2f} N m only,"
+            f" so that it turns on at the wall: {done} of {tried}"
+        )
     return "; ".join(notes)
 
 
-def _numbers(rows: list[Row], hits: list[Row]) -> dict[str, Any]:
+def _numbers(rows: list[WallRow], hits: list[HitRow]) -> dict[str, Any]:
+    """Medians over the bounces (None without one), and [condition, bounces, hits] of the maps."""
     bounced = [row for row in hits if row["reversed"]]
 
-    def median(name: str) -> float | None:
-        return float(np.median([row[name] for row in bounced])) if bounced else None
+    def median(values: list[float | None]) -> float | None:
+        known = [value for value in values if value is not None]
+        return float(np.median(known)) if known else None
 
-    grid = {
-        "grip_and_k": [
-            [[grip, k], *rate(of(rows, {**PAPER, "grip": grip, "k": k}))]
-            for grip in GRIPS
-            for k in KS
-        ],
-        "stiffness_and_bumper": [
-            [
-                [stiffness, bumper],
-                *rate(of(rows, {**PAPER, "stiffness": stiffness, "bumper": bumper})),
-            ]
-            for stiffness in STIFFNESSES
-            for bumper in BUMPERS
-        ],
-        "apart": [[apart, *rate(of(rows, {**PAPER, "apart": apart}))] for apart in APARTS],
-    }
+    def counts(condition: Condition) -> tuple[int, int]:
+        return count_bounces(hits_under(rows, condition))
+
     return {
-        "torque_before": median("before"),
-        "torque_after": median("after"),
-        "took_s": median("took_s"),
+        "torque_before": median([row["before"] for row in bounced]),
+        "torque_after": median([row["after"] for row in bounced]),
+        "took_s": median([row["took_s"] for row in bounced]),
         "ended": dict(Counter(row["ended"] for row in hits)),
-        "bounces_of_hits": grid,
+        "bounces_of_hits": {
+            "grip_and_k": [
+                [[grip, k], *counts({**PAPER, "grip": grip, "k": k})] for grip in GRIPS for k in KS
+            ],
+            "stiffness_and_bumper": [
+                [
+                    [stiffness, bumper],
+                    *counts({**PAPER, "stiffness": stiffness, "bumper": bumper}),
+                ]
+                for stiffness in STIFFNESSES
+                for bumper in BUMPERS
+            ],
+            "apart": [[apart, *counts({**PAPER, "apart": apart})] for apart in APARTS],
+        },
     }

@@ -1,4 +1,4 @@
-"""The robot at a wall (R13): what counts as a bounce, how a hit is told from a log, and what the simulated robot does there."""
+"""The robot at a wall (R13): what counts as a bounce, how a log is read, what simulations do."""
 
 import json
 from math import pi
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from host.client.robot import connect
-from host.experiments.robot import wall
+from host.experiments.robot import wall, wall_hits, wall_rows
 from host.figures.robot.wall import draw
 from host.logs.log import Log
 from host.runs.contract import Setting
@@ -15,7 +15,7 @@ from robot.kicks import WHEELS
 
 SETTING = Setting(1, {"bounces": 50})
 TICK_S = 0.03
-FLOOR = {"part": "claim", **wall.PAPER}
+FLOOR = {"part": "claim", **wall_rows.PAPER}
 
 
 def ticks(*phases):
@@ -38,7 +38,7 @@ def ticks(*phases):
 
 def test_a_lasting_reversal_of_both_wheels_is_a_bounce():
     t, phi, torque = ticks((2, 10, 10), (0.3, 0, 0), (2, -10, -10), (0.3, 0, 0), (2, 10, 10))
-    first, second = wall.bounces(t, phi, torque)
+    first, second = wall_hits.bounces(t, phi, torque)
     assert t[first] == pytest.approx(2.3, abs=0.2)
     assert t[second] == pytest.approx(4.6, abs=0.2)
 
@@ -57,34 +57,34 @@ def test_a_lasting_reversal_of_both_wheels_is_a_bounce():
     ],
 )
 def test_anything_else_is_none(phases):
-    assert wall.bounces(*ticks(*phases)) == []
+    assert wall_hits.bounces(*ticks(*phases)) == []
 
 
 def test_wheels_that_are_pushed_back_against_their_torque_have_not_bounced():
     t, phi, torque = ticks((2, 10, 10), (2, -10, -10))
-    assert wall.bounces(t, phi, np.abs(torque)) == []
+    assert wall_hits.bounces(t, phi, np.abs(torque)) == []
 
 
 @pytest.mark.parametrize(
     ("after", "ended"),
     [
-        ((2, -10, -10), wall.BOUNCED),
-        ((2, 7, 7), wall.SPUN),
-        ((2, -10, 10), wall.TURNED),
-        ((2, 0, 10), wall.ROUNDED),
-        ((2, 0, 0), wall.RESTED),
-        ((2, 10, 10), wall.NO_WALL),
+        ((2, -10, -10), wall_hits.BOUNCED),
+        ((2, 7, 7), wall_hits.SPUN),
+        ((2, -10, 10), wall_hits.TURNED),
+        ((2, 0, 10), wall_hits.ROUNDED),
+        ((2, 0, 0), wall_hits.RESTED),
+        ((2, 10, 10), wall_hits.NO_WALL),
     ],
 )
-def test_a_hit_is_told_from_angles_and_torques_alone(after, ended):
-    row = wall.told(*ticks((2, 10, 10), after))
-    assert (row["ended"], row["reversed"]) == (ended, ended == wall.BOUNCED)
+def test_a_hit_is_classified_from_angles_and_torques_alone(after, ended):
+    row = wall_hits.read_hit(*ticks((2, 10, 10), after))
+    assert (row["ended"], row["reversed"]) == (ended, ended == wall_hits.BOUNCED)
     assert row == json.loads(json.dumps(row, allow_nan=False))
 
 
 def test_a_bounces_row_has_its_torques_its_time_and_the_wheels_phases():
     t, phi, torque = ticks((2, 10, 10), (0.6, 0, 0), (2, -10, -10))
-    row = wall.told(t, phi + [0.0, 2 * pi - 0.5], torque)
+    row = wall_hits.read_hit(t, phi + [0.0, 2 * pi - 0.5], torque)
     assert row["before"] == pytest.approx(0.8)
     assert row["after"] == pytest.approx(-0.8)
     assert row["took_s"] == pytest.approx(0.75, abs=0.25)
@@ -120,7 +120,7 @@ def test_the_same_seed_is_the_same_robot_whatever_came_before():
 
 
 def test_a_robot_over_a_link_does_as_the_simulation_does():
-    cell = {**FLOOR, "hit": 0, "hits": 1, "grip": wall.SMOOTH}
+    cell = {**FLOOR, "hit": 0, "hits": 1, "grip": wall_rows.SMOOTH}
     options = "&".join(f"{name}={value}" for name, value in wall.world(cell).items())
     with connect("sim://?idle=1&" + options, seed=5) as robot:
         robot.set(k=0.0)
@@ -128,7 +128,7 @@ def test_a_robot_over_a_link_does_as_the_simulation_does():
         log = Log(robot.info())
         robot.add_tap(log)
         (row,) = wall.trial(cell, robot, log, SETTING)
-    assert (row["ended"], row["reversed"]) == (wall.SPUN, False)
+    assert (row["ended"], row["reversed"]) == (wall_hits.SPUN, False)
     (same,) = wall.simulate({**cell, "hits": 1}, SETTING)
     assert row["before"] == pytest.approx(same["before"], rel=0.05)
 
@@ -144,15 +144,15 @@ def test_on_a_rough_floor_most_hits_bounce_and_m_changes_its_sign():
 
 
 def test_on_a_smooth_floor_the_tyres_spin_at_the_wall():
-    rows = wall.simulate({**FLOOR, "grip": wall.SMOOTH, "hits": 4}, SETTING)
-    assert {row["ended"] for row in rows} == {wall.SPUN}
+    rows = wall.simulate({**FLOOR, "grip": wall_rows.SMOOTH, "hits": 4}, SETTING)
+    assert {row["ended"] for row in rows} == {wall_hits.SPUN}
     assert all(row["after"] > row["before"] > 0.5 for row in rows)
 
 
 def rows_of(bounced, stuck, **fields):
-    told = {"hit": 0, "before": 0.8, "took_s": 1.0, "apart_rad": 0.1, **fields}
-    good = {**told, "ended": wall.BOUNCED, "reversed": True, "after": -0.8}
-    bad = {**told, "ended": wall.RESTED, "reversed": False, "after": 0.0, "took_s": None}
+    felt = {"hit": 0, "before": 0.8, "took_s": 1.0, "apart_rad": 0.1, **fields}
+    good = {**felt, "ended": wall_hits.BOUNCED, "reversed": True, "after": -0.8}
+    bad = {**felt, "ended": wall_hits.RESTED, "reversed": False, "after": 0.0, "took_s": None}
     return [good] * bounced + [bad] * stuck
 
 
@@ -182,7 +182,7 @@ def test_a_bounce_at_which_m_keeps_its_sign_speaks_against_the_claim():
 
 
 def test_hits_under_other_conditions_do_not_count_for_the_claim_but_are_named():
-    rows = rows_of(50, 0, **wall.PAPER) + rows_of(0, 50, **wall.ON_SMOOTH)
+    rows = rows_of(50, 0, **FLOOR) + rows_of(0, 50, part="claim", **wall_rows.ON_SMOOTH)
     (claim,) = wall.report(rows, SETTING).claims
     assert claim.measured == 1.0
     assert "turns on at the wall: 0 of 50" in claim.note
@@ -199,8 +199,8 @@ def test_the_figure_is_drawn_from_a_robots_rows_and_from_simulated_ones():
             **{side + "_torque": 0.8 for side in WHEELS},
             "bounce": tick == 9,
         }
-        for condition in (wall.PAPER, wall.WITH_BUMPER)
+        for condition in (wall_rows.PAPER, wall_rows.WITH_BUMPER)
         for tick in range(20)
     ]
-    simulated = [*rows_of(5, 2, **wall.PAPER), *series]
+    simulated = [*rows_of(5, 2, **FLOOR), *series]
     assert len(draw(simulated, wall.report(simulated, SETTING)).axes) == 5

@@ -1,0 +1,166 @@
+"""The table of the experiment `wall`: conditions, cells, rows, and the hits under a condition."""
+
+from __future__ import annotations
+
+from typing import Literal, NotRequired, TypedDict, final
+
+from sim_motor.motor import data
+
+ROBOT = {name: float(entry[0]) for name, entry in data()["robot"].items()}
+
+
+class Condition(TypedDict):
+    """The circumstances of a hit.
+
+    Attributes:
+        k: spring constant (1).
+        grip: friction coefficient of the tyres on the floor (1).
+        stiffness: stiffness of the wall at one corner of the body (N/m).
+        bumper: width of the body's front and rear (m).
+        apart: how far the right wheel is ahead of the left one at the start (rad).
+    """
+
+    k: float
+    grip: float
+    stiffness: float
+    bumper: float
+    apart: float
+
+
+class HitsCell(Condition):
+    """All hits of the simulated robot under one condition.
+
+    Attributes:
+        part: `claim` for the conditions that R13 names, `map` for all others.
+        hits: how many hits.
+    """
+
+    part: Literal["claim", "map"]
+    hits: int
+
+
+class OneHit(HitsCell):
+    """One of these hits, numbered from 0."""
+
+    hit: int
+
+
+class SeriesCell(Condition):
+    """A simulated robot that bounces to and fro for a while."""
+
+    part: Literal["series"]
+
+
+class TrialCell(TypedDict):
+    """One hit of a robot, whose floor and body are as they are.
+
+    Attributes:
+        k: spring constant (1).
+        hit: number of the hit, from 0.
+    """
+
+    k: float
+    hit: int
+
+
+class Hit(TypedDict):
+    """How one hit went. None stands for what did not happen.
+
+    Attributes:
+        ended: BOUNCED, or how else the hit ended: a word of wall_hits.
+        reversed: whether the robot reversed.
+        before: mean torque M of both wheels just before the wall (1).
+        after: mean torque M of both wheels at the end (1).
+        took_s: time from the wall to the reversal (s).
+        apart_rad: how far the right wheel's phase was ahead at the wall (rad), from -pi to pi.
+    """
+
+    ended: str
+    reversed: bool
+    before: float | None
+    after: float | None
+    took_s: float | None
+    apart_rad: float | None
+
+
+class NumberedHit(Hit):
+    """A hit with its number, from 0."""
+
+    hit: int
+
+
+class Tick(TypedDict):
+    """One tick of a series.
+
+    Attributes:
+        t_s: time since the start (s).
+        left_torque: relative torque M of the left wheel (1).
+        right_torque: relative torque M of the right wheel (1).
+        bounce: whether the robot has reversed in this tick.
+    """
+
+    t_s: float
+    left_torque: float
+    right_torque: float
+    bounce: bool
+
+
+@final
+class HitRow(NumberedHit):
+    """A hit with its cell's columns; of those, a real robot's cell has only k."""
+
+    k: float
+    grip: NotRequired[float]
+    stiffness: NotRequired[float]
+    bumper: NotRequired[float]
+    apart: NotRequired[float]
+    part: NotRequired[Literal["claim", "map"]]
+    hits: NotRequired[int]
+
+
+@final
+class SeriesRow(SeriesCell, Tick):
+    """A row of part `series`."""
+
+
+WallCell = HitsCell | SeriesCell | TrialCell
+WallRow = HitRow | SeriesRow
+
+# The paper's condition: a rough floor, and wheels in phase, as the robot's program starts them.
+CARPET, SMOOTH = ROBOT["grip_on_carpet"], ROBOT["grip"]
+PAPER: Condition = {
+    "k": 2.0,
+    "grip": CARPET,
+    "stiffness": ROBOT["wall_stiffness"],
+    "bumper": ROBOT["body_width"],
+    "apart": 0.0,
+}
+WIDE_M, SPRINGY = 0.4, 1000.0
+ON_SMOOTH: Condition = {**PAPER, "grip": SMOOTH}
+WITH_BUMPER: Condition = {**PAPER, "bumper": WIDE_M, "stiffness": SPRINGY}
+
+
+def condition_of(row: WallRow) -> Condition:
+    """The condition of a row; what a real robot's row does not say is taken to be the paper's."""
+    return {
+        "k": row["k"],
+        "grip": row.get("grip", PAPER["grip"]),
+        "stiffness": row.get("stiffness", PAPER["stiffness"]),
+        "bumper": row.get("bumper", PAPER["bumper"]),
+        "apart": row.get("apart", PAPER["apart"]),
+    }
+
+
+def hits_under(rows: list[WallRow], condition: Condition) -> list[HitRow]:
+    """The hits under a condition, in their order."""
+    return [row for row in rows if "t_s" not in row and condition_of(row) == condition]
+
+
+def series_under(rows: list[WallRow], condition: Condition) -> list[SeriesRow]:
+    """The ticks of the series under a condition; none if a real robot made the rows."""
+    return [row for row in rows if "t_s" in row and condition_of(row) == condition]
+
+
+def count_bounces(rows: list[HitRow]) -> tuple[int, int]:
+    """(reversals, hits)."""
+    return sum(row["reversed"] for row in rows), len(rows)
