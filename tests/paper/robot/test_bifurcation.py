@@ -7,6 +7,8 @@ import pytest
 
 from host.client.robot import connect
 from host.experiments.robot import bifurcation
+from host.experiments.robot.bifurcation_pieces import LEAST_K, MIDDLE_K
+from host.experiments.robot.bifurcation_rows import held, least_k
 from host.figures.robot.bifurcation import draw
 from host.logs.log import Log
 from host.runs.contract import Setting
@@ -67,7 +69,7 @@ def test_locomotion_falls_from_a_torque_well_above_the_stall(folds):
 
 
 def test_feedback_holds_cycles_on_both_sides_of_the_fold_and_does_not_change_them(branch):
-    assert len(bifurcation.held(list(branch.values()))) == len(branch)
+    assert len(held(list(branch.values()))) == len(branch)
     assert branch[0.24]["k"] > branch[0.3]["k"] < branch[0.5]["k"]
 
 
@@ -100,12 +102,12 @@ def test_the_claims_hold(sweep, folds, branch):
         {"k": 9.0, "k_after": 8.5},  # where it falls it runs again: no hysteresis
     ],
 )
-def test_no_jump_no_rest_or_no_hysteresis_is_told(sweep, folds, branch, changed):
+def test_r6_does_not_hold_without_jump_rest_and_hysteresis(sweep, folds, branch, changed):
     rows = [*sweep, *({**row, **changed} for row in folds), *branch.values()]
     assert verdict(rows, "R6").holds is False
 
 
-def test_a_motor_that_moves_too_early_is_told(branch):
+def test_r5_does_not_hold_for_a_motor_that_moves_too_early(branch):
     early = {"part": "ramp", "torque": 0.05, "holds": False, "note": "left: moves at 0.050"}
     claim = verdict([*branch.values(), early], "R5")
     assert claim.holds is False
@@ -115,8 +117,8 @@ def test_a_motor_that_moves_too_early_is_told(branch):
 def test_a_speed_that_was_not_held_is_no_point_of_the_branch(branch):
     slipped = {**branch[0.24], "hz": 0.0}
     shaken = {**branch[0.24], "k_sd": 0.1}
-    assert bifurcation.held([slipped, shaken]) == []
-    assert bifurcation.least_k([slipped, shaken]) is None
+    assert held([slipped, shaken]) == []
+    assert least_k(held([slipped, shaken])) is None
 
 
 def test_the_figure_tells_unstable_cycles_from_stable_ones(sweep, folds, branch):
@@ -131,6 +133,6 @@ def test_a_ladder_has_as_many_rungs_as_asked_for_and_is_denser_at_small_k():
     steps = bifurcation.ladder(33)
     assert len(set(steps)) == 33
     assert steps == sorted(steps)
-    assert steps[0] == bifurcation.LEAST_K
+    assert steps[0] == LEAST_K
     assert steps[-1] == bifurcation.START_K
-    assert sum(k <= bifurcation.MIDDLE_K for k in steps) >= 16
+    assert sum(k <= MIDDLE_K for k in steps) >= 16
