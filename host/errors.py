@@ -1,10 +1,13 @@
-"""What can go wrong for a person at the host, each with the exit status that says so to a script."""
+"""What can go wrong for a person at the host, each kind with its exit status for scripts."""
 
 
 class KickctlError(Exception):
-    """An error to be told in words: what happened and why, and what to do next.
+    """An error in words.
 
-    `status` is the exit status.
+    Attributes:
+        message: What happened, and why.
+        hint: What to do next; may be empty.
+        status: The exit status of a command that ends with it.
     """
 
     status = 1
@@ -22,13 +25,13 @@ class NotDone(KickctlError):
 
 
 class WrongUse(KickctlError):
-    """The request makes no sense, whatever robot there is."""
+    """The request makes no sense, no matter which robot gets it."""
 
     status = 2
 
 
 class NoLink(KickctlError):
-    """The robot cannot be reached, or no longer."""
+    """The robot cannot be reached, or its link broke."""
 
     status = 3
 
@@ -70,5 +73,5 @@ def from_robot(error: dict[str, object]) -> KickctlError:
 
 
 def printable(text: str) -> str:
-    """Text of a peer, cut to a decent length and without anything a terminal would obey."""
+    """Text of a peer, cut to 300 characters and without anything that a terminal would obey."""
     return "".join(letter for letter in text[:300] if letter.isprintable())

@@ -9,7 +9,7 @@ import platform
 
 from robot import __version__, commands, wire
 from robot.errors import Refused
-from robot.record import STRUCT
+from robot.record import STATES, STRUCT
 
 _BATCH = wire.MAX_SAMPLES // STRUCT.size
 
@@ -17,6 +17,20 @@ _BATCH = wire.MAX_SAMPLES // STRUCT.size
 def new_id():
     """Sixteen random bytes as text: a nonce, or the name of a boot."""
     return binascii.hexlify(os.urandom(wire.NONCE_BYTES)).decode("ascii")
+
+
+def _printable(name):
+    """A peer's name, cut to a decent length and without anything that a screen would obey."""
+    return "".join(letter for letter in name[:40] if letter.isprintable())
+
+
+def _name_in(payload):
+    """The name in what a STOP carries; empty if there is none, since a STOP may carry anything."""
+    try:
+        name = wire.load(payload).get("name")
+    except wire.BadMessage:
+        return ""
+    return _printable(name) if isinstance(name, str) else ""
 
 
 def _identity(message):
@@ -59,13 +73,7 @@ class Session(object):
             if kind == wire.HELLO:
                 return self._hello(wire.load(payload))
             if kind == wire.STOP:
-                return wire.encode_json(
-                    wire.REPLY,
-                    {
-                        "id": None,
-                        "result": {"tick": self._loop.stop("stop frame from " + self._peer())},
-                    },
-                )
+                return self._stop(payload)
             if not self.greeted:
                 raise wire.BadMessage("there was no hello before it")
             if kind == wire.AUTH:
@@ -106,8 +114,13 @@ class Session(object):
             wire.REPLY, {"id": None, "error": Refused(code, message, hint).as_dict()}
         )
 
-    def _peer(self):
-        return "'{}'".format(self.name) if self.name else "a peer without a name"
+    def _stop(self, payload):
+        name = self.name or _name_in(payload)
+        peer = "'{}'".format(name) if name else "a peer without a name"
+        tick = self._loop.stop("stop frame from " + peer)
+        safety = self._loop.safety
+        result = {"tick": tick, "state": STATES[safety.state], "reason": safety.reason}
+        return wire.encode_json(wire.REPLY, {"id": None, "result": result})
 
     def _hello(self, message):
         protocol = message.get("protocol")
@@ -134,7 +147,7 @@ class Session(object):
                     wire.NONCE_BYTES
                 )
             )
-        self.name = "".join(letter for letter in name[:40] if letter.isprintable())
+        self.name = _printable(name)
         self.client = client
         self.trusted = False
         self._counter = 0

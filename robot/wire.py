@@ -6,7 +6,7 @@ import json
 import struct
 import zlib
 
-PROTOCOL = (1, 0)
+PROTOCOL = (1, 1)
 
 SYNC = b"\xa5K"
 _HEADER = struct.Struct(">2sBH")

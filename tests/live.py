@@ -21,13 +21,13 @@ PORTS = ("outB", "outC")
 PATIENCE_S = 20.0
 LOOK_S = 0.001
 # A host that soon gives up a robot that is away, or twenty tries of each fault would take hours.
-IMPATIENT = {"ANSWER_S": 1.0, "RECONNECT_S": 0.3}
+IMPATIENT = {"answer_s": 1.0, "reconnect_s": 0.3}
 _GONE = (errno.ENODEV, errno.ENOENT)
 
 
 def impatient():
     """A context in which hosts wait for less long than people would have them wait."""
-    return mock.patch.multiple("host.client.robot", **IMPATIENT)
+    return mock.patch.multiple("host.client.connection.Connection", **IMPATIENT)
 
 
 def wait_until(condition, what):

@@ -42,7 +42,8 @@ class Client:
 
     def stop(self):
         """The result of a stop frame."""
-        return self._exchange(*self.talk.stop_frame())
+        self.give(wire.encode(wire.STOP, b""))
+        return self.talk.stopped
 
     def flow(self, frames=1000000):
         """Take so many frames of the subscription."""

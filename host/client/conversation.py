@@ -1,7 +1,4 @@
-"""The host's side of the protocol, without any I/O.
-
-What to send, and what the bytes that came in mean.
-"""
+"""The host's side of the protocol, without any I/O: what to send, and what arriving bytes mean."""
 
 from __future__ import annotations
 
@@ -10,6 +7,7 @@ import struct
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from host.client.stop import Stopped, answered
 from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot
 from robot import wire
 from robot.record import Record, unpack
@@ -34,9 +32,10 @@ class Samples(NamedTuple):
 
 
 class Conversation:
-    """One robot's answers, in order. `session` counts how often it was begun anew.
+    """One robot's answers, in order.
 
-    Answers belong to the session they came in.
+    session: how often the conversation has begun; an answer belongs to the session it came in.
+    stopped: the robot's latest answer to a STOP.
     """
 
     def __init__(self, token: bytes | None, name: str, client: str) -> None:
@@ -44,6 +43,7 @@ class Conversation:
         self.hello: dict[str, Any] = {}
         self.trusted = False
         self.session = 0
+        self.stopped: Stopped | None = None
         self._name = name
         self._client = client
         self._nonce = b""
@@ -51,11 +51,11 @@ class Conversation:
         self._counter = 0
         self._number = 0
         self._decoder = wire.Decoder()
-        self._answers: dict[int | None, dict[str, Any]] = {}
+        self._answers: dict[int, dict[str, Any]] = {}
         self._refusal: dict[str, Any] | None = None
 
     def begin(self) -> None:
-        """Start anew on a new link."""
+        """Start a session on a link that has just been opened."""
         self.hello = {}
         self.trusted = False
         self.session += 1
@@ -83,11 +83,6 @@ class Conversation:
         )
         return _bytes(wire.encode_json(wire.AUTH, {"proof": self._handshake.host_proof.hex()}))
 
-    def stop_frame(self) -> tuple[None, bytes]:
-        """The frame that stops the motors, which anyone may send."""
-        self._answers.pop(None, None)
-        return None, _bytes(wire.encode(wire.STOP, b""))
-
     def request(self, command: str, arguments: dict[str, Any], sealed: bool) -> tuple[int, bytes]:
         """(number, frame) of a request; its answer will carry the number."""
         self._number += 1
@@ -105,7 +100,7 @@ class Conversation:
             wire.encode(wire.COMMAND, wire.seal(self._handshake.key, self._counter, body))
         )
 
-    def answer(self, number: int | None) -> dict[str, Any] | None:
+    def answer(self, number: int) -> dict[str, Any] | None:
         """The result that answers request `number`, None if it has not come.
 
         Raises the error that came instead.
@@ -175,8 +170,10 @@ class Conversation:
         elif kind == wire.REPLY:
             number, outcome = message["id"], "error" if "error" in message else "result"
             reply = {outcome: {**message[outcome]}}
-            if number is None and outcome == "error":
-                self._refusal = reply[outcome]
+            if number is None and outcome == "result":
+                self.stopped = answered(reply["result"])
+            elif number is None:
+                self._refusal = reply["error"]
             elif self.hello:  # before it come the answers to whoever used this line before
                 self._answers[number] = reply
                 while len(self._answers) > _MAX_UNCLAIMED:

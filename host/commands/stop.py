@@ -2,9 +2,11 @@
 
 import argparse
 
-from host.commands._terminal import answer, robot_of
+from host.client.stop import Stopped, stop_robot
+from host.commands._terminal import answer, say
+from host.link.addresses import chosen, make_link
 
-HELP = "stop the motors; needs no token"
+HELP = "stop the motors; needs no token, and no robot that understands anything else"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -12,14 +14,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Stop, whoever controls the robot."""
-    with robot_of(options, observe=True) as robot:
-        tick = robot.stop()
-        state = robot.status()["state"]
-        answer(
-            options,
-            {"state": state, "tick": tick},
-            f"motors stopped before tick {tick}; the robot is"
-            f" {'in fault' if state == 'fault' else state}",
-        )
+    """Send the STOP frame before anything else, and wait until the robot confirms it."""
+    link = make_link(chosen(options.brick), options.seed)
+    if link.virtual:
+        say(f"simulated robot, embedded ({link.uri}); no other robot is stopped")
+    stopped = stop_robot(link)
+    answer(options, {"state": stopped.state, "tick": stopped.tick}, _sentence(stopped))
     return 0
+
+
+def _sentence(stopped: Stopped) -> str:
+    if stopped.state == "fault":
+        return f"stopped before tick {stopped.tick}, and the robot is in fault: {stopped.reason}"
+    if stopped.state == "unknown":
+        return f"the robot, which runs another release, has stopped before tick {stopped.tick}"
+    return f"motors stopped before tick {stopped.tick}; the robot is {stopped.state}"

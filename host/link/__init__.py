@@ -1,1 +1,1 @@
-"""Bytes to and from a robot: addresses, sockets, serial lines, ssh, the embedded simulation, discovery."""
+"""Bytes to and from a robot: addresses, sockets, serial lines, ssh, simulation, discovery."""

@@ -1,11 +1,16 @@
-"""Addresses of robots: sim:// (embedded, virtual time), tcp://host:port, ssh://user@host and serial:///dev/...?baud=."""
+"""Addresses of robots.
+
+sim:// (embedded, in virtual time), tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=.
+"""
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from host.errors import WrongUse
+from host.link.settings import parse_setting
 from host.link.transport import Link, SerialLink, TcpLink
 from host.util.interrupts import uninterrupted
 from robot.program import BAUD, PORT
@@ -40,6 +45,35 @@ def _split(uri: str) -> _Parts:
 _FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
 
 
+def chosen(uri: str | None) -> str:
+    """The address to use: the one given, else $KICK_BRICK, else the embedded simulated robot's."""
+    return uri or os.environ.get("KICK_BRICK") or SIM
+
+
+def with_params(uri: str, settings: list[str]) -> str:
+    """The address of a simulated robot that begins with parameters.
+
+    Args:
+        uri: A simulated robot's address.
+        settings: The parameters, each as NAME=VALUE.
+
+    Returns:
+        The address with the parameters among its options.
+
+    Raises:
+        WrongUse: It is a real robot's address, or a setting is not of the form NAME=VALUE.
+    """
+    options = sim_options(uri)
+    if options is None:
+        raise WrongUse(
+            "--set gives parameters to the simulated robot that is embedded in this program, and"
+            f" '{uri}' is a robot of its own",
+            f"set them there: kickctl --brick {uri} params set {' '.join(settings)}",
+        )
+    options.update((name, str(value)) for name, value in map(parse_setting, settings))
+    return f"{SIM}?{urlencode(options)}"
+
+
 def sim_options(uri: str) -> dict[str, str] | None:
     """The options of a simulated robot's URI, None for a real one's.
 
@@ -50,9 +84,14 @@ def sim_options(uri: str) -> dict[str, str] | None:
 
 
 def make_link(uri: str, seed: int | None = None) -> Link:
-    """The Link for a URI, not opened yet. `seed` is for sim:// and overrides the URI's.
+    """The link for an address, not opened yet.
 
-    Raises WrongUse.
+    Args:
+        uri: The robot's address.
+        seed: Fixes all chances of a simulated robot; overrides the address's own seed.
+
+    Raises:
+        WrongUse: It is no address of a robot, or a real robot was given a seed.
     """
     parts = _split(uri)
     if parts.scheme != "sim" and seed is not None:

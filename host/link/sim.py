@@ -7,11 +7,16 @@ from __future__ import annotations
 
 import os
 import socket
+import threading
 from dataclasses import fields
+from typing import Any, Self
 
 from host.errors import WrongUse
+from host.link.settings import number_or_text
 from host.link.transport import LinkLost
+from robot.errors import Refused
 from robot.loop import Loop
+from robot.params import TABLE
 from robot.server import Server
 from robot.wire import TOKEN_BYTES
 from sim_motor.brick import SimBrick
@@ -20,23 +25,35 @@ from sim_motor.world import Scene
 _READ_BYTES = 65536
 _SCENE = tuple(field.name for field in fields(Scene))
 _OPTIONS = ("seed", "idle", "motor", "battery", *_SCENE)
+_THEY_ARE = f"its options are {', '.join(_OPTIONS)}, and the robot's parameters: {', '.join(TABLE)}"
 
 
 class SimLink:
     """A simulated brick in virtual time behind a pair of connected sockets.
 
-    It makes its own token.
+    It has a token of its own. Several threads may use links to the same robot: whoever waits lets
+    one tick pass at a time.
     """
 
     virtual = True
+    opens_fast = True
 
-    def __init__(self, uri: str, brick: SimBrick, idle: bool = False) -> None:
+    def __init__(
+        self,
+        uri: str,
+        brick: SimBrick,
+        idle: bool = False,
+        params: dict[str, Any] | None = None,
+    ) -> None:
         self.uri = uri
         self.brick = brick
         self.token = os.urandom(TOKEN_BYTES)
         self.loop = Loop(brick.motors, brick.battery, brick.clock, brick.seed)
         self.server = Server(self.loop, self.token)
         self._socket: socket.socket | None = None
+        self._turn = threading.RLock()
+        if params:
+            self.loop.set_params(params)
         if not idle:
             self.loop.start()
 
@@ -44,15 +61,18 @@ class SimLink:
     def from_options(cls, uri: str, options: dict[str, str], seed: int | None) -> SimLink:
         """The link for the options of a sim:// URI.
 
-        Seed, idle=1, motor=NAME, battery=V, and those of sim_motor.world.Scene.
+        Args:
+            uri: The whole address, for messages.
+            options: seed, idle=1, motor=NAME, battery=V, the fields of sim_motor.world.Scene, and
+                the robot's parameters.
+            seed: Overrides the seed among the options.
 
-        Raises WrongUse.
+        Raises:
+            WrongUse: The robot cannot be simulated with these options.
         """
         for name in options:
-            if name not in _OPTIONS:
-                raise WrongUse(
-                    f"sim:// has no option '{name}'", "its options are " + ", ".join(_OPTIONS)
-                )
+            if name not in _OPTIONS and name not in TABLE:
+                raise WrongUse(f"sim:// has no option '{name}'", _THEY_ARE)
         for name in _SCENE:
             if name in options and "walls" not in options:
                 raise WrongUse(
@@ -76,18 +96,29 @@ class SimLink:
                 seed, motor=options.get("motor", "pybricks"), battery_v=battery_v, scene=scene
             )
         except (ValueError, KeyError) as error:
+            raise WrongUse(f"'{uri}' cannot be simulated: {error}", _THEY_ARE) from error
+        idle = options.get("idle", "0") not in ("", "0")
+        try:
+            return cls(uri, brick, idle, _params(options))
+        except Refused as refusal:
             raise WrongUse(
-                f"'{uri}' cannot be simulated: {error}", "its options are " + ", ".join(_OPTIONS)
-            ) from error
-        return cls(uri, brick, idle=options.get("idle", "0") not in ("", "0"))
+                f"'{uri}' cannot be simulated: {refusal.message}", refusal.hint
+            ) from refusal
+
+    def another(self) -> Self:
+        """A second link to the same simulated robot, not opened yet."""
+        other = object.__new__(type(self))
+        vars(other).update(vars(self), _socket=None)
+        return other
 
     def open(self) -> None:
-        """Connect anew to the same robot."""
+        """Close what was open, and connect to the same robot."""
         self.close()
         self._socket, robot_end = socket.socketpair()
         self._socket.setblocking(False)
         robot_end.setblocking(False)
-        self.server.adopt(robot_end)
+        with self._turn:
+            self.server.adopt(robot_end)
 
     def send(self, data: bytes) -> None:
         """Send all of it; the robot's end is served as often as it takes."""
@@ -97,7 +128,7 @@ class SimLink:
             try:
                 data = data[self._socket.send(data) :]
             except BlockingIOError:
-                self.server.serve(0.0)
+                self._serve()
             except OSError as error:
                 raise LinkLost(str(error)) from error
 
@@ -124,9 +155,10 @@ class SimLink:
 
     def run_tick(self) -> None:
         """Let the robot's time pass until its next tick is done, and what it has to say is sent."""
-        self.loop.clock.wait(self.loop.deadline, self.server.serve)
-        self.loop.tick()
-        self.server.serve(0.0)
+        with self._turn:
+            self.loop.clock.wait(self.loop.deadline, self.server.serve)
+            self.loop.tick()
+            self.server.serve(0.0)
 
     def now(self) -> float:
         """The robot's virtual time in s."""
@@ -137,4 +169,13 @@ class SimLink:
         if self._socket is not None:
             self._socket.close()
             self._socket = None
-            self.server.serve(0.0)  # lets the robot notice
+            self._serve()  # lets the robot notice
+
+    def _serve(self) -> None:
+        with self._turn:
+            self.server.serve(0.0)
+
+
+def _params(options: dict[str, str]) -> dict[str, float | str]:
+    """The robot's parameters among the options, numbers as numbers."""
+    return {name: number_or_text(options[name]) for name in options if name in TABLE}

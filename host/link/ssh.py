@@ -1,6 +1,6 @@
-"""ssh://[user@]host[:ssh port][?port=].
+"""ssh://[user@]host[:ssh port][?port=]: a robot through the system's ssh.
 
-A robot through the system's ssh, which knows the user's keys, settings and known hosts.
+ssh knows the user's keys, settings and known hosts.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import subprocess
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import IO
+from typing import IO, Self
 from urllib.parse import parse_qsl, urlsplit
 
 from host.errors import NoLink, WrongUse, printable
-from host.link.transport import LinkLost, TcpLink
+from host.link.transport import CONNECT_TIMEOUT_S, LinkLost, TcpLink
 from host.util.installation import deploy_command
 from robot.program import PORT
 
@@ -25,6 +25,9 @@ _FORM = (
     " at its usual port"
 )
 _END_S = 2.0
+# A second link of a program that is connected asks for no password, so nobody has to be waited for.
+_BATCH = ["-o", "BatchMode=yes"]
+_BATCH_ANSWER_S = 15.0
 # ssh may say much; what it gives up for comes last.
 _LAST_WORDS = 280
 # ^C reaches ssh too, but is kickctl's to answer: it still has the motors to stop, over this very
@@ -62,12 +65,11 @@ _REMEDY = (
 class SshLink(TcpLink):
     """A connection from the robot's machine to its own port, carried by an ssh process.
 
-    Raises WrongUse.
-
     $KICK_SSH_OPTIONS holds further options for ssh. Passwords are ssh's business: it asks for them
-    at the terminal.
+    at the terminal. Raises WrongUse for an address that cannot be one.
     """
 
+    opens_fast = False
     # ssh may have to wait for a person who types a password; if it gives up instead, its end is
     # noticed at once.
     answer_s = 60.0
@@ -103,17 +105,24 @@ class SshLink(TcpLink):
         self._words: IO[bytes] | None = None
         self._heard = False
 
+    def another(self) -> Self:
+        """A second ssh process to the same robot, not started yet, which asks for no password."""
+        other = object.__new__(type(self))
+        vars(other).update(vars(self), _socket=None, _ssh=None, _words=None, _heard=False)
+        if self._heard:
+            vars(other).update(_options=self._options + _BATCH, answer_s=_BATCH_ANSWER_S)
+        return other
+
     def open(self) -> None:
         """Start ssh. Whether it gets through shows when the robot is heard, or not."""
         self.close()
         if self._heard and "BatchMode=yes" not in self._options:
-            self._options += [
-                "-o",
-                "BatchMode=yes",
-            ]  # nobody waits at the terminal to type a password a second time
+            # Nobody waits at the terminal to type a password a second time.
+            self._options += _BATCH
         self._heard = False
         self._words = tempfile.TemporaryFile()  # noqa: SIM115
         self._socket, theirs = socket.socketpair()
+        self._socket.settimeout(CONNECT_TIMEOUT_S)
         with theirs:
             command = [*_RUN, *self._options, "--", self._login]
             self._ssh = subprocess.Popen(

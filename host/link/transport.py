@@ -1,14 +1,11 @@
-"""What a way to a robot is, bytes out and bytes in, and the two plain ones.
-
-A TCP connection and a serial line.
-"""
+"""What a link to a robot is (bytes out, bytes in), and the two plain ones: TCP and serial."""
 
 from __future__ import annotations
 
 import select
 import socket
 import time
-from typing import Protocol
+from typing import Protocol, Self
 
 from host.errors import NoLink
 from host.util.installation import deploy_command
@@ -22,13 +19,22 @@ class LinkLost(Exception):
 
 
 class Link(Protocol):
-    """A way to a robot. `virtual` links carry their own robot and their own time."""
+    """A way to a robot.
+
+    uri: the robot's address. virtual: whether the link carries its own robot, which has its own
+    time. opens_fast: whether a second link is opened as quickly as a frame is sent, so that a stop
+    had better take one of its own.
+    """
 
     uri: str
     virtual: bool
+    opens_fast: bool
+
+    def another(self) -> Link:
+        """A second way to the same robot, not opened yet."""
 
     def open(self) -> None:
-        """Open, or open anew. Raises NoLink."""
+        """Open, or close and open again. Raises NoLink."""
 
     def send(self, data: bytes) -> None:
         """Send all of it. Raises LinkLost."""
@@ -50,14 +56,19 @@ class TcpLink:
     """A TCP connection."""
 
     virtual = False
+    opens_fast = True
 
     def __init__(self, uri: str, host: str, port: int) -> None:
         self.uri = uri
         self._address = (host, port)
         self._socket: socket.socket | None = None
 
+    def another(self) -> Self:
+        """A second connection to the same port, not opened yet."""
+        return type(self)(self.uri, *self._address)
+
     def open(self) -> None:
-        """Connect anew. Raises NoLink."""
+        """Close what was open, and connect. Raises NoLink."""
         self.close()
         try:
             self._socket = socket.create_connection(self._address, timeout=CONNECT_TIMEOUT_S)
@@ -65,8 +76,8 @@ class TcpLink:
             raise NoLink(
                 f"no robot's program runs at {self.uri}: the machine is there and refuses the"
                 " connection",
-                "start the program; if it died, its watchdog has stopped the motors, and its log"
-                f" says why (of a brick: {deploy_command()} --logs)",
+                "start the program. If it died, its watchdog should have stopped the motors: look"
+                f" whether they turn. Its log says why (of a brick: {deploy_command()} --logs)",
             ) from error
         except OSError as error:
             raise NoLink(
@@ -110,19 +121,28 @@ class TcpLink:
 
 
 class SerialLink:
-    """A serial line, by pyserial."""
+    """A serial line, by pyserial.
+
+    Two readers of one line would take each other's bytes, so a stop goes over the open line first.
+    """
 
     virtual = False
+    opens_fast = False
 
     def __init__(self, uri: str, device: str, baud: int) -> None:
         import serial
 
         self.uri = uri
+        self._device = device, baud
         self._serial = serial.Serial(baudrate=baud, write_timeout=CONNECT_TIMEOUT_S)
         self._serial.port = device
 
+    def another(self) -> Self:
+        """The same line, not opened yet."""
+        return type(self)(self.uri, *self._device)
+
     def open(self) -> None:
-        """Open the line anew. Raises NoLink."""
+        """Open the line, closing it first if it is open. Raises NoLink."""
         self.close()
         try:
             self._serial.open()

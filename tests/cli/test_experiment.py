@@ -230,7 +230,7 @@ def test_a_robot_that_stays_in_fault_ends_the_run_and_keeps_what_was_measured(to
 def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(
     toy, desk, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("host.client.robot.RECONNECT_S", 0.5)
+    monkeypatch.setattr("host.client.connection.Connection.reconnect_s", 0.5)
     uri, process = desk
     real = toy.trial
 

@@ -3,96 +3,19 @@
 import gc
 import json
 import socket
-import threading
 import time
-from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from host.client.robot import RECONNECT_S, Robot, connect
+from host.client.robot import Robot, connect
 from host.errors import NoLink, RefusedByRobot, WrongUse
-from host.link.sim import SimLink
 from host.link.transport import TcpLink
 from host.logs.log import Log
-from robot.loop import Loop
-from robot.motors import MonotonicClock
-from robot.record import unpack
-from robot.server import Server
-from tests.rig import TOKEN, Clock, Motor, packed
+from tests.link.machines import RigLink, TcpRobot, open_files
+from tests.rig import TOKEN, packed
 from tests.talk import Client
-
-
-class RigLink(SimLink):
-    """An embedded robot on the rig whose link can be cut anywhere, and which can go away and begin anew."""
-
-    def __init__(self, capacity=20000):
-        clock = Clock()
-        super().__init__(
-            "sim://rig",
-            SimpleNamespace(
-                motors=(Motor(turn=0.1), Motor(turn=0.2)), battery=None, clock=clock, seed=1
-            ),
-        )
-        self.capacity = capacity
-        self.loop.blackbox.__init__(self.loop.params.values(), capacity)
-        self.loop.safety.__init__()
-        self.loop.start()
-        self.left = None
-        self.away_until = 0.0
-
-    def open(self):
-        if self.now() < self.away_until:
-            self.run_tick()
-            raise NoLink("the robot is away")
-        super().open()
-
-    def receive(self, timeout_s):
-        data = super().receive(timeout_s)
-        if self.left is not None:
-            data, self.left = data[: self.left], self.left - len(data)
-            if self.left <= 0:
-                self.cut()
-        return data
-
-    def cut(self, away_s=0.0):
-        """Lose the link, and everything on its way."""
-        self.left = None
-        self.close()
-        self.away_until = self.now() + away_s
-
-    def restart(self):
-        """Another boot of the same robot."""
-        self.close()
-        self.loop = Loop(self.brick.motors, None, self.brick.clock, 2)
-        self.server = Server(self.loop, self.token)
-        self.loop.start()
-
-    def records(self):
-        box = self.loop.blackbox
-        return unpack(b"".join(box.read(tick, 1) for tick in range(box.oldest_tick, box.next_tick)))
-
-    def events(self):
-        return [event for _, event in self.loop.blackbox._journal]
-
-
-@pytest.fixture
-def link():
-    return RigLink()
-
-
-@pytest.fixture
-def robot(link):
-    with Robot(link, link.token) as robot:
-        yield robot
-
-
-def open_files():
-    """How many files this process has open."""
-    return len(list(Path("/proc/self/fd").iterdir()))
-
 
 # Cut links
 
@@ -220,7 +143,7 @@ def test_a_robot_that_stays_away_is_given_up_on(robot, link):
     link.cut(away_s=1000.0)
     with pytest.raises(NoLink, match="did not come back"):
         robot.wait(1.0)
-    assert RECONNECT_S <= link.now() - begin < RECONNECT_S + 1.0
+    assert Robot.reconnect_s <= link.now() - begin < Robot.reconnect_s + 1.0
     for call in (robot.status, robot.stop, lambda: robot.pump(0.0), lambda: robot.kick("phase")):
         with pytest.raises(NoLink):
             call()
@@ -309,27 +232,6 @@ def test_a_session_leaves_nothing_open():
 
 
 # Real links
-
-
-class TcpRobot:
-    """A robot's program in a thread, in real time."""
-
-    def __init__(self, **params):
-        self.loop = Loop((Motor(turn=0.1), Motor(turn=0.1)), None, MonotonicClock(), 1)
-        self.loop.set_params({"tick_s": 0.01, **params})
-        self.server = Server(self.loop, TOKEN)
-        self.port = self.server.listen("127.0.0.1", 0)
-        self.loop.start()
-        self._thread = threading.Thread(target=self.loop.run, args=(self.server.serve,))
-        self._thread.start()
-
-    def link(self):
-        return TcpLink(f"tcp://127.0.0.1:{self.port}", "127.0.0.1", self.port)
-
-    def close(self):
-        self.loop.done = True
-        self._thread.join()
-        self.server.close()
 
 
 @pytest.fixture

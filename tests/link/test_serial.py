@@ -4,114 +4,22 @@ Pseudo-terminals with a cable between them that makes noise and comes off.
 """
 
 import os
-import select
 import threading
 import time
 import tty
 from pathlib import Path
-from random import Random
 
 import pytest
 
-from host.client import robot as client_module
 from host.client.robot import Robot
+from host.errors import NoLink
 from host.link.addresses import make_link
 from host.logs.log import Log
-from robot import program, wire
-from robot.loop import Loop
-from robot.motors import MonotonicClock
+from robot import wire
 from robot.record import STATES, unpack
 from robot.server import LINE_SILENCE_S, Server
-from tests.rig import TOKEN, Motor, Rig
-
-STOP = wire.encode(wire.STOP, b"")
-TICK_S = 0.01
-
-
-class Cable:
-    """Two serial ports, `robot` and `host`, and what joins them.
-
-    Between frames it adds what `noise` returns.
-    """
-
-    def __init__(self, folder, noise=lambda: b""):
-        self.paths = {name: folder / name for name in ("robot", "host")}
-        self.noise = noise
-        self._masters = {}
-        self._decoders = {}
-        self._ended = threading.Event()
-        self.plug()
-        self._thread = threading.Thread(target=self._carry)
-        self._thread.start()
-
-    def plug(self):
-        """Make the ports appear."""
-        masters = {}
-        for name, path in self.paths.items():
-            masters[name], slave = os.openpty()
-            tty.setraw(slave)
-            os.set_blocking(masters[name], False)
-            path.symlink_to(os.ttyname(slave))
-            os.close(slave)
-            self._decoders[name] = wire.Decoder()
-        self._masters = masters
-
-    def unplug(self):
-        """Take the ports away from whoever has them open."""
-        masters, self._masters = self._masters, {}
-        time.sleep(0.02)
-        for path in self.paths.values():
-            path.unlink(missing_ok=True)
-        for master in masters.values():
-            os.close(master)
-
-    def close(self):
-        self._ended.set()
-        self._thread.join()
-        self.unplug()
-
-    def _carry(self):
-        while not self._ended.is_set():
-            masters = self._masters
-            try:
-                for name in masters:
-                    other = masters["host" if name == "robot" else "robot"]
-                    if select.select((masters[name],), (), (), 0.001)[0]:
-                        self._decoders[name].feed(os.read(masters[name], 4096))
-                    while (frame := self._decoders[name].next()) is not None:
-                        os.write(other, self.noise() + wire.encode(*frame))
-            except OSError:
-                # Nobody has the other port open, or it came off.
-                time.sleep(0.002)
-
-
-class Machine:
-    """A robot's program in a thread, in real time, at the end of a cable."""
-
-    def __init__(self, path, token=TOKEN):
-        self.loop = Loop((Motor(turn=0.1), Motor(turn=0.1)), None, MonotonicClock(), 1)
-        self.loop.set_params({"tick_s": TICK_S})
-        self.server = Server(self.loop, token)
-        self.server.attach(program._line_opener(str(path)))
-        self.loop.start()
-        self._thread = threading.Thread(target=self.loop.run, args=(self.server.serve,))
-        self._thread.start()
-        while not self.server._peers:
-            time.sleep(0.001)
-
-    def close(self):
-        self.loop.done = True
-        self._thread.join()
-        self.server.close()
-
-
-def noisy(seed):
-    random = Random(seed)
-    return lambda: (
-        random.randbytes(random.randrange(12))
-        if random.random() < 0.5
-        else random.choice((b"", b"\xa5", wire.SYNC, STOP[:6]))
-    )
+from tests.link.machines import STOP, TICK_S, Cable, Machine, noisy
+from tests.rig import TOKEN, Rig
 
 
 @pytest.fixture
@@ -151,7 +59,7 @@ def test_a_whole_conversation_over_a_noisy_line(joined):
 
 
 def test_a_line_that_comes_off_is_taken_up_again_without_a_gap(joined, monkeypatch):
-    monkeypatch.setattr(client_module, "ANSWER_S", 0.6)
+    monkeypatch.setattr(Robot, "answer_s", 0.6)
     cable, machine, uri = joined
     machine.loop.set_params({"link_loss": "continue"})
     with Robot(make_link(uri), TOKEN, "serial") as robot:
@@ -307,7 +215,7 @@ def test_a_line_that_cannot_be_opened_is_tried_again_now_and_then():
 
 
 def test_a_missing_port_is_told_in_words(tmp_path):
-    with pytest.raises(client_module.NoLink) as error:
+    with pytest.raises(NoLink) as error:
         Robot(make_link(f"serial://{tmp_path / 'nothing'}"), None)
     assert "cannot be opened" in error.value.message
     assert Path(tmp_path).exists()

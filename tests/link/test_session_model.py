@@ -136,7 +136,7 @@ class SessionMachine(RuleBasedStateMachine):
 
     @rule(name=names)
     def stop_frame(self, name):
-        assert self.client(name).stop() == {"tick": self.tick}
+        assert self.client(name).stop().tick == self.tick
         if self.state != "fault":
             self._enter("stopped")
 

@@ -1,0 +1,83 @@
+"""What lets a host in: the token, and the hello and the proof that begin every conversation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from host.client.conversation import Conversation
+from host.errors import NoLink, RefusedByRobot
+from host.link.transport import Link
+from robot.token import TokenError, default_path, load
+
+LOOK_S = 0.1
+
+
+def find_token(link: Link, path: str | None = None) -> bytes | None:
+    """The token for a link: its own if it has one, else a file's.
+
+    Args:
+        link: The way to the robot.
+        path: The token file, by default the one in the usual place if it is there.
+
+    Returns:
+        The token; None if there is no file in the usual place.
+
+    Raises:
+        RefusedByRobot: The file holds no token, or others can read it.
+    """
+    own: bytes | None = getattr(link, "token", None)
+    if own is not None:
+        return own
+    place = path or default_path()
+    if path is None and not Path(place).exists():
+        return None
+    try:
+        secret: bytes = load(place)
+    except TokenError as error:
+        raise RefusedByRobot(
+            str(error), "name another token file by --token, or leave it to the default place"
+        ) from error
+    return secret
+
+
+def greet(link: Link, talk: Conversation, send: Callable[[bytes], None], patience_s: float) -> None:
+    """Say hello over an open link, and prove the token if there is one.
+
+    Args:
+        link: The open link.
+        talk: The conversation, which begins here.
+        send: Sends a frame over the link.
+        patience_s: How long the robot may take for each answer (s).
+
+    Raises:
+        KickctlError: Nobody answers, or the robot refuses.
+        LinkLost: The robot hung up.
+    """
+    talk.begin()
+    send(talk.hello_frame())
+    hear(link, talk, lambda: bool(talk.hello), patience_s)
+    if talk.token is not None:
+        send(talk.auth_frame())
+        hear(link, talk, lambda: talk.trusted, patience_s)
+
+
+def hear(link: Link, talk: Conversation, arrived: Callable[[], bool], patience_s: float) -> None:
+    """Read from a link until what is awaited has arrived.
+
+    A link of which more patience is known, as of ssh that waits for a password, gets more.
+
+    Raises:
+        KickctlError: Nothing has come in time, or the robot refuses.
+        LinkLost: The robot hung up.
+    """
+    until = link.now() + float(getattr(link, "answer_s", patience_s))
+    while not arrived():
+        if link.now() > until:
+            raise NoLink(
+                f"nothing answers at {link.uri} as a robot does",
+                "is it the robot's port? If so, its program hangs, and its watchdog should have"
+                " stopped the motors: look whether they turn",
+            )
+        talk.feed(link.receive(LOOK_S))
+        talk.raise_refusal()

@@ -1,0 +1,110 @@
+"""Stop a robot by one frame: without hello, token or lock, and without a success nobody saw."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any, NamedTuple
+
+from host.errors import NoLink, printable
+from host.link.transport import Link, LinkLost
+from robot import wire
+from robot.record import STATES, unpack
+
+# How long the robot may take to confirm a stop.
+CONFIRM_S = 5.0
+# A line may garble or lose a frame; a second STOP changes nothing.
+REPEAT_S = 0.25
+_AT_REST = ("stopped", "fault")
+
+
+class Stopped(NamedTuple):
+    """What the robot has said about a stop.
+
+    tick: the first tick of the stop, or a tick in which the motors were off. state: the robot's
+    state, 'unknown' if an older program answered. reason: why it is in that state.
+    """
+
+    tick: int
+    state: str
+    reason: str
+
+
+def stop_frame(name: str) -> bytes:
+    """The frame that stops the motors, with the name of who sends it (at most 40 characters)."""
+    return bytes(wire.encode_json(wire.STOP, {"name": name[:40]}))
+
+
+def confirmation(kind: int, payload: bytes) -> Stopped | None:
+    """What a frame of the robot says about a stop: an answer to STOP, or motors off in a record.
+
+    Args:
+        kind: The frame's type.
+        payload: What it carries.
+
+    Returns:
+        What is known, None if the frame says nothing about a stop.
+    """
+    try:
+        if kind == wire.REPLY:
+            message = wire.load(payload)
+            if message["id"] is None and "result" in message:
+                return answered(message["result"])
+        elif kind == wire.SAMPLES:
+            record = unpack(wire.open_samples(payload)[1])[-1]
+            state = STATES[record.state]
+            if state in _AT_REST and record.left_duty_pct == record.right_duty_pct == 0:
+                return Stopped(record.tick, state, "")
+    except (wire.BadMessage, struct.error, LookupError, TypeError, ValueError):
+        pass  # another version's frame, which proves nothing
+    return None
+
+
+def answered(result: dict[str, Any]) -> Stopped:
+    """A robot's answer to STOP. Raises KeyError, TypeError or ValueError if it is none."""
+    said = {"state": "unknown", "reason": "", **result}
+    return Stopped(int(said["tick"]), printable(str(said["state"])), printable(str(said["reason"])))
+
+
+def stop_robot(link: Link, name: str = "kickctl", patience_s: float | None = None) -> Stopped:
+    """Open a link, send the STOP frame before anything else, and wait until it is confirmed.
+
+    The link is closed in the end.
+
+    Args:
+        link: A way to the robot, not opened yet.
+        name: Who stops the robot, for people.
+        patience_s: How long the robot may take, by default as long as it may for a hello.
+
+    Returns:
+        What the robot says about the stop.
+
+    Raises:
+        NoLink: Nobody has confirmed the stop, so the motors may be running.
+    """
+    frame, decoder = stop_frame(name), wire.Decoder()
+    try:
+        link.open()
+        until = link.now() + (patience_s or float(getattr(link, "answer_s", CONFIRM_S)))
+        repeat = link.now()
+        while link.now() <= until:
+            if link.now() >= repeat:
+                link.send(frame)
+                repeat = link.now() + REPEAT_S
+            decoder.feed(link.receive(min(REPEAT_S, 0.1)))
+            while (received := decoder.next()) is not None:
+                stopped = confirmation(*received)
+                if stopped is not None:
+                    return stopped
+    except LinkLost as error:
+        raise unconfirmed(link.uri, f"the link broke ({error})") from error
+    finally:
+        link.close()
+    raise unconfirmed(link.uri, "no answer has come")
+
+
+def unconfirmed(uri: str, why: str) -> NoLink:
+    """The error for a stop that was sent and that nobody has confirmed."""
+    return NoLink(
+        f"the stop was sent to {uri}, but {why}: the motors may still be running",
+        "try again, press the back button on the brick, or take out its battery",
+    )
