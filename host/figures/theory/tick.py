@@ -1,30 +1,51 @@
-"""What a tick does: the lines in k against its length, how a small swing grows, how fast a wheel rolls, and what latency adds."""
+"""What a tick does: thresholds in k, growth of a small swing, speed of rolling, and latency."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
-from host.theory.studies.tick import CONTINUOUS, NEW, OLD, ORDERS, RUNNING_K, part_of
+from host.runs.contract import Findings
+from host.theory.studies.tick import RUNNING_K
+from host.theory.studies.tick_rows import (
+    CONTINUOUS,
+    NEW,
+    OLD,
+    ORDERS,
+    Continuous,
+    LatencyRow,
+    Order,
+    TickRow,
+    TickStudyRow,
+    growth_of,
+    motions,
+    over_latencies,
+    over_ticks,
+)
 
-_COLOUR = {NEW: COLOURS[0], OLD: COLOURS[1], CONTINUOUS: "black"}
-_LINE = {
+Part = Literal["tick", "latency"]
+Threshold = Literal["k_c", "k_rolls", "k_stops"]
+Column = Literal[Threshold, "hz"]
+
+_COLOUR: dict[Order | Continuous, str] = {NEW: COLOURS[0], OLD: COLOURS[1], CONTINUOUS: "black"}
+_LINE: dict[Column, tuple[str, str]] = {
     "k_c": ("-", "rest ends"),
     "k_rolls": ("--", "rolling begins"),
     "k_stops": ("-.", "rolling ends"),
+    "hz": ("-", ""),
 }
-_NAME = {
+_NAME: dict[Order | Continuous, str] = {
     NEW: "step first, act on new $x$ (robot)",
     OLD: "act on $x$ of the tick before",
     CONTINUOUS: "continuous model",
 }
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     numbers = findings.numbers
     tick_ms, latency_ms = 1000 * numbers["tick_s"], 1000 * numbers["latency_s"]
@@ -93,40 +114,49 @@ def _headline(numbers: dict[str, Any]) -> str:
     )
 
 
-def _names(rows: list[Row]) -> tuple[str, ...]:
-    """The lines to draw; where rolling ends only if that is not where it begins."""
-    known = [row for row in rows if row.get("k_rolls") and row["k_stops"]]
-    apart = any(abs(row["k_rolls"] / row["k_stops"] - 1) > 1e-3 for row in known)
-    return ("k_c", "k_rolls", "k_stops") if apart else ("k_c", "k_rolls")
+def _names(rows: list[TickStudyRow]) -> tuple[Threshold, ...]:
+    """The thresholds to draw: where rolling ends only if it is not where it begins."""
+    for row in motions(rows):
+        begins, ends = row["k_rolls"], row["k_stops"]
+        if begins and ends and abs(begins / ends - 1) > 1e-3:
+            return ("k_c", "k_rolls", "k_stops")
+    return ("k_c", "k_rolls")
+
+
+def _along(
+    rows: list[TickStudyRow], part: Part, order: Order
+) -> list[tuple[float, TickRow | LatencyRow]]:
+    """The rows over ticks or latencies, each with its place on the axis in ms."""
+    if part == "tick":
+        return [(1000 * row["tick_s"], row) for row in over_ticks(rows, order)]
+    return [(1000 * row["latency_s"], row) for row in over_latencies(rows, order)]
 
 
 def _draw_against(
-    axes: Axes, rows: list[Row], part: str, names: tuple[str, ...], here_ms: float
+    axes: Axes, rows: list[TickStudyRow], part: Part, columns: tuple[Column, ...], here_ms: float
 ) -> None:
     for order in ORDERS:
-        own = [row for row in part_of(rows, part) if row["order"] == order]
-        for name in names:
-            line, words = _LINE.get(name, ("-", ""))
-            values = [float("nan") if row[name] is None else row[name] for row in own]
-            label = f"{words}: {_NAME[order]}" if name != "hz" else None
+        own = _along(rows, part, order)
+        for column in columns:
+            style, words = _LINE[column]
+            values = [row[column] for _, row in own]
             axes.plot(
-                [1000 * row[part + "_s"] for row in own],
-                values,
-                line,
+                [at_ms for at_ms, _ in own],
+                np.array(values, dtype=float),
+                style,
                 color=_COLOUR[order],
-                label=label,
+                label=f"{words}: {_NAME[order]}" if words else None,
             )
     axes.axvline(here_ms, color="lightgrey", linewidth=1.0, zorder=0)
 
 
-def _draw_growth(axes: Axes, rows: list[Row]) -> None:
+def _draw_growth(axes: Axes, rows: list[TickStudyRow]) -> None:
     axes.axhline(0.0, color="lightgrey", linewidth=1.0, zorder=0)
     for order in (CONTINUOUS, *ORDERS):
-        own = [row for row in part_of(rows, "growth") if row["order"] == order]
-        label = _NAME[order] if order == CONTINUOUS else None
+        own = growth_of(rows, order)
         axes.plot(
             [row["k"] for row in own],
             [row["growth_per_s"] for row in own],
             color=_COLOUR[order],
-            label=label,
+            label=_NAME[order] if order == CONTINUOUS else None,
         )

@@ -1,4 +1,8 @@
-"""The sampled wheel: its map against the robot's own wheel, its multipliers against a hand's, its limits against the continuous model."""
+"""The sampled wheel.
+
+Its map against the robot's own wheel, its multipliers against those by hand, its limits against the
+continuous model.
+"""
 
 from math import pi, sqrt
 
@@ -16,6 +20,7 @@ from host.theory.engine.kicked import Continuous, Sampled
 from host.theory.engine.sampled import Clock, at_rest, coast, jacobian
 from host.theory.model.wheel import OMEGA, PHI, Wheel
 from host.theory.studies import tick as study
+from host.theory.studies.tick_rows import ORDERS, growth_of
 from robot.controller import target_position
 from robot.kicks import PHASE, POSITION, parse
 from robot.params import Params
@@ -204,7 +209,7 @@ def test_a_new_force_that_acts_a_whole_tick_late_is_an_old_one_but_for_where_it_
     )
 
 
-def test_where_there_is_no_k_c_none_is_told():
+def test_where_there_is_no_k_c_none_is_returned():
     assert thresholds.critical_k(WHEEL, Clock(0.6)) is None  # the neurons overshoot: 0.6 s > 2 tau
     assert thresholds.critical_k(WHEEL._replace(friction=0.0), NEW) == 0.0  # nothing brakes
     assert thresholds.critical_k(WHEEL._replace(a=0.0), NEW) is None  # the rods do not pull
@@ -230,7 +235,7 @@ def test_rolling_begins_and_ends_where_wheels_say_so(model):
     assert rolls > 0.5
 
 
-def test_no_end_of_a_motion_is_told_where_there_is_none():
+def test_no_end_of_a_motion_is_returned_where_there_is_none():
     assert (
         thresholds.rolling_ends(Sampled(NEW), WHEEL, 8.0, 4.0, 30.0) is None
     )  # it rolls all the way down
@@ -281,7 +286,7 @@ def short_run():
 
 def test_the_study_says_how_accurate_it_is(short_run):
     numbers = short_run[1].numbers
-    for order in study.ORDERS:
+    for order in ORDERS:
         accuracy = numbers["accuracy"][order]
         assert accuracy["k_c_against_time_course"] < 1e-7
         assert accuracy["k_c_without_tick_against_hopf"] < 1e-9
@@ -294,10 +299,7 @@ def test_the_study_says_how_accurate_it_is(short_run):
 
 def test_the_growth_rate_is_zero_at_k_c_and_the_continuous_ones_between(short_run):
     rows, findings = short_run
-    growth = {
-        order: [row for row in study.part_of(rows, "growth") if row["order"] == order]
-        for order in ("continuous", "new", "old")
-    }
+    growth = {order: growth_of(rows, order) for order in ("continuous", "new", "old")}
     for order, line in growth.items():
         k_c = findings.numbers[order]["k_c"]
         assert all(
@@ -327,7 +329,7 @@ def test_the_figure_shows_both_orders_beside_the_continuous_model(short_run):
     assert figure.get_size_inches()[0] * figure.dpi == 1600
 
 
-def test_a_tick_too_long_for_the_neurons_is_drawn_and_told_as_such(short_run):
+def test_a_tick_too_long_for_the_neurons_is_drawn_and_reported_as_such(short_run):
     rows = short_run[0]
     gone = {
         "k_c": None,
@@ -338,6 +340,6 @@ def test_a_tick_too_long_for_the_neurons_is_drawn_and_told_as_such(short_run):
         "hz": None,
     }
     rows = [{**row, **gone} if row["part"] in ("point", "tick", "latency") else row for row in rows]
-    told = study.report(rows, Setting(1, OPTIONS))
-    assert told.numbers["new"]["k_c"] is None
-    assert "too long" in draw(rows, told).get_suptitle()
+    found = study.report(rows, Setting(1, OPTIONS))
+    assert found.numbers["new"]["k_c"] is None
+    assert "too long" in draw(rows, found).get_suptitle()
