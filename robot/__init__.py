@@ -1,6 +1,6 @@
-"""The robot: what runs on the brick. CPython 3.5, standard library only.
+"""The robot: what runs on the brick. CPython 3.5 and its standard library.
 
-Imports nothing of the other rooms.
+It imports nothing of the other rooms.
 """
 
 __version__ = "0.1.0"

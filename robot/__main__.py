@@ -11,17 +11,20 @@ from robot.notify import Notify
 from robot.program import choose_seed, parser, run
 from robot.watchdog import Watchdog
 
-# The host is another machine; it must have the token.
+# The host is another machine, and needs the token to command the robot.
 EVERYWHERE = "0.0.0.0"  # noqa: S104
-
 
 PORTS = ("outA", "outB", "outC", "outD")
 
 
 def _claim(root):
-    """A socket whose name only one process at a time can have for the motors under `root`.
+    """Claim the motors below a folder for this process.
 
-    None if another has it.
+    Args:
+        root: Where the kernel's classes of devices are.
+
+    Returns:
+        A socket, whose name only one process at a time can have; None if another process has it.
     """
     claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
     try:
@@ -33,7 +36,11 @@ def _claim(root):
 
 
 def main():
-    """Run until interrupted. Returns the exit status."""
+    """Run the robot's program until it is interrupted.
+
+    Returns:
+        The exit status: 0 when it was ended, 2 if it could not start.
+    """
     arguments = parser("The robot's program on the brick.", host=EVERYWHERE)
     arguments.add_argument(
         "--left", default="outB", choices=PORTS, help="port of the left motor (default %(default)s)"
@@ -57,12 +64,12 @@ def main():
         from robot.ev3 import Ev3Battery, Ev3Motor
     except ImportError as error:
         print(
-            "{}: the robot runs on ev3dev, which has python3-ev3dev2; elsewhere try python -m"
-            " sim_motor".format(error),
+            "{}: this program needs ev3dev's python3-ev3dev2; on another machine start a simulated"
+            " robot: python3 -m sim_motor".format(error),
             file=sys.stderr,
         )
         return 2
-    # Before anything of the motors is touched; the watchdog, a fork of this process, holds it for
+    # Before anything touches the motors. The watchdog, a fork of this process, keeps the claim for
     # as long as it may have to stop them.
     alone = _claim(options.sysfs)
     if alone is None:
@@ -82,8 +89,8 @@ def main():
         try:
             motor.find()
         except MotorFault as fault:
-            # The first tick makes a fault of it, which the host sees, and which can be cleared when
-            # the motor is there.
+            # The first tick turns this into a fault. The host sees it, and can clear it when the
+            # motor is there.
             print(fault, file=sys.stderr)
     try:
         battery = Ev3Battery(options.sysfs)

@@ -4,15 +4,19 @@ import os
 import struct
 
 DEVICE = "/dev/input/by-path/platform-gpio_keys-event"
-# The kernel's struct input_event in the sizes of the machine that this runs on: seconds,
-# microseconds, type, code, value.
+# The kernel's struct input_event with this machine's sizes: seconds, microseconds, type, code,
+# value.
 EVENT = struct.Struct("llHHi")
 KEY, BACK, PRESSED = 1, 14, 1
 EVENTS_PER_READ = 16
 
 
 class BackButton(object):
-    """The button, read without waiting. A brick whose buttons cannot be opened does without."""
+    """The button, a panel of the program. It does nothing if the brick's buttons cannot be opened.
+
+    Args:
+        device: The kernel's file for the buttons.
+    """
 
     def __init__(self, device=DEVICE):
         try:
@@ -21,12 +25,16 @@ class BackButton(object):
             self._file = -1
 
     def serve(self, loop):
-        """Stop the loop's motors if the button was pressed."""
+        """Stop the motors if the button was pressed; returns at once.
+
+        Args:
+            loop: The robot.loop.Loop.
+        """
         if self._file >= 0 and self._pressed():
             loop.stop("stopped by the brick's back button")
 
     def close(self):
-        """Give the button back."""
+        """Close the kernel's file."""
         if self._file >= 0:
             os.close(self._file)
             self._file = -1

@@ -1,7 +1,7 @@
 """The brick's motors and its battery, through the kernel's files.
 
-python-ev3dev2 finds a motor by its port and sets it up; the tick itself reads and writes through
-descriptors that are opened once.
+python-ev3dev2 finds a motor by its port and sets it up. The tick itself reads and writes through
+descriptors that are opened once, which is faster.
 """
 
 import errno
@@ -18,13 +18,13 @@ DRIVER = "lego-ev3-l-motor"
 RAD_PER_DEGREE = pi / 180
 READ_BYTES = 16
 STOP_TRIES = 3
-# What goes into the file for each duty cycle that there is: whoever asks for another gets a
-# MotorFault, not the kernel's EINVAL.
+# The text of every valid duty cycle. Any other value is a MotorFault here, instead of the kernel's
+# EINVAL.
 DUTY_TEXT = {duty: b"%d" % duty for duty in range(-100, 101)}
 
-# In V, from LEGO's firmware as brickd has it: it warns of a low lithium pack at 6.5 and of low AA
-# cells at 5.5, and switches off at 6.0 and 4.5. The stop comes before that; brick and motors no
-# longer work well below 5 V.
+# In V. brickd, with the limits of LEGO's firmware, warns of a low lithium pack at 6.5 and of low AA
+# cells at 5.5, and switches the brick off at 6.0 and 4.5. The motors stop before that; below 5 V
+# brick and motors do not work well.
 LITHIUM_WARN_V, LITHIUM_STOP_V = 6.5, 6.2
 OTHER_WARN_V, OTHER_STOP_V = 5.5, 5.0
 
@@ -42,11 +42,12 @@ _NOT_READY = "wait a second and try again; if it stays so, add this user to the 
 
 
 class Ev3Motor(Motor):
-    """The large motor at a port ('outB').
+    """The large motor at a port. It counts as lost until `find` has found it, and when it fails.
 
-    It is lost until `find` has found it, and again when it fails.
-
-    name: what people call it; root: where the kernel's classes of devices are.
+    Args:
+        name: What people call it: 'left' or 'right'.
+        port: The port, for example 'outB'.
+        root: Where the kernel's classes of devices are.
     """
 
     def __init__(self, name, port, root=SYSFS):
@@ -76,7 +77,7 @@ class Ev3Motor(Motor):
             raise self._fault(error) from error
         except KeyError:
             raise MotorFault(
-                "{}: no duty cycle is {!r}: write a whole number from -100 to 100".format(
+                "{}: {!r} is no duty cycle: write a whole number from -100 to 100".format(
                     self._label, duty_pct
                 )
             ) from None
@@ -85,8 +86,7 @@ class Ev3Motor(Motor):
         self._running = False
         for left in reversed(range(STOP_TRIES)):
             try:
-                # Duty 0 first: it brakes at once, and is what remains of a command that the motor
-                # misses.
+                # Duty 0 first: it brakes at once, also if the motor misses the command.
                 os.pwrite(self._duty, DUTY_TEXT[0], 0)
                 os.pwrite(self._command, b"stop", 0)
                 if int(os.pread(self._applied, READ_BYTES, 0)) == 0:
@@ -94,7 +94,7 @@ class Ev3Motor(Motor):
             except OSError as error:
                 if not left or error.errno != errno.EIO:
                     raise self._fault(error) from error
-        self._lost = "{}: it was told to stop and runs on: pull its cable out".format(self._label)
+        self._lost = "{}: it does not stop: pull its cable out".format(self._label)
         raise MotorFault(self._lost)
 
     def find(self):
@@ -109,8 +109,8 @@ class Ev3Motor(Motor):
         except (OSError, ev3dev2.DeviceNotFound) as error:
             self._close()
             self._lost = self._missing(error)
-            # The library's frames hold the error whose trace holds them, and with them its files,
-            # until the garbage collector comes.
+            # The error's traceback would keep the library's frames, and their open files, until
+            # the garbage collector comes.
             raise MotorFault(self._lost) from error.with_traceback(None)
 
     def _set_up(self):
@@ -143,14 +143,14 @@ class Ev3Motor(Motor):
         self._position = self._duty = self._command = self._applied = -1
 
     def _run(self):
-        # The duty cycle that the file holds would act at once, whoever left it there.
+        # The duty cycle that is still in the file would act at once.
         os.pwrite(self._duty, DUTY_TEXT[0], 0)
         os.pwrite(self._command, b"run-direct", 0)
         self._running = True
 
     def _fault(self, error):
         """The MotorFault for an error of the kernel. From now on the motor counts as lost."""
-        # EBADF: there is nothing open, for a reason that is known.
+        # EBADF: nothing is open, and the reason is known already.
         if error.errno != errno.EBADF:
             cause, remedy = _CAUSES.get(
                 error.errno, ("the kernel reports: {}".format(error.strerror), "clear the fault")
@@ -159,9 +159,8 @@ class Ev3Motor(Motor):
         return MotorFault(self._lost)
 
     def _missing(self, error):
-        # python-ev3dev2 has one error for a motor that is not there and for one that goes
-        # meanwhile, and another without a number for files that udev has not opened to this user
-        # yet.
+        # python-ev3dev2 has one error for a motor that is not there or disappears just now, and one
+        # without a number for files that udev has not opened to this user yet.
         if isinstance(error, ev3dev2.DeviceNotFound) or error.errno in (errno.ENODEV, errno.ENOENT):
             return "{}: there is none: {}".format(self._label, _CABLE)
         if error.errno in (None, errno.EACCES, errno.EPERM):
@@ -172,9 +171,13 @@ class Ev3Motor(Motor):
 
 
 class Ev3Battery(Battery):
-    """The brick's battery. root: where the kernel's classes of devices are.
+    """The brick's battery.
 
-    Raises OSError if there is none.
+    Args:
+        root: Where the kernel's classes of devices are.
+
+    Raises:
+        OSError: There is none.
     """
 
     def __init__(self, root=SYSFS):

@@ -1,15 +1,11 @@
-"""The brick's two lights tell the robot's state."""
+"""The brick's two lights show the robot's state."""
 
 import os
 
 from robot.record import STATES
 
-DARK, RED, GREEN, ORANGE = (
-    (0, 0),
-    (255, 0),
-    (0, 255),
-    (255, 255),
-)  # brightness of the red and the green half
+# Brightness of the red and of the green half.
+DARK, RED, GREEN, ORANGE = (0, 0), (255, 0), (0, 255), (255, 255)
 LEFT_AND_RIGHT = {
     "idle": (ORANGE, ORANGE),
     "running": (GREEN, GREEN),
@@ -20,9 +16,10 @@ LEFT_AND_RIGHT = {
 
 
 class Lights(object):
-    """Both lights. root: where the kernel's classes of devices are.
+    """Both lights, a panel of the program. Lights that cannot be written stay as they are.
 
-    Lights that are not there, or not ours, stay as they are.
+    Args:
+        root: Where the kernel's classes of devices are.
     """
 
     def __init__(self, root):
@@ -30,18 +27,22 @@ class Lights(object):
         self._state = None
 
     def serve(self, loop):
-        """Show the loop's state, if it is another than before."""
+        """Show the loop's state if it has changed.
+
+        Args:
+            loop: The robot.loop.Loop.
+        """
         state = loop.safety.state
         if state != self._state:
             self._state = state
             self._show(LEFT_AND_RIGHT[STATES[state]])
 
     def alarm(self):
-        """Red, whatever was shown: the program is dead or hangs, and the watchdog has stopped the motors."""
+        """Show red: the program is dead or hangs, and the watchdog has stopped the motors."""
         self._show((RED, RED))
 
     def close(self):
-        """Out: no program runs."""
+        """Switch both off: no program runs."""
         self._show((DARK, DARK))
 
     def _show(self, lights):

@@ -1,12 +1,14 @@
-"""Tells systemd that the robot's program is ready and alive, if it was started as a service (sd_notify(3))."""
+"""Messages to systemd that the robot's program is ready and alive (sd_notify(3))."""
 
 import socket
 
 
 class Notify(object):
-    """A panel of the program. Ready is told when it is first served, alive twice in each watchdog period; nothing without a service.
+    """A panel of the program that sends them; it does nothing if the program is no service.
 
-    environment: has NOTIFY_SOCKET, and WATCHDOG_USEC if systemd watches, in the way of os.environ.
+    Args:
+        environment: A mapping like os.environ. A service has NOTIFY_SOCKET in it, and WATCHDOG_USEC
+            if systemd wants to hear regularly that the program lives.
     """
 
     def __init__(self, environment):
@@ -21,26 +23,30 @@ class Notify(object):
             self._link.setblocking(False)
 
     def serve(self, loop):
-        """Tell what is due."""
+        """Send READY the first time, and WATCHDOG twice in each of systemd's watchdog periods.
+
+        Args:
+            loop: The robot.loop.Loop.
+        """
         if self._link is None:
             return
         now = loop.clock.now()
         if self._due_s is None:
-            self._tell(b"READY=1")
+            self._send(b"READY=1")
             self._due_s = now
         if self._period_s and now >= self._due_s:
-            self._tell(b"WATCHDOG=1")
+            self._send(b"WATCHDOG=1")
             self._due_s = now + self._period_s
 
     def close(self):
-        """Tell that the program ends."""
+        """Send that the program ends."""
         if self._link is not None:
-            self._tell(b"STOPPING=1")
+            self._send(b"STOPPING=1")
             self._link.close()
             self._link = None
 
-    def _tell(self, what):
+    def _send(self, what):
         try:
             self._link.sendto(what, self._address)
         except OSError:
-            pass  # systemd takes silence for what it is
+            pass  # systemd restarts a program that it does not hear

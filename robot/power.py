@@ -1,21 +1,23 @@
-"""What the loop makes of its battery.
+"""The battery: its voltage, a warning, when it is empty, and how duty cycles make up for it."""
 
-Readings, a warning, the end, and by how much duty cycles make up for a low voltage.
-"""
-
-# The voltage at which max_duty_pct means what it says: brickd's 'full' of the lithium pack.
+# At this voltage duty cycles need no correction: brickd's 'full' of the lithium pack.
 NOMINAL_V = 7.5
-# Under load the voltage sags by some tenths of a volt for a moment; this much of each reading
-# counts.
+# Share of a new reading in the mean: under load the voltage sags by some tenths of a volt for a
+# moment.
 SMOOTHING = 0.5
-# A battery is as good as new again when it has risen so far above the warning.
+# How far above the warning the voltage must rise before the next warning can come.
 RECOVERED_V = 0.3
 
 
 class Power(object):
-    """A robot.motors.Battery or None, read when asked to.
+    """The voltage of a battery, read when `read` is called.
 
-    `latest_v` is the last reading, `mean_v` what it has lately been; or None.
+    Args:
+        battery: A robot.motors.Battery, or None if the robot has none that can be measured.
+
+    Attributes:
+        latest_v: The last reading in V; None if there is none.
+        mean_v: The smoothed voltage in V; None if there was no reading yet.
     """
 
     def __init__(self, battery):
@@ -34,9 +36,10 @@ class Power(object):
             )
 
     def warning(self):
-        """What is to be said of a battery that is low: once, until it has been charged.
+        """A warning that the battery is low; it comes once, until the battery has been charged.
 
-        Empty if nothing.
+        Returns:
+            The warning in words, or an empty string.
         """
         if self.mean_v is None:
             return ""
@@ -46,11 +49,19 @@ class Power(object):
         return "the battery is low ({:.1f} V): charge it".format(self.mean_v) if due else ""
 
     def exhaustion(self):
-        """Why the battery no longer can drive the robot; empty if it can."""
+        """The reason why the battery can no longer drive the robot.
+
+        Returns:
+            The reason in words, or an empty string while the battery can drive it.
+        """
         if self.mean_v is None or self.mean_v >= self._battery.stop_v:
             return ""
         return "the battery is empty ({:.1f} V): charge it".format(self.mean_v)
 
     def duty_scale(self):
-        """The factor, in whole percents, that makes a duty cycle do what it would do at NOMINAL_V."""
+        """The factor by which duty cycles make up for a voltage that differs from NOMINAL_V.
+
+        Returns:
+            0.5 to 2, rounded to whole percents.
+        """
         return 1.0 if self.mean_v is None else round(max(0.5, min(2.0, NOMINAL_V / self.mean_v)), 2)

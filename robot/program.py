@@ -1,6 +1,6 @@
-"""The robot's program: from arguments to parts to the loop.
+"""The robot's program: from its arguments to the server and the loop.
 
-The brick and the simulated brick differ only in the parts they hand in.
+The brick and the simulated brick differ only in the motors, battery, clock and panels they hand in.
 """
 
 import argparse
@@ -18,52 +18,76 @@ BAUD = 115200
 
 
 def parser(description, host):
-    """The arguments of every robot program; `host` is the address it listens on by default."""
-    made = argparse.ArgumentParser(description=description)
-    made.add_argument("--host", default=host, help="address to listen on (default %(default)s)")
-    made.add_argument(
+    """The parser of the arguments that every robot program has.
+
+    Args:
+        description: What the program is, for its help text.
+        host: The address on which it listens by default.
+
+    Returns:
+        An argparse.ArgumentParser, to which a program may add its own arguments.
+    """
+    arguments = argparse.ArgumentParser(description=description)
+    arguments.add_argument(
+        "--host", default=host, help="address to listen on (default %(default)s)"
+    )
+    arguments.add_argument(
         "--port",
         type=int,
         default=PORT,
         help="TCP port to listen on, 0 for any that is free (default %(default)s)",
     )
-    made.add_argument(
+    arguments.add_argument(
         "--serial",
         metavar="DEVICE[@BAUD]",
         help="serve this serial line as well (default baud rate {})".format(BAUD),
     )
-    made.add_argument(
+    arguments.add_argument(
         "--token",
         default=token.default_path(),
-        help="token file, made if there is none (default %(default)s)",
+        help="token file; the program writes one if there is none (default %(default)s)",
     )
-    made.add_argument("--seed", type=int, help="fixes the neurons' start values; random by default")
-    made.add_argument(
-        "--idle", action="store_true", help="leave the motors off until told to start"
+    arguments.add_argument("--seed", type=int, help="random seed of the neurons' start values")
+    arguments.add_argument(
+        "--idle", action="store_true", help="leave the motors off until a host starts the robot"
     )
-    made.add_argument(
+    arguments.add_argument(
         "--set",
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="a parameter to begin with; may be repeated",
+        help="start with this value of a parameter; may be repeated",
     )
-    made.add_argument("--tick", type=float, metavar="S", help="control period in s")
-    return made
+    arguments.add_argument("--tick", type=float, metavar="S", help="control period in s")
+    return arguments
 
 
 def choose_seed(options):
-    """The seed asked for, or a random one."""
+    """The random seed that the arguments give, or a random one.
+
+    Args:
+        options: The parsed arguments of `parser`.
+
+    Returns:
+        A whole number, 0 or more.
+    """
     return int.from_bytes(os.urandom(4), "big") if options.seed is None else options.seed
 
 
 def run(options, motors, battery, clock, seed, panels=()):
-    """Serve and tick until SIGINT or SIGTERM. Prints READY when it listens.
+    """Serve hosts and run the loop until SIGINT or SIGTERM. Prints READY when it listens.
 
-    Returns the exit status.
+    Args:
+        options: The parsed arguments of `parser`.
+        motors: The left and the right robot.motors.Motor.
+        battery: A robot.motors.Battery, or None.
+        clock: A robot.motors.Clock.
+        seed: Random seed of the neurons' start values.
+        panels: What people see and touch on the robot, and what watches the loop. The time between
+            ticks goes to their serve(loop), which must return at once; close() ends them.
 
-    panels: what people see and touch on the robot; their serve(loop) is called in the time that
-    ticks leave, and must return at once.
+    Returns:
+        The exit status: 0 when it was ended, 2 if it could not start.
     """
     try:
         secret, new = token.load_or_make(options.token)
@@ -74,7 +98,7 @@ def run(options, motors, battery, clock, seed, panels=()):
         server = Server(loop, secret)
         port = _listen(server, options)
         if new:
-            print("made a new token: {}".format(options.token), file=sys.stderr)
+            print("wrote a new token: {}".format(options.token), file=sys.stderr)
         try:
             _serve(options, loop, server, port, panels)
         finally:
@@ -90,7 +114,7 @@ def run(options, motors, battery, clock, seed, panels=()):
 
 
 def _settings(options):
-    """The parameters to begin with, by name. Raises Refused."""
+    """The parameters to start with, by name. Raises Refused."""
     settings = {}
     for text in options.set:
         name, equals, value = text.partition("=")
@@ -98,7 +122,7 @@ def _settings(options):
             raise Refused(
                 "usage",
                 "--set {} sets nothing".format(text),
-                "it is --set NAME=VALUE, as --set polarity_left=-1",
+                "write --set NAME=VALUE, for example --set polarity_left=-1",
             )
         try:
             settings[name] = float(value)
@@ -122,7 +146,7 @@ def _listen(server, options):
 
 
 def _serve(options, loop, server, port, panels):
-    """Tick and serve until told to end."""
+    """Run the loop and serve hosts until a signal ends it."""
     if options.serial:
         server.attach(_line_opener(options.serial))
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -144,11 +168,11 @@ def _serve(options, loop, server, port, panels):
 
 
 def _run(loop, server, serve):
-    """Run the loop. If it fails, hosts are told why they will hear no more."""
+    """Run the loop. If it fails, say why to the hosts before they hear no more."""
     try:
         loop.run(serve)
     except Exception as error:
-        loop.fail("the robot's program failed ({!r}); start it anew".format(error))
+        loop.fail("the robot's program failed ({!r}); start it again".format(error))
         server.serve(0.0)
         raise
 
@@ -159,10 +183,7 @@ def _give_up(message):
 
 
 def _line_opener(argument):
-    """A function that opens the serial line 'DEVICE' or 'DEVICE@BAUD' without blocking.
-
-    It raises OSError.
-    """
+    """A function that opens the serial line 'DEVICE' or 'DEVICE@BAUD'. It raises OSError."""
     device, _, baud = argument.partition("@")
 
     def open_line():

@@ -1,7 +1,4 @@
-"""What stands between the controller and the motors.
-
-The limiter, the robot's states, and the dead-man of the lease.
-"""
+"""What stands between the controller and the motors: the limiter, the robot's states, the lease."""
 
 from math import isnan
 
@@ -14,7 +11,12 @@ IDLE, RUNNING, HELD, STOPPED, FAULT = range(len(STATES))
 def limit_duty(torque, max_duty_pct):
     """The duty cycle for a relative torque.
 
-    A whole number of percent, never beyond +-max_duty_pct nor +-100; 0 for NaN.
+    Args:
+        torque: Relative torque M, between -1 and 1; anything else is limited too.
+        max_duty_pct: The duty cycle at M = 1, in percent.
+
+    Returns:
+        A whole number of percent, never beyond +-max_duty_pct nor +-100; 0 if the torque is NaN.
     """
     duty = max_duty_pct * torque
     if isnan(duty):
@@ -24,14 +26,23 @@ def limit_duty(torque, max_duty_pct):
 
 
 class Safety(object):
-    """The state of the robot and why it is in it. A fault latches: only `clear` leaves it."""
+    """The robot's state, and the reason for it. A fault latches: only `clear` ends it.
+
+    Attributes:
+        state: IDLE, RUNNING, HELD, STOPPED or FAULT.
+        reason: Why the robot is in this state, in words.
+    """
 
     def __init__(self):
         self.state = IDLE
         self.reason = "not started yet"
 
     def start(self):
-        """To running. Raises Refused in a fault or when running already."""
+        """Go to running.
+
+        Raises:
+            Refused: The robot is in fault, or runs already.
+        """
         if self.state == FAULT:
             raise Refused(
                 "fault",
@@ -39,29 +50,49 @@ class Safety(object):
                 "mend the cause, then clear the fault",
             )
         if self.state in (RUNNING, HELD):
-            raise Refused("state", "the robot runs already", "stop it first to start anew")
+            raise Refused("state", "the robot runs already", "stop it first to start again")
         self._enter(RUNNING, "started")
 
     def stop(self, reason):
-        """To stopped, from anywhere but a fault, which stays."""
+        """Go to stopped from any state but a fault, which stays.
+
+        Args:
+            reason: Who or what stopped the robot.
+        """
         if self.state != FAULT:
             self._enter(STOPPED, reason)
 
     def hold(self, reason):
-        """From running to held: motors braked, neurons paused."""
+        """Go from running to held: motors brake, neurons pause.
+
+        Args:
+            reason: What the robot waits for.
+        """
         self._enter(HELD, reason)
 
     def resume(self, reason):
-        """From held to running."""
+        """Go from held back to running.
+
+        Args:
+            reason: Why it goes on.
+        """
         self._enter(RUNNING, reason)
 
     def fault(self, reason):
-        """To fault, from anywhere. The first cause stays the one that is told."""
+        """Go to fault from any state. A second fault does not replace the first one's reason.
+
+        Args:
+            reason: The cause, and what a person can do.
+        """
         if self.state != FAULT:
             self._enter(FAULT, reason)
 
     def clear(self):
-        """From fault to stopped. Raises Refused if there is none."""
+        """Go from fault to stopped.
+
+        Raises:
+            Refused: There is no fault.
+        """
         if self.state != FAULT:
             raise Refused("state", "there is no fault to clear")
         self._enter(STOPPED, "fault cleared")
@@ -72,15 +103,26 @@ class Safety(object):
 
 
 class Lease(object):
-    """Who may command the robot, and when that host was last heard (s of the robot's clock)."""
+    """Which host may command the robot, and when the robot last heard from it.
+
+    Attributes:
+        holder: The session that has the lease; None if nobody has it.
+        name: What that host calls itself.
+    """
 
     def __init__(self):
         self.holder = self.name = self._heard = None
 
     def take(self, holder, name, now):
-        """Give the lease to `holder`, who may hold it already.
+        """Give the lease to a session, which may have it already.
 
-        Raises Refused while another has it.
+        Args:
+            holder: The session.
+            name: What its host calls itself.
+            now: s of the robot's clock.
+
+        Raises:
+            Refused: Another session has it.
         """
         if self.holder not in (None, holder):
             raise Refused(
@@ -93,24 +135,45 @@ class Lease(object):
         self._heard = now
 
     def require(self, holder):
-        """Raises Refused unless `holder` has the lease."""
+        """Check that a session has the lease.
+
+        Args:
+            holder: The session.
+
+        Raises:
+            Refused: It does not have the lease.
+        """
         if self.holder != holder:
             raise Refused("lease", "you do not control the robot", "take the lease first")
 
     def heard(self, holder, now):
-        """The holder was heard: its time starts anew."""
+        """Note that the robot heard from a session; this counts if it has the lease.
+
+        Args:
+            holder: The session.
+            now: s of the robot's clock.
+        """
         if self.holder == holder:
             self._heard = now
 
     def release(self, holder):
-        """Let go; a host that does so is not lost."""
+        """Give the lease back; a host that does so is not lost.
+
+        Args:
+            holder: The session.
+        """
         if self.holder == holder:
             self.holder = None
 
     def expire(self, now, patience_s):
-        """True, once, when the holder has been silent for longer than patience_s.
+        """Take the lease from a holder that has been silent for too long.
 
-        The lease is free then.
+        Args:
+            now: s of the robot's clock.
+            patience_s: How long it may be silent.
+
+        Returns:
+            Whether the holder has just lost the lease.
         """
         if self.holder is None or now - self._heard <= patience_s:
             return False

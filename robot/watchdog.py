@@ -1,11 +1,11 @@
-"""A process of its own that stops the motors when the loop dies or hangs.
+"""A separate process that stops the motors when the loop dies or hangs.
 
-A motor under run-direct turns on without its program.
+A motor under run-direct keeps turning without its program.
 
-Loop and watchdog share a pair of sockets. After each tick a byte goes out, which the watchdog sends
-back. Silence makes the watchdog stop every motor of the file tree, and tell the loop so, should it
-wake; the end of the loop's process makes it do so and end. Its own end, or its silence, makes the
-loop stop.
+Loop and watchdog share a pair of sockets. After each tick the loop sends a byte, and the watchdog
+sends it back. If the loop is silent, the watchdog stops every motor, and says so to the loop, which
+may wake up again. If the loop's process ends, the watchdog stops every motor and ends too. If the
+watchdog ends or does not answer, the loop stops the motors itself.
 """
 
 import errno
@@ -20,29 +20,33 @@ from robot.lights import Lights
 from robot.motors import MotorFault
 from robot.safety import RUNNING
 
-# Longer than the longest tick and a late one's outlier, and short enough to keep 250 ms together
-# with the stopping itself.
+# Longer than the longest tick, late ticks included, and short enough that the motors stand still
+# within 250 ms.
 SILENCE_S = 0.2
-# The loop does not wait for echoes; it gives the watchdog this many ticks before it takes it for
-# dead.
+# The loop does not wait for the bytes to come back. After this many ticks without one it takes the
+# watchdog for dead.
 MOST_UNANSWERED = 40
-# A motor that does not obey is told again: at once, for an error that passes, and then so often,
-# for so long once the loop is dead.
+# A motor that does not obey gets the command again: TRIES times at once, as some errors pass; then
+# every AGAIN_S; and for at most LONGEST_S once the loop is dead.
 TRIES = 3
 AGAIN_S = 0.05
 LONGEST_S = 10.0
 FAREWELL_S = 1.0
 
-# What goes over the link: that the loop lives, and back; from the watchdog, that it has stopped the
-# motors; from the loop, that it ends.
+# Bytes on the link: the loop lives (sent and sent back); the watchdog has stopped the motors; the
+# loop ends on purpose.
 _ALIVE, _STOPPED, _FAREWELL = b".", b"!", b"q"
 _GONE = (errno.ENOENT, errno.ENODEV)
 
 
 def stop_all(root):
-    """Stop every tacho motor under `root` (/sys/class on a brick), whatever the others do.
+    """Stop every motor, even if some of them do not obey.
 
-    Returns what could not be stopped, in words.
+    Args:
+        root: Where the kernel's classes of devices are: /sys/class on a brick.
+
+    Returns:
+        A list with a line for each motor that could not be stopped: its name and why.
     """
     failed = []
     for motor in glob.glob(os.path.join(root, "tacho-motor", "motor*")):
@@ -58,7 +62,7 @@ def stop_all(root):
                     break
                 why = str(error.strerror)
             except ValueError:
-                why = "it does not tell its duty cycle"
+                why = "its duty cycle cannot be read"
             if not left:
                 failed.append("{}: {}".format(os.path.basename(motor), why))
     return failed
@@ -78,14 +82,17 @@ def _read(motor, name):
 
 
 def watch(link, stop, silence_s=SILENCE_S):
-    """Echo what comes over `link` until it ends.
+    """Send back what comes over a link until it ends, and stop the motors when it is silent.
 
-    Whenever it falls silent for silence_s, and in the end, stop(reason).
+    Silence counts from the first byte on, as a program takes seconds to start on the brick, and
+    after a stop from the next byte on.
 
-    stop returns whether the motors obeyed; if not, it is called again, until they do, the loop
-    lives again, or LONGEST_S after its end. The reason is in words, empty if the loop has said that
-    it ends. Before the first byte, and after a silence until the next, it may be silent for as long
-    as it likes: a program takes seconds to start on the brick.
+    Args:
+        link: A socket to the loop.
+        stop: stop(reason) stops the motors and returns whether they obeyed. If they did not, it is
+            called again until they do, until the loop lives again, or until LONGEST_S after the
+            loop's end. The reason is in words; it is empty if the loop ended on purpose.
+        silence_s: How long the loop may be silent, in s.
     """
     patience_s = None
     try:
@@ -113,9 +120,12 @@ def watch(link, stop, silence_s=SILENCE_S):
 
 
 class Watchdog(object):
-    """The loop's end, a panel of the program. Make it before anything else is opened.
+    """The loop's end of the link to its watchdog; a panel of the program.
 
-    The watchdog is a fork of this process.
+    The watchdog is a fork of this process: create it before the process opens anything else.
+
+    Attributes:
+        pid: The watchdog's process id.
     """
 
     def __init__(self, root):
@@ -130,9 +140,12 @@ class Watchdog(object):
         self._link.setblocking(False)
 
     def serve(self, loop):
-        """Tell, once a tick, that the loop lives.
+        """Say once a tick that the loop lives.
 
-        A robot whose watchdog does not live is in fault, and so is one that it had to stop.
+        If the watchdog does not live, or had to stop the motors, the robot goes to fault.
+
+        Args:
+            loop: The robot.loop.Loop.
         """
         tick = loop.blackbox.next_tick
         if tick == self._fed_tick:
@@ -153,27 +166,33 @@ class Watchdog(object):
                 )
 
     def feed(self):
-        """Tell that the loop lives. Returns whether the watchdog has stopped the motors meanwhile.
+        """Say that the loop lives.
 
-        Raises MotorFault if it is dead.
+        Returns:
+            Whether the watchdog has stopped the motors since the last call.
+
+        Raises:
+            MotorFault: The watchdog has ended, or does not answer.
         """
         try:
             echoes = self._echoes()
             self._send(_ALIVE)
         except OSError as error:
             raise MotorFault(
-                "the watchdog has ended ({}); start the robot's program anew".format(error.strerror)
+                "the watchdog has ended ({}); start the robot's program again".format(
+                    error.strerror
+                )
             ) from error
         self._unanswered += 1 - echoes.count(_ALIVE)
         if self._unanswered > MOST_UNANSWERED:
-            raise MotorFault("the watchdog does not answer; start the robot's program anew")
+            raise MotorFault("the watchdog does not answer; start the robot's program again")
         return _STOPPED in echoes
 
     def _send(self, what):
         try:
             self._link.send(what)
         except BlockingIOError:
-            pass  # the link is full of what a frozen watchdog has not read
+            pass  # the link is full: a frozen watchdog has not read it
 
     def _echoes(self):
         try:
@@ -185,16 +204,15 @@ class Watchdog(object):
         return echoes
 
     def close(self):
-        """End the watchdog, after the motors were stopped."""
+        """End the watchdog. Stop the motors first."""
         try:
             self._send(_FAREWELL)
         except OSError:
             pass  # it has ended already
         self._link.close()
         try:
-            os.kill(
-                self.pid, signal.SIGCONT
-            )  # or one that is frozen would not end, and this neither
+            # A frozen watchdog would not end, and nor would this process.
+            os.kill(self.pid, signal.SIGCONT)
             until = time.monotonic() + FAREWELL_S
             while os.waitpid(self.pid, os.WNOHANG)[0] == 0:
                 if time.monotonic() > until:
@@ -205,7 +223,7 @@ class Watchdog(object):
 
 
 def _say(text):
-    """Onto standard error, unless that would take time, as a terminal that is stopped does, or fails."""
+    """Write to standard error if it takes no time: a stopped terminal could block the watchdog."""
     try:
         if select.select((), [2], (), 0)[1]:
             os.write(2, text.encode())
@@ -216,9 +234,8 @@ def _say(text):
 def _be_watchdog(link, root):
     """What the forked process does, until it ends."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(
-            number, signal.SIG_IGN
-        )  # these are meant for the loop, whose end is what counts
+        # They are meant for the loop; the watchdog waits for its end.
+        signal.signal(number, signal.SIG_IGN)
     said = []
 
     def stop(reason):
@@ -236,7 +253,7 @@ def _be_watchdog(link, root):
     try:
         os.setsid()
         watch(link, stop)
-    except BaseException:  # noqa: BLE001 - whatever it is, the motors come first
+    except BaseException:  # noqa: BLE001 - the motors come first, with every error
         status = 1
         stop_all(root)
     finally:

@@ -124,7 +124,7 @@ def test_a_motor_that_does_not_stop_is_told_and_counts_as_lost(plain):
     motor = made(plain)
     motor.find()
     (plain / "duty_cycle").write_text("30\n", encoding="ascii")
-    with pytest.raises(MotorFault, match="runs on: pull its cable"):
+    with pytest.raises(MotorFault, match="does not stop: pull its cable"):
         motor.stop()
     (plain / "duty_cycle").write_text("0\n", encoding="ascii")
     (plain / "ramp_up_sp").write_text("9\n", encoding="ascii")

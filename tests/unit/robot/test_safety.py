@@ -156,7 +156,7 @@ def test_the_words_of_every_refusal():
     runs = {
         "code": "state",
         "message": "the robot runs already",
-        "hint": "stop it first to start anew",
+        "hint": "stop it first to start again",
     }
     assert refusal(safety.start) == runs
     safety.hold("away")
