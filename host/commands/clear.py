@@ -4,21 +4,21 @@ import argparse
 
 from host.commands._terminal import answer, robot_of
 
-HELP = "clear a fault once its cause is mended"
+HELP = "clear a fault after its cause is gone"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """No arguments of its own."""
+    """Add nothing: it has no arguments of its own."""
 
 
 def run(options: argparse.Namespace) -> int:
-    """Clear; the robot stays stopped."""
+    """Clear the fault; the robot stays stopped."""
     with robot_of(options) as robot:
         reason = robot.status()["reason"]
         tick = robot.clear()
         answer(
             options,
             {"state": "stopped", "tick": tick, "was": reason},
-            f"fault cleared ({reason}); start the robot by `kickctl start`",
+            f"fault cleared ({reason}); `kickctl start` starts the robot",
         )
     return 0

@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Become deploy.sh: its output, its questions at the terminal and its exit status are the verb's."""
+    """Become deploy.sh, with its output, its questions at the terminal and its exit status."""
     if options.json:
         raise WrongUse("deploy does not answer in JSON", "leave --json out")
     if options.brick is not None:

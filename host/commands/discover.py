@@ -8,14 +8,16 @@ HELP = "look for robots in the network"
 
 NOBODY = """\
 no robot has answered. What to try:
-  is the brick on, and in this network? Its screen shows its address at the top: kickctl --brick ssh://robot@ADDRESS status
-  by USB cable it is a network of its own: choose "Wired" in its menu Wireless and Networks, then ssh://robot@ev3dev.local
-  if another brick has that name already: ssh://robot@ev3dev-2.local
-  many guest networks keep their machines apart; a cable, or another network, does not"""
+  Is the brick on, and in this network? Its screen shows its address at the top:
+    kickctl --brick ssh://robot@ADDRESS status
+  With a USB cable: choose "Wired" in the brick's menu Wireless and Networks, then
+    kickctl --brick ssh://robot@ev3dev.local status
+  If another brick has that name already, try ssh://robot@ev3dev-2.local.
+  Many guest networks keep their machines apart: use a cable, or another network."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """How long to listen."""
+    """Add how long to listen."""
     parser.add_argument(
         "--seconds",
         type=float,
@@ -26,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what answers, robots that announce themselves first; 3 if nothing does."""
+    """Print the robots and bricks that answer, robots first. Returns 3 if none does."""
     from host.link.discovery import look_around
 
     found = look_around(options.seconds)

@@ -41,7 +41,7 @@ class Finding:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """No arguments of its own."""
+    """Add nothing: it has no arguments of its own."""
 
 
 def run(options: argparse.Namespace) -> int:

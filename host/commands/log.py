@@ -13,40 +13,45 @@ from host.errors import WrongUse
 if TYPE_CHECKING:
     from host.logs.replay import ReplayResult
 
-HELP = "logs: list them, pull the robot's black box, export, replay"
+HELP = "list, export and replay logs, or pull one from the robot's black box"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """One action, and what it needs."""
+    """Add the actions, each with its own arguments."""
     parents = [common(defaults=False)]
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    listing = actions.add_parser("list", parents=parents, help="the logs in a folder")
-    listing.add_argument("folder", nargs="?", type=Path, help="default: logs/ here")
+    listing = actions.add_parser("list", parents=parents, help="list the logs in a folder")
+    listing.add_argument("folder", nargs="?", type=Path, help="the folder (default: logs/ here)")
     pull = actions.add_parser(
         "pull", parents=parents, help="fetch the last minutes from the robot's black box"
     )
     pull.add_argument(
         "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
     )
-    export = actions.add_parser("export", parents=parents, help="a log as a table")
-    export.add_argument("log", type=Path)
-    export.add_argument("--format", choices=("csv", "npz"), default="csv")
+    export = actions.add_parser("export", parents=parents, help="write a log as a table")
+    export.add_argument("log", type=Path, help="the log, an MCAP file")
+    export.add_argument(
+        "--format",
+        choices=("csv", "npz"),
+        default="csv",
+        help="csv for spreadsheets, npz for numpy (default %(default)s)",
+    )
     export.add_argument(
         "--out",
         type=Path,
         metavar="FILE",
-        help="where to (default: csv to standard output, npz beside the log)",
+        help="the table to write (default: csv to standard output, npz beside the log)",
     )
     replay = actions.add_parser(
         "replay",
         parents=parents,
-        help="feed a log's angles and delta t to the controller again and compare every bit",
+        help="recompute the controller from a log's angles and delta t, and compare exactly",
     )
-    replay.add_argument("log", type=Path)
+    replay.add_argument("log", type=Path, help="the log, an MCAP file")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the action."""
+    """Run the action. `replay` returns 1 if the controller computes something else."""
     return {"list": _list, "pull": _pull, "export": _export, "replay": _replay}[options.action](
         options
     )
@@ -58,7 +63,7 @@ def _list(options: argparse.Namespace) -> int:
     folder = options.folder or LOG_FOLDER
     if not folder.is_dir():
         if options.folder is not None:
-            raise WrongUse(f"there is no folder {folder}", "name the folder that the logs are in")
+            raise WrongUse(f"there is no folder {folder}", "name the folder with the logs")
         rows = []
     else:
         rows = list_logs(folder)
@@ -71,7 +76,7 @@ def _list(options: argparse.Namespace) -> int:
             f" {row.started_utc[:19]}  {row.note}".rstrip()
         )
     if not rows:
-        say(f"no logs in {folder}; `kickctl record 10` makes one")
+        say(f"no logs in {folder}; `kickctl record 10` writes one")
     return 0
 
 
@@ -99,7 +104,7 @@ def _export(options: argparse.Namespace) -> int:
 
     log = Log.load(options.log)
     if log.info.get("truncated"):
-        say(f"{options.log} breaks off; the table has what is there")
+        say(f"{options.log} breaks off; the table has the ticks until then")
     if options.format == "csv" and options.out is None and not options.json:
         write_csv(log.arrays(), sys.stdout)
         return 0

@@ -8,14 +8,14 @@ HELP = "start the robot from random membrane potentials"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """No arguments of its own."""
+    """Add nothing: it has no arguments of its own."""
 
 
 def run(options: argparse.Namespace) -> int:
-    """Start; the robot goes on when this program has ended."""
+    """Start the robot. A robot elsewhere keeps running when this program has ended."""
     with robot_of(options, moves=True) as robot:
         if robot.link.virtual and robot.status()["state"] == "running":
             robot.stop()
         tick = robot.start()
-        answer(options, {"state": "running", "tick": tick}, f"running from tick {tick} on")
+        answer(options, {"state": "running", "tick": tick}, f"the robot runs from tick {tick} on")
     return 0

@@ -4,15 +4,15 @@ import argparse
 
 from host.commands._terminal import robot_of, show
 
-HELP = "what the robot does, who controls it, and how punctual its ticks are"
+HELP = "show what the robot does, who controls it, and how punctual its ticks are"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """No arguments of its own."""
+    """Add nothing: it has no arguments of its own."""
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the status; 5 if the robot is in fault."""
+    """Print the status. Returns 5 if the robot is in fault."""
     with robot_of(options) as robot:
         status = dict(
             robot.status(),

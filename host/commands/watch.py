@@ -16,24 +16,25 @@ from robot.record import KICK_NAMES, STATES, Record
 if TYPE_CHECKING:
     from rich.table import Table
 
-HELP = "a live table of the wheels; ^C ends it"
+HELP = "show a live table of the wheels; ^C ends it"
 
 REFRESH_S = 0.1
 _SPEED_TICKS = 10
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """How long to watch."""
+    """Add how long to watch."""
     parser.add_argument(
         "--seconds",
         type=float,
         default=float("inf"),
-        help="how long, in the robot's time (default: until ^C)",
+        metavar="S",
+        help="how long to watch, in the robot's time (default: until ^C)",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Watch; with --json a line of JSON for each refresh instead of the table."""
+    """Show the table; with --json print a line of JSON for each refresh instead."""
     from rich.live import Live
 
     from host.commands._terminal import show
@@ -44,15 +45,14 @@ def run(options: argparse.Namespace) -> int:
         )
     with robot_of(options) as robot:
         robot.wait(REFRESH_S)
-        began = robot.recent()[0].t_s
+        start_s = robot.recent()[0].t_s
         with Live(_table(robot), auto_refresh=False, transient=options.json) as live:
             try:
-                while robot.recent()[-1].t_s - began < options.seconds:
+                while robot.recent()[-1].t_s - start_s < options.seconds:
                     robot.wait(REFRESH_S)
                     if robot.link.virtual:
-                        time.sleep(
-                            REFRESH_S
-                        )  # virtual time would be over before anyone has seen it
+                        # Virtual time would pass before anyone has seen it.
+                        time.sleep(REFRESH_S)
                     if options.json:
                         show(_summary(robot.recent()))
                     else:
@@ -75,10 +75,12 @@ def _summary(records: list[Record]) -> dict[str, Any]:
             name: getattr(now, f"{side}_{name}")
             for name in ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
         }
-        turned = values["phi_rad"] - getattr(before, side + "_phi_rad")
+        turn_rad = values["phi_rad"] - getattr(before, side + "_phi_rad")
         summary[side] = {
             **values,
-            "turns_per_s": turned / (2 * pi) / (now.t_s - before.t_s) if now is not before else 0.0,
+            "turns_per_s": (
+                turn_rad / (2 * pi) / (now.t_s - before.t_s) if now is not before else 0.0
+            ),
         }
     return summary
 

@@ -1,4 +1,4 @@
-"""How this copy of kickctl was installed, and so what a person types to install a library or to deploy."""
+"""How this copy of kickctl was installed, and what a person types here to install or deploy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ DEPLOY_SCRIPT = Path(__file__).resolve().parents[1] / "deploy.sh"
 
 
 def is_checkout() -> bool:
-    """Whether kickctl runs from a folder with its sources and Makefile, and not from an installed package."""
+    """Whether kickctl runs from a folder with its sources and Makefile, not from a package."""
     return (ROOT / "Makefile").is_file()
 
 
@@ -27,7 +27,7 @@ def kickctl_command() -> str:
 
 
 def deploy_command() -> str:
-    """What brings the robot's program to a brick: `./deploy.sh` in a checkout, else `kickctl deploy`."""
+    """What brings the robot's program to a brick: deploy.sh in a checkout, else kickctl deploy."""
     if not is_checkout():
         return f"{kickctl_command()} deploy"
     return "./deploy.sh" if Path.cwd() == ROOT else shlex.quote(str(ROOT / "deploy.sh"))
