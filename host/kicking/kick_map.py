@@ -1,7 +1,7 @@
-"""The kick map: how many simulated wheels a kick reverses, by its kind, its length, and the wheel's direction and phase when it comes.
+"""The kick map: how many simulated wheels a kick reverses.
 
-Its rows are plain data: mode, sign, ticks, before (direction, 1 or -1), phase (number of a bin),
-tried, reversed.
+It depends on the kick's kind and length, and on the wheel's direction and phase when the kick
+begins.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from math import degrees, radians
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -18,7 +18,41 @@ from robot.params import Params
 from sim_motor.batch import run
 from sim_motor.motor import load
 
-Row = dict[str, Any]
+
+class KickCell(TypedDict):
+    """A kick.
+
+    Attributes:
+        mode: membrane, position or phase.
+        sign: sign of the phase shift; 0 for other kicks.
+        ticks: length in ticks.
+    """
+
+    mode: str
+    sign: int
+    ticks: int
+
+
+class Counts(TypedDict):
+    """Kicks that met wheels of one direction in one bin of phases.
+
+    Attributes:
+        before: direction of the wheels, 1 forward or -1 backward.
+        phase: number of the bin, from 0; see `phase_bin`.
+        tried: how many kicks.
+        reversed: how many of them reversed the wheel.
+    """
+
+    before: int
+    phase: int
+    tried: int
+    reversed: int
+
+
+class Row(KickCell, Counts):
+    """A row of the map: a kick and what it did."""
+
+
 # Mode, and sign of the shift; a phase kick of the sign of the wheel's direction is the one that the
 # paper names.
 KINDS = ((POSITION, 0), (PHASE, 1), (PHASE, -1))
@@ -53,7 +87,7 @@ def shift_of(sign: int) -> float | None:
 
 
 def phase_bin(phi_rad: float) -> int:
-    """The bin of an angle; edges lie between counts of the encoder, so that rounding moves none across."""
+    """The bin of an angle (rad). Edges lie between counts of the encoder, where no angle is."""
     return int((degrees(phi_rad) + 0.5) % 360 // _BIN_DEG)
 
 
@@ -77,7 +111,7 @@ def tally(
     params: Params,
     motor: str = "pybricks",
     battery_v: float | None = None,
-) -> list[Row]:
+) -> list[Counts]:
     """Kick simulated wheels that have settled, each at whatever phase it has, and count.
 
     Rows of before, phase, tried, reversed.
@@ -120,7 +154,7 @@ def tally(
     ]
 
 
-def count(rows: Iterable[Row]) -> tuple[int, int]:
+def count(rows: Iterable[Counts]) -> tuple[int, int]:
     """(reversed, tried) of some rows together."""
     done = tried = 0
     for row in rows:

@@ -18,6 +18,7 @@ from typing import Any
 from host.kicking.kick_map import (
     KINDS,
     PHASE_BINS,
+    KickCell,
     Row,
     bin_edges_rad,
     count,
@@ -90,7 +91,7 @@ def _is_sure(rows: Iterable[Row]) -> bool:
     return tried > 0 and done >= SURE * tried
 
 
-def choose(rows: list[Row], before: int) -> Plan | None:
+def choose(rows: Iterable[Row], before: int) -> Plan | None:
     """The kick that reverses a wheel of this direction most safely.
 
     At any phase if there is one, else at the right moment.
@@ -113,7 +114,7 @@ def choose(rows: list[Row], before: int) -> Plan | None:
     return max(windows, key=_width, default=None)
 
 
-def _by_kick(rows: list[Row], before: int) -> dict[KickName, list[Row]]:
+def _by_kick(rows: Iterable[Row], before: int) -> dict[KickName, list[Row]]:
     kicks: dict[KickName, list[Row]] = {}
     for row in rows:
         if row["before"] == before:
@@ -251,7 +252,7 @@ def _params(values: tuple[float, ...]) -> Params:
 
 
 def _mapped(mode: str, sign: int, ticks: int, params: Params, wheels: int) -> list[Row]:
-    kick = {"mode": mode, "sign": sign, "ticks": ticks}
+    kick: KickCell = {"mode": mode, "sign": sign, "ticks": ticks}
     pieces = range(wheels // _PIECE)
     return [
         {**kick, **row}

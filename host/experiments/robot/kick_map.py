@@ -1,42 +1,143 @@
-"""Where the basin lies: success of a kick against its length and the wheel's phase when it comes, for each direction (R9 and R10).
+"""Which kicks reverse a wheel, by length, phase and direction of the wheel (R9 and R10).
 
-The paper shifts and inverts blindly, whatever the phase; the map tells at which lengths this does
-not matter, and when to kick else.
+The paper shifts and inverts at any phase. The map shows at which lengths the phase does not matter,
+and at which phase to kick otherwise.
 """
 
 from __future__ import annotations
 
 from math import ceil
-from typing import Any
+from typing import NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from host.client.robot import Robot
 from host.experiments.robot.reliability import kick_settled
-from host.kicking.kick_map import KINDS, LENGTHS, PHASE_BINS, count, phase_bin, tally
+from host.kicking import kick_map
+from host.kicking.kick_map import (
+    KINDS,
+    LENGTHS,
+    PHASE_BINS,
+    Counts,
+    KickCell,
+    count,
+    phase_bin,
+    tally,
+)
 from host.kicking.outcome import DIRECTIONS, OPPOSITE
 from host.kicking.planning import choose
 from host.kicking.robot_claims import quenched, surest
 from host.logs.log import Log
 from host.runs.claims import Claim
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
 from robot.params import Params
 
-# Kicks that are computed in a go: some seconds, and memory that any machine has. A million kicks
-# make 28,000 for a length, and 390 for a direction and a phase: where all of these reverse, at
-# least 99 % do (95 % confidence); a rate of half is known to 5 %.
+# Kicks in one cell: they take some seconds, and memory that any machine has. A million kicks make
+# 28,000 for a length, and 390 for a direction and a phase: where all of these reverse, at least
+# 99 % do (95 % confidence); a rate of half is known to 5 %.
 CHUNK = 20000
 
 
-def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A cell is a chunk of kicks of one kind and length, or a single one on a robot.
+class ChunkCell(KickCell):
+    """Many simulated kicks of one kind and length.
 
-    There they go round after round.
+    Attributes:
+        chunk: number of the chunk, from 0.
+        kicks: how many kicks.
     """
-    kicks: list[Cell] = [
+
+    chunk: int
+    kicks: int
+
+
+class TrialCell(KickCell):
+    """One kick of a robot.
+
+    Attributes:
+        trial: number of the round, from 0.
+    """
+
+    trial: int
+
+
+Cell = ChunkCell | TrialCell
+
+
+class Row(kick_map.Row):
+    """A row of the map, with the columns of its cell, ChunkCell or TrialCell."""
+
+    chunk: NotRequired[int]
+    kicks: NotRequired[int]
+    trial: NotRequired[int]
+
+
+class Rate(TypedDict):
+    """A share of reversed kicks (None without kicks), its 95 % interval, and how many kicks."""
+
+    rate: float | None
+    interval: list[float]
+    tried: int
+
+
+class BestKick(Rate):
+    """The kick that `choose` found.
+
+    Attributes:
+        ticks: its length.
+        window_deg: the phases (degrees) between which to kick; None for any.
+    """
+
+    ticks: int
+    window_deg: list[float] | None
+
+
+class BlindKick(Rate):
+    """Kicks of one length at all phases together.
+
+    Attributes:
+        ticks: the length.
+        at_the_worst_phase: the share that reversed in the bin where fewest did.
+    """
+
+    ticks: int
+    at_the_worst_phase: float | None
+
+
+class KindNumbers(TypedDict):
+    """What a kind of kick does to wheels of one direction.
+
+    Attributes:
+        mode: mode of the kick.
+        sign: sign of the phase shift, 0 for position kicks.
+        before: direction of the wheels, 1 or -1.
+        best: the best kick, None if no kick is sure.
+        blind_as_in_the_paper: the paper's kick, at any phase.
+        blind: kicks of each length, at any phase.
+    """
+
+    mode: str
+    sign: int
+    before: int
+    best: BestKick | None
+    blind_as_in_the_paper: BlindKick
+    blind: list[BlindKick]
+
+
+class Numbers(TypedDict):
+    """How many kicks, the lengths (ticks), how many bins of phase, and what each kind does."""
+
+    kicks: int
+    lengths: list[int]
+    phase_bins: int
+    maps: list[KindNumbers]
+
+
+def cells(options: Options, *, batch: bool) -> list[Cell]:
+    """Chunks of kicks for the simulation; single kicks for a robot, all kinds in each round."""
+    kicks: list[KickCell] = [
         {"mode": mode, "sign": sign, "ticks": ticks} for mode, sign in KINDS for ticks in LENGTHS
     ]
     each = ceil(options["kicks"] / len(kicks))
@@ -49,16 +150,18 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
     return [{**kick, "trial": trial} for trial in range(each) for kick in kicks]
 
 
-def world(cell: Cell) -> dict[str, str]:
+def world(cell: TrialCell) -> dict[str, str]:
     """The robot alone on the floor."""
     return {}
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """Counts by direction and phase."""
-    kick = cell["mode"], cell["sign"], cell["ticks"], cell["kicks"]
+def simulate(cell: ChunkCell, setting: Setting) -> list[Counts]:
+    """Kick the wheels of one chunk, and count by direction and phase."""
     return tally(
-        *kick,
+        cell["mode"],
+        cell["sign"],
+        cell["ticks"],
+        cell["kicks"],
         setting.seed_of(cell),
         params=Params(),
         motor=setting.motor,
@@ -66,8 +169,8 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
     )
 
 
-def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot."""
+def trial(cell: TrialCell, robot: Robot, log: Log, setting: Setting) -> list[Counts]:
+    """Kick both wheels of a robot."""
     outcome = kick_settled(cell, robot, log, setting)
     met = next(record for record in reversed(log.records) if record.tick == outcome.applied_tick)
     return [
@@ -84,9 +187,8 @@ def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
 
 def of_kind(rows: list[Row], mode: str, sign: int, before: int) -> list[Row]:
     """The rows of a kind of kick on wheels of a direction."""
-    return [
-        row for row in rows if (row["mode"], row["sign"], row["before"]) == (mode, sign, before)
-    ]
+    kicks = [row for row in rows if row["mode"] == mode and row["sign"] == sign]
+    return [row for row in kicks if row["before"] == before]
 
 
 def counts(rows: list[Row]) -> NDArray[np.float64]:
@@ -107,60 +209,53 @@ def share(totals: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
-    """R9 and R10 at the worst phase.
-
-    And for each kind and direction the best length and moment, beside blind kicks.
-    """
-    best = [
-        _best(of_kind(rows, mode, sign, before), mode, sign, before)
-        for mode, sign in KINDS
-        for before in (1, -1)
-    ]
+    """R9 and R10 at the worst phase, and the best kick of each kind beside blind ones."""
     position = [of_kind(rows, POSITION, 0, before) for before in (1, -1)]
     named = [of_kind(rows, PHASE, before, before) for before in (1, -1)]
     claims = [
         _whatever_the_phase("R9", "inverted positions", position),
         _whatever_the_phase("R10", "a phase shift of the named sign", named),
     ]
-    return Findings(
-        [claim.doubted(setting.elsewhere()) for claim in claims],
-        {"kicks": count(rows)[1], "lengths": list(LENGTHS), "phase_bins": PHASE_BINS, "maps": best},
-    )
+    numbers: Numbers = {
+        "kicks": count(rows)[1],
+        "lengths": list(LENGTHS),
+        "phase_bins": PHASE_BINS,
+        "maps": [
+            _kind_numbers(of_kind(rows, mode, sign, before), mode, sign, before)
+            for mode, sign in KINDS
+            for before in (1, -1)
+        ],
+    }
+    return Findings([claim.doubted(setting.elsewhere()) for claim in claims], numbers)
 
 
-def _best(rows: list[Row], mode: str, sign: int, before: int) -> dict[str, Any]:
-    """The best kick of a kind, beside blind ones.
-
-    The paper's and each length's, whatever the phase, and at the worst phase.
-    """
+def _kind_numbers(rows: list[Row], mode: str, sign: int, before: int) -> KindNumbers:
+    """The best kick of a kind and direction, and blind kicks of the paper's and each length."""
     plan = choose(rows, before)
-    totals = counts(rows)
-    blind = [
+    best: BestKick | None = None
+    if plan is not None:
+        rate = _rate(plan.reversed, plan.tried)
+        best = {"ticks": plan.ticks, "window_deg": plan.window_deg(), **rate}
+    by_length = counts(rows).transpose(1, 0, 2)
+    blind: list[BlindKick] = [
         {
             "ticks": ticks,
-            **_rate(*of.sum(axis=1)),
-            "at_the_worst_phase": _rate(*_least_sure(of))["rate"],
+            **_rate(*totals.sum(axis=1)),
+            "at_the_worst_phase": _rate(*_least_sure(totals))["rate"],
         }
-        for ticks, of in zip(LENGTHS, totals.transpose(1, 0, 2), strict=True)
+        for ticks, totals in zip(LENGTHS, by_length, strict=True)
     ]
     return {
         "mode": mode,
         "sign": sign,
         "before": before,
-        "best": (
-            plan
-            and {
-                "ticks": plan.ticks,
-                "window_deg": plan.window_deg(),
-                **_rate(plan.reversed, plan.tried),
-            }
-        ),
+        "best": best,
         "blind_as_in_the_paper": blind[LENGTHS.index(DEFAULT_TICKS[mode])],
         "blind": blind,
     }
 
 
-def _rate(done: float, tried: float) -> dict[str, Any]:
+def _rate(done: float, tried: float) -> Rate:
     return {
         "rate": float(done / tried) if tried else None,
         "interval": list(wilson(int(done), int(tried))),
@@ -169,15 +264,16 @@ def _rate(done: float, tried: float) -> dict[str, Any]:
 
 
 def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> Claim:
-    """Reliable in either direction at each phase, failing in both together."""
+    """Claim that a kick is reliable in each direction at each phase, and fails in both together."""
     totals = np.concatenate([counts(rows) for rows in directions], axis=2).transpose(1, 0, 2)
-    least_sure = {ticks: _least_sure(of) for ticks, of in zip(LENGTHS, totals, strict=True)}
+    by_length = dict(zip(LENGTHS, totals, strict=True))
+    least_sure = {ticks: _least_sure(own) for ticks, own in by_length.items()}
     return quenched(
         number,
         f"{what}: reliable for 3 to 5 ticks, whatever the phase",
         "in the direction and at the phase where it is least sure",
         least_sure,
-        {ticks: fraction(*of.sum(axis=1)) for ticks, of in zip(LENGTHS, totals, strict=True)},
+        {ticks: fraction(*own.sum(axis=1)) for ticks, own in by_length.items()},
         least_sure[surest(least_sure)][1],
         "kicks there",
     )

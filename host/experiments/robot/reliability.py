@@ -1,27 +1,27 @@
-"""How surely a kick reverses a wheel, against its length.
+"""How surely a kick reverses a wheel, against its length (R8 to R10).
 
-Position and phase kicks of both signs, membrane beside them (R8 to R10).
-
-A trial is one wheel that has settled, at whatever phase the kick meets it. Phase kicks of both
-signs are given to wheels of both directions: of the sign that the paper names for a direction, and
-of the other one, of which it says nothing.
+Kicks are position kicks, phase kicks of both signs, and membrane kicks beside them. A trial is one
+wheel that has settled; the kick meets it at a random phase. Phase kicks of both signs are given to
+wheels of both directions: of the sign that the paper names for a direction, and of the other sign,
+of which the paper says nothing.
 """
 
 from __future__ import annotations
 
 from math import isnan
+from typing import NotRequired, TypedDict
 
 import numpy as np
 
 from host.client.robot import Robot
 from host.errors import NotDone
-from host.kicking.kick_map import request, shift_of
+from host.kicking.kick_map import KickCell, request, shift_of
 from host.kicking.outcome import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
 from host.kicking.robot_claims import inversions, quenched
 from host.logs.log import Log
 from host.logs.motion import settling_s
 from host.runs.claims import Claim
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
 from robot.params import Params
@@ -30,26 +30,58 @@ from sim_motor.motor import load
 
 LENGTHS = tuple(range(1, 11))
 TURN_S = 0.5
-# So many batches without a wheel in one of the directions, and it is no matter of chance.
+# If no wheel runs in one of the directions after this many batches, it is not by chance.
 PATIENT_BATCHES = 3
 _SETTLE_TICKS, _WATCH_TICKS = 170, 130
 
 
-def cells(options: Options, *, batch: bool) -> list[Cell]:
-    """A cell is a kick for all trials of the batch, or for one trial on a robot.
+class Cell(KickCell):
+    """A kick for all trials of the simulation, or for one trial on a robot.
 
-    There they go round after round, as its battery fades.
+    Attributes:
+        trial: number of the trial on a robot, from 0.
+    """
+
+    trial: NotRequired[int]
+
+
+class Trial(TypedDict):
+    """One wheel that was kicked.
+
+    Attributes:
+        before: its direction before the kick, 1 forward or -1 backward.
+        reversed: whether it runs in the other direction afterwards.
+        settling_s: time from the kick's begin until it has settled (s); None if it has not.
+    """
+
+    before: int
+    reversed: bool
+    settling_s: float | None
+
+
+class Row(Cell, Trial):
+    """A trial with its kick."""
+
+
+class Numbers(TypedDict):
+    """Lengths of the kicks (ticks), and [reversals, trials] at each, by the kind of kick."""
+
+    lengths: list[int]
+    reversals_of_trials: dict[str, list[list[int]]]
+
+
+def cells(options: Options, *, batch: bool) -> list[Cell]:
+    """Every kick once for the simulation.
+
+    On a robot, whose battery fades, all kicks take turns in each of many rounds.
     """
     kicks: list[Cell] = [{"mode": MEMBRANE, "ticks": 1, "sign": 0}]
     kicks += [{"mode": POSITION, "ticks": ticks, "sign": 0} for ticks in LENGTHS]
-    kicks += [
-        {"mode": PHASE, "ticks": ticks, "sign": sign} for sign in (1, -1) for ticks in LENGTHS
-    ]
-    return (
-        kicks
-        if batch
-        else [{**kick, "trial": trial} for trial in range(options["trials"]) for kick in kicks]
-    )
+    kicks += [{"mode": PHASE, "ticks": ticks, "sign": 1} for ticks in LENGTHS]
+    kicks += [{"mode": PHASE, "ticks": ticks, "sign": -1} for ticks in LENGTHS]
+    if batch:
+        return kicks
+    return [{**kick, "trial": trial} for trial in range(options["trials"]) for kick in kicks]
 
 
 def world(cell: Cell) -> dict[str, str]:
@@ -57,13 +89,13 @@ def world(cell: Cell) -> dict[str, str]:
     return {}
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """As many wheels as it takes until so many ran in each direction."""
+def simulate(cell: Cell, setting: Setting) -> list[Trial]:
+    """Kick simulated wheels until enough of them ran in each direction."""
     rng = np.random.default_rng(setting.seed_of(cell))
     asked = request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
     kick = parse({"id": "reliability", **asked}, (0, 0), Params(), _SETTLE_TICKS)
     published, trials = load(setting.motor), setting.options["trials"]
-    rows: dict[int, list[Row]] = {1: [], -1: []}
+    rows: dict[int, list[Trial]] = {1: [], -1: []}
     batches = 0
     while min(map(len, rows.values())) < trials:
         if batches >= PATIENT_BATCHES and not all(rows.values()):
@@ -83,31 +115,28 @@ def simulate(cell: Cell, setting: Setting) -> list[Row]:
             motors=motors,
             battery_v=setting.battery_v,
         )
-        for before, reverses, settled in zip(
+        wheels = zip(
             result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True
-        ):
+        )
+        for before, reverses, settled in wheels:
+            settled_s = None if isnan(settled) else settled
             if before:
                 rows[before].append(
-                    {
-                        "before": before,
-                        "reversed": reverses,
-                        "settling_s": None if isnan(settled) else settled,
-                    }
+                    {"before": before, "reversed": reverses, "settling_s": settled_s}
                 )
     return rows[1][:trials] + rows[-1][:trials]
 
 
-def kick_settled(cell: Cell, robot: Robot, log: Log, setting: Setting) -> Outcome:
-    """Give a robot that has settled the cell's kick, at a random phase."""
+def kick_settled(cell: KickCell, robot: Robot, log: Log, setting: Setting) -> Outcome:
+    """Wait until a robot has settled, and give it the cell's kick at a random phase."""
     wait_settled(robot)
     robot.wait(float(np.random.default_rng(setting.seed_of(cell)).uniform(0.0, TURN_S)))
-    return kick_and_watch(
-        robot, log, **request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
-    )
+    kick = request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
+    return kick_and_watch(robot, log, **kick)
 
 
-def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """Both wheels of a robot."""
+def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Trial]:
+    """Kick both wheels of a robot."""
     outcome = kick_settled(cell, robot, log, setting)
     return [
         {
@@ -126,16 +155,17 @@ def rate(rows: list[Row]) -> tuple[int, int]:
 
 
 def points(rows: list[Row], mode: str, ticks: int, named: bool | None = None) -> list[Row]:
-    """The trials of a point. named.
+    """The trials of one kick.
 
-    Only phase kicks of the sign that the paper names for the wheel's direction, or only the others.
+    Args:
+        rows: all trials.
+        mode: mode of the kick.
+        ticks: its length.
+        named: True for phase kicks of the sign that the paper names for the wheel's direction,
+            False for those of the other sign, None for all.
     """
-    return [
-        row
-        for row in rows
-        if (row["mode"], row["ticks"]) == (mode, ticks)
-        and (named is None or (row["sign"] == row["before"]) is named)
-    ]
+    kicks = [row for row in rows if row["mode"] == mode and row["ticks"] == ticks]
+    return [row for row in kicks if named in (None, row["sign"] == row["before"])]
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
@@ -145,36 +175,39 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         _quenched("R9", "inverted positions are", rows, POSITION, None),
         _quenched("R10", "a phase shift of the named sign is", rows, PHASE, named=True),
     ]
-    rates = {
-        name: [[*rate(points(rows, mode, ticks, named))] for ticks in LENGTHS]
-        for name, mode, named in (
-            ("position", POSITION, None),
-            ("phase", PHASE, True),
-            ("phase, other sign", PHASE, False),
-        )
+    kinds = (
+        ("position", POSITION, None),
+        ("phase", PHASE, True),
+        ("phase, other sign", PHASE, False),
+    )
+    numbers: Numbers = {
+        "lengths": list(LENGTHS),
+        "reversals_of_trials": {
+            name: [list(rate(points(rows, mode, ticks, named))) for ticks in LENGTHS]
+            for name, mode, named in kinds
+        },
     }
     claims = [claim.doubted(setting.elsewhere()) for claim in claims]
-    return Findings(claims, {"lengths": list(LENGTHS), "reversals_of_trials": rates})
+    return Findings(claims, numbers)
 
 
 def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
-    """Reliable in the worse direction, failing in both."""
-    directions = {
-        ticks: [
-            rate([row for row in points(rows, mode, ticks, named) if row["before"] == before])
-            for before in (1, -1)
-        ]
-        for ticks in LENGTHS
-    }
+    """Claim that a kick is reliable in the worse direction, and fails in both."""
+    least_sure: dict[int, tuple[int, int]] = {}
+    rates: dict[int, float] = {}
+    fewest = len(rows)
+    for ticks in LENGTHS:
+        own = points(rows, mode, ticks, named)
+        both = [rate([row for row in own if row["before"] == before]) for before in (1, -1)]
+        least_sure[ticks] = min(both, key=lambda counts: fraction(*counts))
+        rates[ticks] = max(fraction(*counts) for counts in both)
+        fewest = min(fewest, *(tried for _, tried in both))
     return quenched(
         number,
         f"{what} reliable for 3 to 5 ticks",
         "in the worse direction",
-        {
-            ticks: min(both, key=lambda counts: fraction(*counts))
-            for ticks, both in directions.items()
-        },
-        {ticks: max(fraction(*counts) for counts in both) for ticks, both in directions.items()},
-        min(tried for both in directions.values() for _, tried in both),
+        least_sure,
+        rates,
+        fewest,
         "trials in a direction",
     )

@@ -1,19 +1,27 @@
-"""Kick maps: for each kind of kick and each direction, success against length and phase, and the best kick."""
+"""Kick maps: success against length and phase for each kind of kick, and the best kick."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
-from host.experiments.robot.kick_map import counts, of_kind, share
+from host.experiments.robot.kick_map import (
+    BestKick,
+    BlindKick,
+    KindNumbers,
+    Numbers,
+    Row,
+    counts,
+    of_kind,
+    share,
+)
 from host.figures.style import SIZE, styled
 from host.kicking.kick_map import LENGTHS
 from host.kicking.outcome import DIRECTIONS
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 from robot.kicks import PHASE, POSITION
 
 _KINDS = {
@@ -21,15 +29,14 @@ _KINDS = {
     (PHASE, 1): r"phase shifted by $+3\pi/4$",
     (PHASE, -1): r"phase shifted by $-3\pi/4$",
 }
+_EDGE_DEG = 0.5  # bins begin half a count of the encoder early
 _BEST: Any = {"color": "#d55e00", "linewidth": 2.5}
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
-    """The figure of the experiment's rows."""
-    maps = {
-        ((entry["mode"], entry["sign"]), entry["before"]): entry
-        for entry in findings.numbers["maps"]
-    }
+    """Draw the rows."""
+    numbers: Numbers = findings.numbers
+    maps = {((entry["mode"], entry["sign"]), entry["before"]): entry for entry in numbers["maps"]}
     with styled():
         figure = Figure(**SIZE)
         panels = figure.subplots(2, 3, sharex=True, sharey=True)
@@ -45,42 +52,42 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         bar = figure.colorbar(image, ax=panels, shrink=0.9, pad=0.02)
         bar.set_label("reversed (%); beside each row: at all phases together")
         figure.suptitle(
-            f"Which kicks reverse a wheel, and when: {findings.numbers['kicks']:,} kicks; the best"
-            " framed",
+            f"Which kicks reverse a wheel, and when: {numbers['kicks']:,} kicks; the best framed",
             fontsize=16,
         )
     return figure
 
 
-def _draw_map(axes: Axes, rows: list[Row], entry: dict[str, Any]) -> AxesImage:
-    edge = 0.5  # bins begin half a count of the encoder early
-    extent = (-edge, 360 - edge, LENGTHS[0] - 0.5, LENGTHS[-1] + 0.5)
+def _draw_map(axes: Axes, rows: list[Row], entry: KindNumbers) -> AxesImage:
     image = axes.imshow(
         100 * share(counts(rows)),
         origin="lower",
         aspect="auto",
-        extent=extent,
+        extent=(-_EDGE_DEG, 360 - _EDGE_DEG, LENGTHS[0] - 0.5, LENGTHS[-1] + 0.5),
         cmap="cividis",
         vmin=0,
         vmax=100,
     )
     axes.tick_params(axis="y", labelsize=10)
     for ticks, blind in zip(LENGTHS, entry["blind"], strict=True):
-        share_text = (
-            ""
-            if blind["rate"] is None
-            else f"{100 * blind['rate']:.{0 if blind['rate'] in (0, 1) else 1}f}"
-        )
-        axes.text(364, ticks, share_text, fontsize=9, va="center")
-    best = entry["best"]
-    if best:
-        low, high = best["window_deg"] or (-edge, 360 - edge)
-        for begin, end in [(low, high)] if low < high else [(low, 360 - edge), (-edge, high)]:
-            box = np.array(
-                [
-                    [begin, end, end, begin, begin],
-                    best["ticks"] + np.array([-0.5, -0.5, 0.5, 0.5, -0.5]),
-                ]
-            )
-            axes.plot(*box, **_BEST)
+        axes.text(364, ticks, _percent(blind), fontsize=9, va="center")
+    if entry["best"]:
+        _frame(axes, entry["best"])
     return image
+
+
+def _percent(blind: BlindKick) -> str:
+    """The rate in percent, with a decimal if it is neither 0 nor 100."""
+    rate = blind["rate"]
+    if rate is None:
+        return ""
+    return f"{100 * rate:.0f}" if rate in (0, 1) else f"{100 * rate:.1f}"
+
+
+def _frame(axes: Axes, best: BestKick) -> None:
+    """Frame the best kick; a window around phase 0 has two frames."""
+    low, high = best["window_deg"] or (-_EDGE_DEG, 360 - _EDGE_DEG)
+    frames = [(low, high)] if low < high else [(low, 360 - _EDGE_DEG), (-_EDGE_DEG, high)]
+    below, above = best["ticks"] - 0.5, best["ticks"] + 0.5
+    for begin, end in frames:
+        axes.plot([begin, end, end, begin, begin], [below, below, above, above, below], **_BEST)

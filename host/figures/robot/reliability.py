@@ -1,4 +1,4 @@
-"""Reliability of kicks against their length, with Wilson intervals, and how long the reversed wheels took to settle."""
+"""How surely kicks reverse a wheel against their length, and how long reversed wheels settle."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.robot.reliability import LENGTHS, points, rate
+from host.experiments.robot.reliability import LENGTHS, Row, points, rate
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 from host.util.intervals import wilson
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
@@ -21,7 +21,7 @@ _MARKERS = "os^"
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
-    """The figure of the experiment's rows."""
+    """Draw the rows."""
     with styled():
         figure = Figure(**SIZE)
         rates, times = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
@@ -40,9 +40,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         times.set_xlabel("length of the kick (ticks)")
         times.set_xticks(LENGTHS)
         times.set_ylim(bottom=0)
-        trials = max(
-            len(points(rows, mode, ticks, named)) for _, mode, named in _CURVES for ticks in LENGTHS
-        )
+        kicks = [(mode, ticks, named) for _, mode, named in _CURVES for ticks in LENGTHS]
+        trials = max(len(points(rows, *kick)) for kick in kicks)
         figure.suptitle(
             f"Which kicks reverse a wheel: {trials} trials a point, with 95 % intervals",
             fontsize=16,
@@ -55,9 +54,7 @@ def _draw_rate(
 ) -> None:
     counts = [rate(points(rows, mode, ticks, named)) for ticks in LENGTHS]
     shares = np.array([100 * done / tried if tried else np.nan for done, tried in counts])
-    low, high = (
-        np.array(bounds) * 100 for bounds in zip(*(wilson(*count) for count in counts), strict=True)
-    )
+    low, high = 100 * np.array([wilson(*count) for count in counts]).T
     errors = np.abs([shares - low, high - shares])
     place = np.array(LENGTHS) + 0.08 * (index - 1)
     axes.errorbar(
@@ -66,7 +63,7 @@ def _draw_rate(
 
 
 def _draw_times(axes: Axes, rows: list[Row], index: int, mode: str, named: bool | None) -> None:
-    """Median and quartiles."""
+    """Draw median and quartiles of the settling times."""
     for ticks in LENGTHS:
         times = [
             row["settling_s"]
