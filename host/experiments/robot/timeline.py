@@ -1,43 +1,69 @@
 """The three kicks one after the other, each there and back, as in the paper's timeline.
 
-Settling, and the slip between the wheels.
-
-The wheels' relative phase is the left one's angle less the right one's, as a mean over WINDOW_S, so
-that the encoder's counts do not show. Its slip is how much it changes from before a kick until
-after both wheels have settled; beside it stands the drift, which is how much it changed in a time
-as long before the kick, measured in the same way.
+It shows how long the wheels take to settle, and how far they slip. The wheels' relative phase is
+the left one's angle less the right one's, as a mean over WINDOW_S, so that the encoder's counts do
+not show. A slip is its change from before a kick until after both wheels have settled. Beside it
+stands the drift: its change in a time as long before the kick, measured in the same way.
 """
 
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from host.client.robot import Robot
+from host.experiments.robot.timeline_rows import (
+    Cell,
+    Kick,
+    KickRow,
+    SettledKick,
+    Slip,
+    Tick,
+    TimelineRow,
+    kick_rows,
+    settled_kicks,
+)
 from host.kicking.outcome import kick_and_watch
 from host.kicking.primitives import drive
 from host.kicking.robot_claims import LEAST_TRIALS, inversions
 from host.logs.log import Log
 from host.logs.motion import settling_s
 from host.runs.claims import Claim, too_few
-from host.runs.contract import Cell, Findings, Options, Row, Setting
+from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import spread, wilson
-from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION, WHEELS
+from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION
 
 simulate = None
 
 KICKS: dict[str, dict[str, Any]] = {MEMBRANE: {}, POSITION: {"ticks": 3}, PHASE: {"ticks": 4}}
 TURNS = (1, 2)  # there and back
 STEADY_S, TURN_S, WINDOW_S = 3.0, 0.5, 0.5
-# A slip is told from the drift by how many exceed what all but so much of the drift stays below.
+# A slip stands out if it exceeds what this share of the drifts stays below.
 USUAL = 0.95
-# What the first round keeps of each tick for the figure, from before the first of two kicks until
-# after the second.
-SHOWN = [f"{side}_{name}" for side in WHEELS for name in ("x1", "x2", "torque")]
+# The first round keeps its ticks for the figure, from before the first of two kicks until after the
+# second.
 SHOWN_BEFORE_S, SHOWN_AFTER_S = 1.0, 2.0
+
+
+class ModeNumbers(TypedDict):
+    """What the kicks of one mode did; quantiles are 5, 50 and 95 %, None without a kick.
+
+    Attributes:
+        reversed: how many kicks reversed the robot.
+        of: how many kicks.
+        settling_s: quantiles of the slower wheel's settling time (s).
+        slip_rad: quantiles of the slip without its sign (rad).
+        drift_rad: quantiles of the drift without its sign (rad).
+    """
+
+    reversed: int
+    of: int
+    settling_s: list[float] | None
+    slip_rad: list[float] | None
+    drift_rad: list[float] | None
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
@@ -50,13 +76,11 @@ def world(cell: Cell) -> dict[str, str]:
     return {}
 
 
-def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-    """One round: each kick takes the robot from forward to backward, and back.
-
-    Rows of `kind` kick, and of kind tick in the first one.
-    """
+def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Kick | Tick]:
+    """Do one round: each kick takes the robot from forward to backward, and back."""
     rng = np.random.default_rng(setting.seed_of(cell))
-    rows: list[Row] = []
+    tick_s = float(log.info["params"]["tick_s"])
+    rows: list[Kick | Tick] = []
     robot.wait(STEADY_S, until=lambda: len(log) > DIRECTION_TICKS)
     for mode, details in KICKS.items():
         drive(robot, log, "forward")
@@ -71,7 +95,7 @@ def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
                     "mode": mode,
                     "turn": turn,
                     "ticks": outcome.ticks,
-                    "kick_s": outcome.ticks * float(log.info["params"]["tick_s"]),
+                    "kick_s": outcome.ticks * tick_s,
                     "reversed": outcome.reversed,
                     **_slip(log, outcome.applied_tick),
                 }
@@ -86,34 +110,35 @@ def _row_of(log: Log, tick: int) -> int:
 
 
 def _relative(log: Log) -> NDArray[np.float64]:
-    left, right = (log.column(side + "_phi_rad") for side in WHEELS)
-    return np.asarray(left - right)
+    return np.asarray(log.column("left_phi_rad") - log.column("right_phi_rad"))
 
 
-def _slip(log: Log, tick: int) -> Row:
-    """When the wheels settled after the kick that began in this tick, and their relative phase.
-
-    None for what did not settle.
-    """
+def _slip(log: Log, tick: int) -> Slip:
+    """How the wheels settled, and slipped, after the kick that began in this tick."""
     t, relative = log.column("t_s"), _relative(log)
     begin_s = float(t[_row_of(log, tick)])
-    times = [settling_s(log, side, tick) for side in WHEELS]
 
     def mean(first_s: float) -> float:
         return float(relative[(t >= first_s) & (t < first_s + WINDOW_S)].mean())
 
     before = mean(begin_s - WINDOW_S)
-    known = [time for time in times if time is not None]
-    settled = len(known) == len(WHEELS)
-    after = mean(begin_s + max(known)) if settled else None
-    earlier = mean(begin_s - max(known) - 2 * WINDOW_S) if settled else None
-    return {
-        **{f"settling_{side}_s": time for side, time in zip(WHEELS, times, strict=True)},
+    left_s, right_s = settling_s(log, "left", tick), settling_s(log, "right", tick)
+    found: Slip = {
+        "settling_left_s": left_s,
+        "settling_right_s": right_s,
         "relative_before_rad": wrapped(before),
-        "relative_after_rad": None if after is None else wrapped(after),
-        "slip_rad": None if after is None else after - before,
-        "drift_rad": None if earlier is None else before - earlier,
+        "relative_after_rad": None,
+        "slip_rad": None,
+        "drift_rad": None,
     }
+    if left_s is None or right_s is None:
+        return found
+    settled_s = max(left_s, right_s)
+    after = mean(begin_s + settled_s)
+    found["relative_after_rad"] = wrapped(after)
+    found["slip_rad"] = after - before
+    found["drift_rad"] = before - mean(begin_s - settled_s - 2 * WINDOW_S)
+    return found
 
 
 def wrapped(angle: float) -> float:
@@ -121,14 +146,10 @@ def wrapped(angle: float) -> float:
     return (angle + pi) % (2 * pi) - pi
 
 
-def _ticks(log: Log, mode: str, kicked: list[int]) -> list[Row]:
-    """What was around the kicks that begin in these rows of the log; times count from the first."""
-    t, acts = log.column("t_s"), log.column("kick") > 0
-    shown = np.flatnonzero(
-        (t >= t[kicked[0]] - SHOWN_BEFORE_S) & (t <= t[kicked[-1]] + SHOWN_AFTER_S)
-    )
-    columns = {name: log.column(name) for name in SHOWN}
-    relative = _relative(log)
+def _ticks(log: Log, mode: str, kicked: list[int]) -> list[Tick]:
+    """The ticks around the kicks that begin in these rows of the log."""
+    t, acts, relative = log.column("t_s"), log.column("kick") > 0, _relative(log)
+    begin_s, end_s = t[kicked[0]] - SHOWN_BEFORE_S, t[kicked[-1]] + SHOWN_AFTER_S
     return [
         {
             "kind": "tick",
@@ -136,48 +157,39 @@ def _ticks(log: Log, mode: str, kicked: list[int]) -> list[Row]:
             "t_s": float(t[row] - t[kicked[0]]),
             "kicked": bool(acts[row]),
             "relative_rad": float(relative[row]),
-            **{name: float(column[row]) for name, column in columns.items()},
+            "left_x1": log.records[row].left_x1,
+            "left_x2": log.records[row].left_x2,
+            "left_torque": log.records[row].left_torque,
+            "right_x1": log.records[row].right_x1,
+            "right_x2": log.records[row].right_x2,
+            "right_torque": log.records[row].right_torque,
         }
-        for row in shown.tolist()
+        for row in np.flatnonzero((t >= begin_s) & (t <= end_s)).tolist()
     ]
 
 
-def kicks(rows: list[Row], mode: str | None = None) -> list[Row]:
-    """The kicks that reversed the robot and after which both wheels settled."""
-    done = [
-        row
-        for row in rows
-        if row["kind"] == "kick" and row["reversed"] and row["slip_rad"] is not None
-    ]
-    return [row for row in done if mode in (None, row["mode"])]
-
-
-def settling(rows: list[Row]) -> list[float]:
-    """How long each kick's slower wheel took."""
-    return [max(float(row[f"settling_{side}_s"]) for side in WHEELS) for row in rows]
-
-
-def report(rows: list[Row], setting: Setting) -> Findings:
+def report(rows: list[TimelineRow], setting: Setting) -> Findings:
     """R8, R11 and R12."""
-    tried = [row for row in rows if row["kind"] == "kick"]
-    numbers = {
-        mode: {
-            "reversed": sum(row["reversed"] for row in tried if row["mode"] == mode),
-            "of": sum(row["mode"] == mode for row in tried),
-            "settling_s": _quantiles(settling(kicks(rows, mode))),
-            "slip_rad": _quantiles([abs(row["slip_rad"]) for row in kicks(rows, mode)]),
-            "drift_rad": _quantiles([abs(row["drift_rad"]) for row in kicks(rows, mode)]),
-        }
-        for mode in KICKS
-    }
-    membrane = inversions([row["reversed"] for row in tried if row["mode"] == MEMBRANE])
-    few = too_few(len(kicks(rows)), LEAST_TRIALS, "kicks that reversed the robot")
+    numbers = {mode: _mode_numbers(kick_rows(rows, mode)) for mode in KICKS}
+    done = settled_kicks(kick_rows(rows))
+    few = too_few(len(done), LEAST_TRIALS, "kicks that reversed the robot")
     claims = [
-        membrane,
-        _settling(kicks(rows)).doubted(few),
-        _slips(kicks(rows)).doubted(few),
+        inversions([row["reversed"] for row in kick_rows(rows, MEMBRANE)]),
+        _settling(done).doubted(few),
+        _slips(done).doubted(few),
     ]
     return Findings([claim.doubted(setting.elsewhere()) for claim in claims], numbers)
+
+
+def _mode_numbers(kicks: list[KickRow]) -> ModeNumbers:
+    done = settled_kicks(kicks)
+    return {
+        "reversed": sum(row["reversed"] for row in kicks),
+        "of": len(kicks),
+        "settling_s": _quantiles([kick.settling_s for kick in done]),
+        "slip_rad": _quantiles([abs(kick.slip_rad) for kick in done]),
+        "drift_rad": _quantiles([abs(kick.drift_rad) for kick in done]),
+    }
 
 
 def _quantiles(values: list[float]) -> list[float] | None:
@@ -185,8 +197,8 @@ def _quantiles(values: list[float]) -> list[float] | None:
     return [float(value) for value in np.quantile(values, (0.05, 0.5, 0.95))] if values else None
 
 
-def _settling(done: list[Row]) -> Claim:
-    times = settling(done)
+def _settling(done: list[SettledKick]) -> Claim:
+    times = [kick.settling_s for kick in done]
     low, median, high = _quantiles(times) or [0.0] * 3
     slow = sum(time >= 0.5 for time in times)
     return Claim(
@@ -196,16 +208,16 @@ def _settling(done: list[Row]) -> Claim:
         median,
         "s",
         spread(times, np.median),
-        slow > 0 and all(time > row["kick_s"] for time, row in zip(times, done, strict=True)),
+        slow > 0 and all(kick.settling_s > kick.kick_s for kick in done),
         f"median of {len(times)} reversals, the slower wheel; 5 to 95 %: {low:.2f} to {high:.2f} s;"
         f" {slow} took half a second or more",
     )
 
 
-def _slips(done: list[Row]) -> Claim:
-    slips = [abs(row["slip_rad"]) for row in done]
+def _slips(done: list[SettledKick]) -> Claim:
+    slips = [abs(kick.slip_rad) for kick in done]
     low, median, high = _quantiles(slips) or [0.0] * 3
-    usual = float(np.quantile([abs(row["drift_rad"]) for row in done] or [0.0], USUAL))
+    usual = float(np.quantile([abs(kick.drift_rad) for kick in done] or [0.0], USUAL))
     beyond = sum(slip > usual for slip in slips)
     return Claim(
         "R12",
