@@ -95,7 +95,7 @@ def _draw_slips(axes: Axes, rows: list[TimelineRow]) -> None:
         axes.plot(before, slips, marker, color=colour, markersize=5, alpha=0.8, label=mode)
     drifts = [abs(kick.drift_rad) for kick in settled_kicks(kick_rows(rows))]
     drift = float(np.degrees(max(drifts, default=0.0)))
-    axes.axhspan(-drift, drift, color="grey", alpha=0.3, linewidth=0, label="unkicked")
+    axes.axhspan(-drift, drift, color="grey", alpha=0.3, linewidth=0, label="drift")
     axes.set(xlabel="relative phase before (°)", ylabel="phase slip (°)", xlim=(-180, 180))
     axes.set_xticks(range(-180, 181, 90))
     above: Any = {"loc": "lower center", "bbox_to_anchor": (0.45, 1.0), "ncols": 4}
