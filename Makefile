@@ -74,7 +74,7 @@ lock: .venv-lock/.complete ## renew requirements.lock with the newest versions t
 
 clean: ## remove everything that can be made again
 	rm -rf .venv .venv-lock build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .coverage htmlcov
-	find robot host sim_motor tests -name __pycache__ -type d -prune -exec rm -rf {} +
+	find robot host sim_motor kickctl tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The stamp comes last and goes first, so an interrupted setup is never taken for a finished one: the next begins anew.
 $(STAMP): requirements.lock pyproject.toml

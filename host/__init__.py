@@ -1,4 +1,4 @@
-"""What a person uses on the laptop.
+"""Part of kickctl. What a person uses on the laptop.
 
 The command line, the clients of the robot, recordings and experiments.
 """

@@ -1,4 +1,4 @@
-"""The robot: what runs on the brick. CPython 3.5 and its standard library.
+"""Part of kickctl. The robot: what runs on the brick. CPython 3.5 and its standard library.
 
 It imports nothing of the other rooms.
 """

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOMS = ("robot", "sim_motor", "host")
+ROOMS = ("robot", "sim_motor", "host", "kickctl")
 
 
 def modules(*folders: str) -> list[str]:

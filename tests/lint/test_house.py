@@ -18,6 +18,7 @@ MAY_IMPORT = {
     "robot": ({"robot"}, {"ev3dev2", "serial"}),
     "sim_motor": ({"robot", "sim_motor"}, None),
     "host": ({"robot", "sim_motor", "host"}, None),
+    "kickctl": ({"host", "kickctl"}, None),
 }
 LONGEST_FILE = 400
 # In pieces, so that this file does not name them either.

@@ -1,0 +1,76 @@
+"""Kick control for programs and notebooks: robots to drive and to watch, and their logs.
+
+    from kickctl import connect
+
+    with connect("sim://") as robot:
+        robot.wait(3)
+        outcome = robot.kick_and_watch("phase", ticks=4)
+    print(outcome)
+
+What `__all__` names is the promise of this package; it is loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from kickctl import _neighbours
+
+if TYPE_CHECKING:
+    from host.client.listeners import Listener, Records
+    from host.errors import (
+        KickctlError,
+        LeaseLost,
+        NoLink,
+        NotDone,
+        RefusedByRobot,
+        RobotFault,
+        WrongUse,
+    )
+    from host.logs.log import Log
+    from host.perform.run import perform as run_experiment
+    from kickctl.robots import KickOutcome, Robot, connect
+
+__all__ = (
+    "connect",
+    "Robot",
+    "KickOutcome",
+    "Listener",
+    "Records",
+    "Log",
+    "run_experiment",
+    "KickctlError",
+    "NotDone",
+    "WrongUse",
+    "NoLink",
+    "RefusedByRobot",
+    "LeaseLost",
+    "RobotFault",
+)
+
+_PLACES = {
+    "connect": "kickctl.robots",
+    "Robot": "kickctl.robots",
+    "KickOutcome": "kickctl.robots",
+    "Listener": "host.client.listeners",
+    "Records": "host.client.listeners",
+    "Log": "host.logs.log",
+    "run_experiment": "host.perform.run",
+}
+_OTHER_NAMES = {"run_experiment": "perform"}
+
+_neighbours.check()
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module 'kickctl' has no attribute '{name}'; it has {__all__}")
+    module = import_module(_PLACES.get(name, "host.errors"))
+    value: object = getattr(module, _OTHER_NAMES.get(name, name))
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,149 @@
+"""Robots for programs and notebooks: all that host.client.robot has, and kicks that are watched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from host.client import robot as client
+from host.errors import NotDone
+from host.kicking.outcome import (
+    Outcome,
+    advice,
+    describe,
+    kick_and_watch,
+    require_running,
+    wait_settled,
+)
+
+
+@dataclass(frozen=True)
+class KickOutcome(Outcome, Mapping[str, Any]):
+    """What a kick did: the fields of `kickctl kick --json`, as attributes and as a mapping.
+
+    So `outcome.reversed` and `outcome["reversed"]` are the same, `dict(outcome)` is plain data, and
+    `print(outcome)` says it in words.
+
+    Attributes:
+        mode: Which kick.
+        ticks: How long it was, in control periods.
+        shift_rad: The shift of a phase kick (rad), one for each wheel if they differ; else None.
+        wheel: 'left', 'right' or 'both'.
+        applied_tick: The tick in which it began.
+        before: Each wheel's heading before the kick: 'forward', 'backward' or 'stopped'.
+        after: Each wheel's heading after it.
+        reversed: Whether every kicked wheel has reversed.
+        settling_s: How long they took to settle (s); None if a kicked wheel never settled.
+        brick: The robot's address.
+        seed: The seed of its chances.
+    """
+
+    brick: str
+    seed: int
+
+    def __getitem__(self, name: str) -> Any:
+        return asdict(self)[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return (field.name for field in fields(self))
+
+    def __len__(self) -> int:
+        return len(fields(self))
+
+    def __str__(self) -> str:
+        hint = "" if self.reversed else advice(self).removeprefix(": ")
+        return describe(self) + (f"\n{hint}" if hint else "")
+
+
+class Robot(client.Robot):
+    """A robot to drive and to watch; `connect` returns one.
+
+    Every method that talks to it raises KickctlError in words when that fails. Leaving the `with`
+    block, or `close`, hangs up; the robot goes on as it is.
+    """
+
+    def kick_and_watch(
+        self,
+        mode: str,
+        *,
+        ticks: int | None = None,
+        wheel: str = "both",
+        shift: float | None = None,
+        shape: str | None = None,
+        param: str | None = None,
+        value: float | None = None,
+        variable: str | None = None,
+        delta: float | None = None,
+        now: bool = False,
+    ) -> KickOutcome:
+        """Wait until the wheels turn evenly, kick, and watch until they do so again.
+
+        Args:
+            mode: 'membrane', 'position', 'phase', 'pulse' or 'jump'.
+            ticks: How long the kick lasts, in control periods.
+            wheel: 'left', 'right' or 'both'.
+            shift: phase: the shift (rad), by default with the sign that reverses.
+            shape: pulse: 'rectangular' or 'smooth'.
+            param: pulse: the parameter.
+            value: pulse: its value at the pulse's height.
+            variable: jump: the membrane potential, 'x1' or 'x2'.
+            delta: jump: how far it jumps.
+            now: Kick at once, without waiting until the wheels have settled.
+
+        Returns:
+            What `kickctl kick --json` answers.
+
+        Raises:
+            NotDone: The robot does not run, or its wheels do not settle.
+            RobotFault: The robot is in fault.
+            KickctlError: The robot refuses the kick, or cannot be reached.
+        """
+        require_running(self)
+        with self.recording() as log:
+            if not now and not wait_settled(self):
+                raise NotDone(
+                    "the wheels did not settle",
+                    "now=True kicks all the same; are the parameters those of a steady motion?",
+                )
+            outcome = kick_and_watch(
+                self,
+                log,
+                mode,
+                wheel=wheel,
+                ticks=ticks,
+                shift=shift,
+                shape=shape,
+                param=param,
+                value=value,
+                variable=variable,
+                delta=delta,
+            )
+        return KickOutcome(**outcome.as_dict(), brick=self.link.uri, seed=self.hello["seed"])
+
+
+def connect(
+    uri: str | None = None,
+    seed: int | None = None,
+    token: str | None = None,
+    name: str = "kickctl",
+    *,
+    observe: bool = False,
+) -> Robot:
+    """Connect to a robot: `with connect("tcp://ev3dev.local") as robot: ...`.
+
+    Args:
+        uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot. The
+            simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.
+        seed: Fixes all chances of the simulated robot.
+        token: The path of the token file, by default the usual place.
+        name: Who this is, for the robot and for other people.
+        observe: Only look on, and stop the robot if need be, which takes no token.
+
+    Returns:
+        The robot, to be used in a `with` block or closed.
+
+    Raises:
+        KickctlError: The robot cannot be reached, or refuses.
+    """
+    return Robot.connect(uri, seed, token, name, observe=observe)
