@@ -1,4 +1,4 @@
-"""`python -m host` is `kickctl`."""
+"""`python -m host` is the command `kickctl`."""
 
 import sys
 

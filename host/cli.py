@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from host.commands._options import common
-from host.errors import KickctlError
+from host.errors import KickctlError, WrongUse
 from robot import __version__
 
 VERBS = (
@@ -39,6 +39,8 @@ VERBS = (
     "rods",
     "reproduce",
 )
+# Verbs that reach no robot by its address.
+_WITHOUT_ROBOT = ("discover", "deploy", "theory", "body", "rods")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
@@ -63,7 +65,7 @@ def make_parser() -> argparse.ArgumentParser:
             name, help=module.HELP, description=module.HELP, parents=[common(defaults=False)]
         )
         module.add_arguments(verb)
-        verb.set_defaults(run=module.run)
+        verb.set_defaults(run=module.run, verb=name)
     return parser
 
 
@@ -75,14 +77,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         argcomplete.autocomplete(parser)
     if threading.current_thread() is threading.main_thread():
-        signal.signal(
-            signal.SIGTERM, _interrupt
-        )  # a verb that moves the robot stops it then, and a log is closed
+        # On SIGTERM, too, a verb that moves the robot stops it, and a log is closed.
+        signal.signal(signal.SIGTERM, _interrupt)
     options = parser.parse_args(
         _join_negative(sys.argv[1:] if arguments is None else list(arguments))
     )
     hook, sys.unraisablehook = sys.unraisablehook, _interrupt_again
     try:
+        _give_params(options)
         status = int(options.run(options))
         sys.stdout.flush()
         return status
@@ -126,8 +128,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.unraisablehook = hook
 
 
+def _give_params(options: argparse.Namespace) -> None:
+    """Turn --set into a part of the simulated robot's address. Raises WrongUse."""
+    settings = [*(options.set_before or ()), *getattr(options, "set_after", ())]
+    if not settings:
+        return
+    if options.verb in _WITHOUT_ROBOT:
+        raise WrongUse(
+            f"--set gives parameters to a simulated robot, and `kickctl {options.verb}` has none",
+            f"see kickctl {options.verb} --help for its own options",
+        )
+    from host.link.addresses import chosen, with_params
+
+    options.brick = with_params(chosen(options.brick), settings)
+
+
 def _drop_output() -> None:
-    """Nobody takes the output any more; let the interpreter's last flush go nowhere."""
+    """Nobody reads the output any more: send the interpreter's last flush to nowhere."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -137,10 +154,7 @@ def _interrupt(number: int, frame: object) -> None:
 
 
 def _interrupt_again(lost: sys.UnraisableHookArgs) -> None:
-    """Python lets nothing out of a destructor, of which the compiler's has many.
-
-    An interrupt that came in one comes once more.
-    """
+    """Raise an interrupt again that came within a destructor, which Python ignores there."""
     if lost.exc_type is KeyboardInterrupt:
         again = threading.Timer(0.05, _thread.interrupt_main)
         again.daemon = True
@@ -150,7 +164,7 @@ def _interrupt_again(lost: sys.UnraisableHookArgs) -> None:
 
 
 def _join_negative(arguments: list[str]) -> list[str]:
-    """'--shift -3pi/4' as '--shift=-3pi/4': argparse takes a negative angle for an option."""
+    """Write '--shift -3pi/4' as '--shift=-3pi/4': argparse takes a negative angle for an option."""
     joined: list[str] = []
     for argument in arguments:
         if (

@@ -130,7 +130,7 @@ def connect(
     *,
     observe: bool = False,
 ) -> Robot:
-    """Connect to a robot: `with connect("tcp://ev3dev.local") as robot: ...`.
+    """Connect to a robot, real or simulated; to be used as a `with` block.
 
     Args:
         uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot. The

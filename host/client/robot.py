@@ -188,7 +188,11 @@ class Robot(Connection):
         return recent[-1] if recent else None
 
     def recent(self) -> list[Record]:
-        """The latest records, about twelve seconds of them, oldest first."""
+        """The latest records.
+
+        Returns:
+            About twelve seconds of records, oldest first.
+        """
         return list(self.stream.recent)
 
     def record(self, seconds: float) -> Log:
@@ -275,12 +279,20 @@ class Robot(Connection):
             self.stream.add(tap)
 
     def remove_tap(self, tap: Tap) -> None:
-        """Feed a tap no more."""
+        """Feed a tap no more.
+
+        Args:
+            tap: The tap; nothing happens if it is not fed.
+        """
         with self._lock:
             self.stream.remove(tap)
 
     def pull(self, tap: Tap) -> None:
-        """Feed a tap with everything that the robot's black box holds, up to now."""
+        """Feed a tap with everything that the robot's black box holds, up to now.
+
+        Args:
+            tap: As for `add_tap`.
+        """
         with self._lock:
             # The answer comes behind the last record of the subscription that there was.
             self.request("unsubscribe")
@@ -293,7 +305,11 @@ class Robot(Connection):
                 self.stream.remove(tap)
 
     def info(self) -> dict[str, Any]:
-        """What a log must say of its origin: `Log.info`."""
+        """What a log must say of its origin.
+
+        Returns:
+            Plain JSON data, as in `Log.info`.
+        """
         return origin(self.link.uri, self.hello, self.status(), self.clock_zero_s, self.started_utc)
 
     def _forget(self, listener: Listener) -> None:

@@ -10,7 +10,11 @@ def _seed(text: str) -> int:
 
 
 def common(*, defaults: bool) -> argparse.ArgumentParser:
-    """A parent parser. The options may stand before or after the verb, so only one of the places may set defaults."""
+    """A parent parser with the options of every verb.
+
+    The options may stand before the verb or after it, so only one of the places may set defaults.
+    --set adds up, so that each place has a list of its own, set_before and set_after.
+    """
     parser = argparse.ArgumentParser(
         add_help=False, argument_default=None if defaults else argparse.SUPPRESS
     )
@@ -22,6 +26,13 @@ def common(*, defaults: bool) -> argparse.ArgumentParser:
     )
     group.add_argument(
         "--seed", type=_seed, metavar="N", help="fixes all chances of the simulated robot"
+    )
+    group.add_argument(
+        "--set",
+        action="append",
+        dest="set_before" if defaults else "set_after",
+        metavar="NAME=VALUE",
+        help="a parameter of the embedded simulated robot, as in k=2.5; may be repeated",
     )
     group.add_argument("--token", metavar="FILE", help="the robot's token file")
     off = False if defaults else argparse.SUPPRESS

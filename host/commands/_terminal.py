@@ -34,10 +34,7 @@ def show(result: object) -> None:
 def robot_of(
     options: argparse.Namespace, *, moves: bool = False, observe: bool = False
 ) -> Iterator[Robot]:
-    """The robot that the options name; says so if it is the simulated one.
-
-    If the verb `moves` it, ^C stops its motors.
-    """
+    """The robot that the options name. If the verb `moves` it, ^C stops its motors."""
     with connect(options.brick, options.seed, options.token, observe=observe) as robot:
         robot.on_trouble = say
         if robot.link.virtual:
@@ -60,25 +57,25 @@ def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -
 
 
 def tell(summary: dict[str, Any]) -> None:
-    """What a run came to: claims in sentences, its main numbers and how accurate they are, and where its files are."""
+    """Print the results of a run: claims in sentences, main numbers, accuracies, and its files."""
     from host.runs.claims import Claim
 
     for claim in summary["claims"]:
         print(Claim.from_dict(claim).sentence())
-    for name, value in _told(summary["numbers"]):
+    for name, value in _single_values(summary["numbers"]):
         print(name, f"{value:.10g}" if isinstance(value, float) else value)
     table = Path(summary["table"])
-    told = [("table", table), ("numbers", table.with_name("summary.json"))]
     for kind, path in (
-        *told,
+        ("table", table),
+        ("numbers", table.with_name("summary.json")),
         *(("figure", path) for path in summary["figures"][:1]),
         *(("file", path) for path in summary["files"]),
     ):
         print(kind, path)
 
 
-def _told(numbers: Any) -> Iterator[tuple[str, Any]]:
-    """The single ones of a run's numbers, and those in its "accuracy", (name, value)."""
+def _single_values(numbers: Any) -> Iterator[tuple[str, Any]]:
+    """(name, value) of a run's numbers that are no lists, and of those under "accuracy"."""
     if isinstance(numbers, dict):
         yield from (
             (name, value) for name, value in numbers.items() if isinstance(value, int | float | str)
@@ -93,7 +90,11 @@ def _told(numbers: Any) -> Iterator[tuple[str, Any]]:
 
 @contextmanager
 def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
-    """A log of all that the robot does meanwhile, in memory and, as it grows, in a new file of this path."""
+    """Record all that the robot does meanwhile, in memory and in a new file that grows with it.
+
+    Yields:
+        The log and the file's path.
+    """
     from host.logs.log import Log
     from host.logs.mcap_files import McapTap, new_path
 

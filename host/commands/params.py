@@ -2,8 +2,9 @@
 
 import argparse
 
-from host.commands._terminal import robot_of, show
+from host.commands._terminal import robot_of, say, show
 from host.errors import WrongUse
+from host.link.settings import parse_setting
 
 HELP = "the robot's parameters: list, get NAME, set NAME=VALUE ..."
 
@@ -15,13 +16,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """List, get or set; a set is checked by the robot and done wholly or not at all."""
+    """List, get or set. The robot checks a set, and changes all of it or nothing."""
     if (options.action == "list") == bool(options.names):
         raise WrongUse(
             f"params {options.action} takes {'no names' if options.names else 'at least one name'}",
             "see kickctl params --help",
         )
-    changes = dict(_parse(text) for text in options.names) if options.action == "set" else {}
+    changes = dict(map(parse_setting, options.names)) if options.action == "set" else {}
     with robot_of(options) as robot:
         rows = {row["name"]: row for row in robot.describe("params")}
         names = list(changes) or options.names or list(rows)
@@ -30,6 +31,8 @@ def run(options: argparse.Namespace) -> int:
                 raise WrongUse(f"the robot has no parameter '{name}'", "it has " + ", ".join(rows))
         if changes:
             robot.set(**changes)
+            if robot.link.virtual:
+                say(_gone(options.names))
         values = robot.status()["params"]
     if options.action == "list":
         table = [
@@ -48,16 +51,14 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _parse(text: str) -> tuple[str, float | int | str]:
-    name, equals, value = text.partition("=")
-    if not equals or not value:
-        raise WrongUse(f"'{text}' sets nothing", "write it as in k=2.5")
-    for convert in (int, float):
-        try:
-            return name, convert(value)
-        except ValueError:
-            pass
-    return name, value
+def _gone(settings: list[str]) -> str:
+    given = " ".join(f"--set {setting}" for setting in settings)
+    return (
+        "the simulated robot ends with this command, and the new values with it.\n"
+        f"  For a simulated robot that begins with them: kickctl {given} kick --mode phase, or"
+        f" --brick 'sim://?{'&'.join(settings)}'.\n"
+        "  For one that stays: python -m sim_motor, then --brick tcp://127.0.0.1 in each command."
+    )
 
 
 def _print_table(rows: list[dict[str, object]]) -> None:

@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Tally:
-    """A tap that counts."""
+    """A tap that counts ticks, lost ticks and restarts, and remembers a fault."""
 
     def __init__(self) -> None:
         self.ticks = 0
@@ -33,7 +33,7 @@ class Tally:
         self.ticks += len(records)
 
     def take_event(self, event: dict[str, Any]) -> None:
-        """Count what the robot says is lost, and its new beginnings; remember its fault."""
+        """Count lost ticks and restarts; remember the fault."""
         if event["event"] == "lost":
             self.missing += event["tick"] - event["from"]
         elif event["event"] == "restart":
@@ -43,9 +43,10 @@ class Tally:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record; ^C ends it early, and what was recorded is kept.
+    """Record. ^C ends it early, and what was recorded is kept.
 
-    5 if the robot fell into a fault meanwhile.
+    Returns:
+        The exit status: 5 if the robot fell into a fault meanwhile.
     """
     from host.logs.mcap_files import McapTap, new_path
     from host.util.progress import progress
@@ -79,14 +80,14 @@ def run(options: argparse.Namespace) -> int:
         "missing": tally.missing,
         "restarts": tally.restarts,
     }
-    anew = (
-        f"; the robot's program began anew {tally.restarts} times, and what it had not sent by then"
-        " is lost"
+    more = (
+        f"; the robot's program started again {tally.restarts} times, and the ticks that it had not"
+        " sent by then are lost"
         if tally.restarts
         else ""
     )
     if tally.fault:
         facts["fault"] = tally.fault
-        anew += f"\nfault on the robot meanwhile: {printable(tally.fault)}"
-    answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{anew}")
+        more += f"\nfault on the robot meanwhile: {printable(tally.fault)}"
+    answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{more}")
     return RobotFault.status if tally.fault else 0

@@ -1,4 +1,4 @@
-"""A log in memory: every tick's record and every event a robot sent, in their order, and where they came from."""
+"""A log in memory: a robot's records and events in their order, and where they came from."""
 
 from __future__ import annotations
 
@@ -19,12 +19,19 @@ if TYPE_CHECKING:
 class Log:
     """Records and events of one subscription; a Tap.
 
-    `info` says what was run, in plain JSON data; what is unknown is left out:
-    host_software, robot_software, commit, brick (URI), host_machine, robot_machine (as the robot's hello names it), seed, boot,
-    params, polarity, battery_v, clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601); and
-    truncated (True) if the log was read from a file that breaks off or is damaged.
+    Args:
+        info: What was run; see below.
 
-    `places[i]` is the number of records that came before `events[i]`, so `records[places[i]]` is the first one it concerns.
+    Attributes:
+        records: One Record for each tick, oldest first.
+        events: What changed the robot's course, as dictionaries, oldest first.
+        places: `places[i]` is the number of records that came before `events[i]`, so
+            `records[places[i]]` is the first record that this event concerns.
+        info: What was run, in plain JSON data: host_software, robot_software, commit, brick (its
+            address), host_machine, robot_machine, seed, boot, params, polarity, battery_v,
+            clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601),
+            and truncated (True) if the log was read from a file that breaks off or is damaged.
+            What is unknown is left out.
     """
 
     def __init__(self, info: dict[str, Any] | None = None) -> None:
@@ -34,16 +41,28 @@ class Log:
         self.places: list[int] = []
 
     def take_records(self, records: list[Record]) -> None:
-        """Append records."""
+        """Append records.
+
+        Args:
+            records: The next records, oldest first.
+        """
         self.records.extend(records)
 
     def take_event(self, event: Event) -> None:
-        """Append an event that concerns the records that are still to come."""
+        """Append an event that concerns the records that are still to come.
+
+        Args:
+            event: Its name (`event`), its tick, and what belongs to it.
+        """
         self.events.append(event)
         self.places.append(len(self.records))
 
     def stream(self) -> Iterator[Event | Record]:
-        """Events and records in the order in which they came."""
+        """Events and records in the order in which they came.
+
+        Returns:
+            An iterator of dictionaries (events) and Records.
+        """
         done = 0
         for event, place in zip(self.events, self.places, strict=True):
             yield from self.records[done:place]
@@ -52,7 +71,11 @@ class Log:
         yield from self.records[done:]
 
     def play(self, tap: Tap) -> None:
-        """Feed the whole log to a tap, as the robot's stream would."""
+        """Feed the whole log to a tap, as the robot's stream would.
+
+        Args:
+            tap: Has take_records(records) and take_event(event).
+        """
         done = 0
         for event, place in zip(self.events, self.places, strict=True):
             if place > done:
@@ -63,7 +86,17 @@ class Log:
             tap.take_records(self.records[done:])
 
     def column(self, name: str) -> NDArray[Any]:
-        """A channel of robot.record.CHANNELS, one value a tick: int64 for whole numbers, else float64. KeyError if there is none."""
+        """A channel of the log as an array.
+
+        Args:
+            name: The channel's name, as in robot.record.CHANNELS: tick, t_s, left_torque, ...
+
+        Returns:
+            One value for each tick: int64 for whole numbers, float64 for all others.
+
+        Raises:
+            KeyError: There is no such channel.
+        """
         import numpy as np
 
         if name not in NAMES:
@@ -73,15 +106,25 @@ class Log:
         return np.fromiter((record[index] for record in self.records), dtype, len(self.records))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """All columns by name, and left_omega_rad_s and right_omega_rad_s."""
+        """All channels as arrays.
+
+        Returns:
+            Arrays by the channels' names, and left_omega_rad_s and right_omega_rad_s (rad/s).
+        """
         speeds = {side + "_omega_rad_s": self.omega(side) for side in WHEELS}
         return {**{name: self.column(name) for name in NAMES}, **speeds}
 
     def omega(self, side: str) -> NDArray[np.float64]:
-        """Speed of the 'left' or 'right' wheel in rad/s, one value a tick: the turn since the record before over the time since it.
+        """Speed of a wheel, forward positive: turn over time since the record before.
 
-        The first record, and the first of a robot that began anew, has none before it and takes the value of the next; NaN if there
-        is no next either.
+        The first record, and the first one after a restart of the robot's program, has none before
+        it and takes the value of the next; it is NaN if there is no next record either.
+
+        Args:
+            side: 'left' or 'right'.
+
+        Returns:
+            One value for each tick (rad/s).
         """
         import numpy as np
 
@@ -94,7 +137,11 @@ class Log:
         return omega
 
     def restarts(self) -> list[int]:
-        """The index of the first record after each new beginning of the robot's program, from which ticks and t_s count anew."""
+        """Where the robot's program started again, so that tick and t_s count from its beginning.
+
+        Returns:
+            For each restart the index of the first record after it.
+        """
         return [
             place
             for event, place in zip(self.events, self.places, strict=True)
@@ -102,7 +149,11 @@ class Log:
         ]
 
     def missing(self) -> list[tuple[int, int]]:
-        """The gaps (first, end) in the numbers of the ticks: those from first to end - 1 are not in the log."""
+        """The gaps in the numbers of the ticks.
+
+        Returns:
+            (first, end) of each gap: the ticks from first to end - 1 are not in the log.
+        """
         gaps = []
         due: int | None = None
         for item in self.stream():
@@ -115,7 +166,11 @@ class Log:
         return gaps
 
     def kicks(self) -> list[tuple[int, Event]]:
-        """(index of the record in which it begins, the kick as plain data) of every kick that began in the log."""
+        """The kicks that began in the log.
+
+        Returns:
+            (index of the first record of the kick, the kick as a dictionary) of each.
+        """
         return [
             (place, event["kick"])
             for event, place in zip(self.events, self.places, strict=True)
@@ -124,13 +179,26 @@ class Log:
 
     @property
     def seconds(self) -> float:
-        """How long the log lasts by the robot's clock, from its first record to its last; a robot that began anew counts anew."""
+        """How long the log lasts by the robot's clock (s), from its first record to its last.
+
+        Where the robot's program started again, the parts before and after add up.
+        """
         edges = [0, *self.restarts(), len(self.records)]
         spans = [self.records[first:end] for first, end in pairwise(edges)]
         return float(sum(span[-1].t_s - span[0].t_s for span in spans if span))
 
     def save(self, path: str | Path) -> Path:
-        """Write the log to a new MCAP file. Raises LogError if the file exists already."""
+        """Write the log to a new MCAP file.
+
+        Args:
+            path: The file, which must not exist.
+
+        Returns:
+            The file's path.
+
+        Raises:
+            LogError: The file exists already, or cannot be written.
+        """
         from host.logs.mcap_files import McapTap
 
         with McapTap(path, self.info) as tap:
@@ -139,7 +207,17 @@ class Log:
 
     @classmethod
     def load(cls, path: str | Path) -> Log:
-        """The log in an MCAP file, bit for bit. Raises LogError."""
+        """Read a log from an MCAP file, bit for bit.
+
+        Args:
+            path: The file.
+
+        Returns:
+            The log. `info["truncated"]` is True if the file breaks off.
+
+        Raises:
+            LogError: The file is not there, or is no log.
+        """
         from host.logs.mcap_files import play
 
         log = cls()
@@ -149,7 +227,14 @@ class Log:
         return log
 
     def to_csv(self, path: str | Path) -> Path:
-        """Write one row a tick, as host.logs.tables describes it, over whatever the file held."""
+        """Write a table, one row for each tick, in the columns of host.logs.tables.
+
+        Args:
+            path: The file; what it held is replaced.
+
+        Returns:
+            The file's path.
+        """
         from host.logs.tables import write_csv
 
         path = Path(path)
@@ -158,7 +243,14 @@ class Log:
         return path
 
     def to_npz(self, path: str | Path) -> Path:
-        """Write the same columns as numpy arrays, with `info` and `events` as JSON text, over whatever the file held."""
+        """Write the table's columns as numpy arrays, and `info` and `events` as JSON text.
+
+        Args:
+            path: The file; what it held is replaced.
+
+        Returns:
+            The file's path.
+        """
         from host.logs.tables import write_npz
 
         path = Path(path)

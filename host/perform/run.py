@@ -40,12 +40,23 @@ def perform(
     say: Callable[[str], None] = lambda words: None,
     **arguments: Any,
 ) -> dict[str, Any]:
-    """Run an experiment or a study, or the rest of one that was cut short, and return its summary, which also stands in its folder.
+    """Run an experiment or a study of the model, or resume one that was cut short.
 
-    uri, token: of the robot, as `connect` takes them; a study has none. seed: of all chances, also
-    those of a simulated robot. out: below which folder; what belongs to exactly these arguments has
-    one of its own there. scheduler: address of a Dask scheduler for what is computed. arguments:
-    the run's own options. Raises KickctlError; what was measured until then is kept.
+    Args:
+        name: Its name, as in `kickctl experiment NAME` or `kickctl theory NAME`.
+        uri: The robot's address, as `connect` takes it; a study has no robot.
+        seed: Fixes all chances, also those of a simulated robot.
+        token: The path of the token file, as `connect` takes it.
+        out: The folder for results; each set of arguments has a folder of its own there.
+        scheduler: The address of a Dask scheduler that spreads simulations.
+        say: Called with words for people.
+        arguments: The run's own options.
+
+    Returns:
+        The summary, which is also a file in the run's folder: claims, numbers, files.
+
+    Raises:
+        KickctlError: It cannot go on; what was measured until then is kept.
     """
     found = find(name)
     options = checked(name, found.entry, arguments)

@@ -10,10 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from host.client.robot import connect
+from host.client.robot import Robot, connect
 from host.errors import NoLink, RefusedByRobot, WrongUse
 from host.logs.log import Log
+from robot.record import STATES
+from robot.session import Session
 from tests.cli.test_desk import desk_robot
+from tests.link.machines import TcpRobot
 
 
 def test_stop_needs_no_token_however_bad_the_one_that_is_there(kickctl, tmp_path):
@@ -24,6 +27,40 @@ def test_stop_needs_no_token_however_bad_the_one_that_is_there(kickctl, tmp_path
         assert kickctl("status", "--brick", uri, "--token", str(wrong))[0] == 4
         assert kickctl("stop", "--brick", uri, "--token", str(wrong))[0] == 0
         assert json.loads(kickctl("status", "--brick", uri, "--json")[1])["state"] == "stopped"
+
+
+@pytest.mark.parametrize("answer", ["another version", "nothing"])
+def test_stop_needs_no_robot_that_understands_hello(kickctl, monkeypatch, answer):
+    def hello(session, message):
+        return session.refuse("version", "9.0", "") if answer == "another version" else b""
+
+    monkeypatch.setattr(Session, "_hello", hello)
+    monkeypatch.setattr(Robot, "answer_s", 0.3)
+    machine = TcpRobot()
+    try:
+        uri = machine.link().uri
+        assert kickctl("status", "--brick", uri)[0] == (4 if answer == "another version" else 3)
+        status, out, _ = kickctl("stop", "--brick", uri, "--json")
+        assert status == 0
+        assert json.loads(out)["state"] == STATES[machine.loop.safety.state] == "stopped"
+    finally:
+        machine.close()
+
+
+def test_a_stop_that_nobody_confirms_exits_3_and_claims_nothing(kickctl, monkeypatch):
+    monkeypatch.setattr(Session, "receive", lambda session, kind, payload: b"")
+    monkeypatch.setattr("host.client.stop.CONFIRM_S", 0.3)
+    machine = TcpRobot()
+    try:
+        status, out, err = kickctl("stop", "--brick", machine.link().uri)
+    finally:
+        machine.close()
+    assert (status, out) == (3, "")
+    assert "may still be running" in err
+
+
+def test_a_stop_of_the_embedded_robot_says_that_no_other_is_stopped(kickctl):
+    assert "no other robot is stopped" in kickctl("stop")[2]
 
 
 def test_a_robot_that_begins_anew_while_it_is_recorded_is_told(kickctl, tmp_path):

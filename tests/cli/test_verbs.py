@@ -110,6 +110,50 @@ def test_params_set_and_get(kickctl):
     assert json.loads(kickctl("params", "get", "k", "--json")[1]) == {"k": 8.0}
 
 
+def test_params_set_says_that_the_embedded_robot_ends_and_what_to_use_instead(kickctl):
+    status, out, err = kickctl("params", "set", "k=2.5", "tau_s=1")
+    assert (status, out) == (0, "k = 2.5 1\ntau_s = 1.0 s\n")
+    assert "ends with this command" in err
+    assert "--set k=2.5 --set tau_s=1" in err
+    assert "'sim://?k=2.5&tau_s=1'" in err
+    assert "python -m sim_motor" in err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--set", "k=2", "--set", "tau_s=1", "status", "--json"),
+        ("status", "--set", "k=2", "--set", "tau_s=1", "--json"),
+        ("--set", "k=2", "status", "--json", "--set", "tau_s=1"),
+        ("status", "--json", "--brick", "sim://?k=2", "--set", "tau_s=1"),
+        ("status", "--json", "--brick", "sim://?k=9&tau_s=1", "--set", "k=2"),
+        ("status", "--json", "--brick", "sim://?k=2&tau_s=1"),
+    ],
+)
+def test_the_embedded_robot_begins_with_the_parameters_that_it_is_given(kickctl, arguments):
+    params = json.loads(kickctl(*arguments)[1])["params"]
+    assert (params["k"], params["tau_s"]) == (2.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("status", "--set", "k=-1"), "k cannot be -1"),
+        (("status", "--set", "k"), "'k' sets nothing"),
+        (("status", "--set", "=2"), "'=2' sets nothing"),
+        (("status", "--set", "mass=2"), "no option 'mass'"),
+        (("status", "--set", "k=2", "--brick", "tcp://127.0.0.1:1"), "params set k=2"),
+        (("experiment", "timeline", "--set", "k=2"), "says k"),
+        (("discover", "--set", "k=2"), "`kickctl discover` has none"),
+    ],
+)
+def test_parameters_that_go_nowhere_are_refused(kickctl, arguments, words):
+    status, out, err = kickctl(*arguments)
+    assert (status, out) == (2, "")
+    assert words in err
+    assert list(kickctl.folder.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
