@@ -7,6 +7,7 @@ arithmetic, same latency. It stands alone, which the motor's model allows (see s
 Only a link, a lease and a fault have no place here.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from math import isnan, nan, pi
 
@@ -166,13 +167,16 @@ def run(
         times=times,
         records=np.empty((min(record, wheels), ticks, len(CHANNELS))),
     )
+    # numpy multiplies matrices on several cores at once.
+    with ThreadPoolExecutor() as pool:
+        tables = np.stack(list(pool.map(Constants.tables, motors)))
     _run_all(
         start.states,
         start.potentials,
         times,
         (params.a, params.tau_s, params.k, params.rods, params.max_duty_pct, params.tick_s),
         _kick_numbers(kick),
-        np.stack([motor.tables() for motor in motors]),
+        tables,
         np.stack([motor.scalars() for motor in motors]),
         (
             motors[0].battery_v if battery_v is None else battery_v,

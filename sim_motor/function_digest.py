@@ -7,6 +7,7 @@ function, in whichever module the code stands that went into it.
 import builtins
 import dis
 import hashlib
+import inspect
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
@@ -101,7 +102,9 @@ class _Walk:
             yield value.co_code.hex()
             shape = (value.co_argcount, value.co_posonlyargcount, value.co_kwonlyargcount)
             names = (value.co_names, value.co_varnames, value.co_freevars, value.co_cellvars)
-            yield from self._of((*shape, value.co_flags, *names, value.co_consts))
+            # Under a profiler numba clears that flag of what it has called.
+            flags = value.co_flags & ~inspect.CO_OPTIMIZED
+            yield from self._of((*shape, flags, *names, value.co_consts))
         elif isinstance(value, tuple | list | set | frozenset):
             yield f"{type(value).__name__} of {len(value)}"
             # A set has another order in each process.

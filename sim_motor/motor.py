@@ -20,6 +20,7 @@ separation or an impact of the two sides of the backlash.
 
 import tomllib
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib.resources import files
 from math import copysign, floor, pi
 from typing import Any
@@ -148,17 +149,23 @@ class Constants:
 def _exponential(matrices: Array) -> Array:
     """exp of each matrix in a stack, by its series at a 256th of the size, squared eight times."""
     small = matrices / 256
-    term = out = np.broadcast_to(np.eye(small.shape[-1]), small.shape)
-    for order in range(1, 16):
+    term, out = small, np.eye(small.shape[-1]) + small
+    order = 1
+    while True:
+        order += 1
         term = term @ small / order
-        out = out + term
+        before, out = out, out + term
+        # From the sixth power on every entry that can differ from 0 does, and terms only shrink.
+        if order > 6 and np.array_equal(out, before):
+            break
     for _ in range(8):
         out = out @ out
     return out
 
 
+@cache
 def data() -> dict[str, dict[str, list[Any]]]:
-    """The data file: tables of name -> [value, unit, source]."""
+    """The data file: tables of name -> [value, unit, source]. Not to be changed."""
     return tomllib.loads((files("sim_motor") / "motors.toml").read_text())
 
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import binomtest, bootstrap
 
 CONFIDENCE = 0.95
 RESAMPLES = 999
+# So many standard deviations to either side hold CONFIDENCE of a normal distribution.
+_QUANTILE = 1.959963984540054
 
 
 def fraction(successes: float, trials: float) -> float:
@@ -21,8 +23,12 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
     """The Wilson score interval (95 %) of a rate; (0, 1) if nothing was tried."""
     if trials == 0:
         return 0.0, 1.0
-    interval = binomtest(successes, trials).proportion_ci(CONFIDENCE, method="wilson")
-    return float(interval.low), float(interval.high)
+    rate = successes / trials
+    scale = 2 * (trials + _QUANTILE**2)
+    centre = (2 * trials * rate + _QUANTILE**2) / scale
+    half = _QUANTILE / scale * sqrt(4 * trials * rate * (1 - rate) + _QUANTILE**2)
+    low = 0.0 if successes == 0 else centre - half
+    return low, 1.0 if successes == trials else centre + half
 
 
 def spread(
@@ -36,6 +42,9 @@ def spread(
         return None
     if len(set(values)) == 1:
         return values[0], values[0]
+    # Imported where it is used: scipy.stats takes a second.
+    from scipy.stats import bootstrap
+
     rng = np.random.default_rng(0)
     found = bootstrap(
         (np.asarray(values),),
