@@ -1,4 +1,4 @@
-"""Basins of starts in (phi, omega), and of kicks in phase and length, of the continuous model and of the sampled one."""
+"""Basins of starts in (phi, omega) and of kicks in phase and length, for both models."""
 
 from __future__ import annotations
 
@@ -14,16 +14,20 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from host.figures.style import COLOURS, styled
-from host.runs.contract import Findings, Row
-from host.theory.analysis.outcomes import BACK, BACKWARD, FORWARD, REST
-from host.theory.studies.basins import (
+from host.runs.contract import Findings
+from host.theory.analysis.outcomes import BACK, BACKWARD, FORWARD, OTHER, REST, Outcome
+from host.theory.studies.basins_report import reversals
+from host.theory.studies.basins_rows import (
     CONTINUOUS,
     LENGTHS_S,
-    MODELS,
+    MODEL_NAMES,
     SAMPLED,
-    of_kick,
-    part_of,
-    reversals,
+    BasinsRow,
+    KickRow,
+    ModelName,
+    StartRow,
+    kicks_of,
+    starts_of,
 )
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
@@ -35,19 +39,19 @@ _KINDS = {
 # Wells, by their angle within the turn; then directions; then what is neither.
 _WELLS = ("#009e73", "#f0e442", "#cc79a7", "#e5e5e5")
 _SHADES = (*_WELLS, COLOURS[0], COLOURS[1], "#555555", COLOURS[5])
-_FORWARD, _BACKWARD, _OTHER, _BOUND = range(4, 8)
-_CURVES: dict[str, Any] = {
+_SHADE_OF: dict[Outcome, int] = {FORWARD: 4, BACKWARD: 5, OTHER: 6, REST: 7, BACK: 7}
+_CURVES: dict[ModelName, Any] = {
     CONTINUOUS: {"color": "black"},
     SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 6},
 }
 _MAP = ListedColormap(_SHADES)
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
     """The figure of the study's rows; without the kicks, if no wheel rolls."""
     with styled():
         figure = Figure(figsize=(12.0, 9.0), dpi=1600 / 12, layout="constrained")
-        if len(findings.numbers["no_wheel_rolls"]) == len(MODELS):
+        if len(findings.numbers["no_wheel_rolls"]) == len(MODEL_NAMES):
             panels: Any = figure.subplots(1, 2, sharey=True)
             used = _draw_basins(panels, rows, findings)
             figure.legend(handles=_patches(used), loc="outside lower center", ncols=4)
@@ -58,9 +62,9 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             return figure
         panels = figure.subplots(3, 4, width_ratios=(1.7, 1, 1, 1))
         used = _draw_basins(panels[:2, 0], rows, findings)
-        for line, model in zip(panels, MODELS, strict=False):
+        for line, model in zip(panels, MODEL_NAMES, strict=False):
             for axes, kind in zip(line[1:], _KINDS, strict=True):
-                used |= _draw_kicks(axes, of_kick(rows, model, *kind), model)
+                used |= _draw_kicks(axes, kicks_of(rows, model, *kind), model)
             line[1].set_ylabel(f"length of the kick (ms)\n{model}")
         for (top, middle, bottom), (kind, name) in zip(
             panels[:, 1:].T, _KINDS.items(), strict=True
@@ -76,7 +80,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     return figure
 
 
-def _draw_basins(panels: Any, rows: list[Row], findings: Findings) -> set[int]:
+def _draw_basins(panels: Any, rows: list[BasinsRow], findings: Findings) -> set[int]:
     """The starts of both models; returns the shades that were used."""
     titles = {
         CONTINUOUS: "starts, continuous model",
@@ -84,23 +88,23 @@ def _draw_basins(panels: Any, rows: list[Row], findings: Findings) -> set[int]:
     }
     used: set[int] = set()
     for axes, (model, title) in zip(panels, titles.items(), strict=True):
-        used |= _draw_starts(axes, part_of(rows, "starts", model))
+        used |= _draw_starts(axes, starts_of(rows, model))
         axes.set_title(title, fontsize=13)
         axes.set(xlabel=r"angle $\varphi$ at the start", ylabel=r"$\omega/2\pi$ at the start (Hz)")
     return used
 
 
-def _shade(row: Row) -> int:
-    if row["outcome"] in (REST, BACK) and row.get("quarters") is not None:
-        return int(row["quarters"] % 4)
-    return {FORWARD: _FORWARD, BACKWARD: _BACKWARD, REST: _BOUND, BACK: _BOUND}.get(
-        row["outcome"], _OTHER
-    )
+def _shade(outcome: Outcome, quarters: int | None = None) -> int:
+    """The number of a shade; quarters: the number of the well, if a wheel ends in one."""
+    if outcome in (REST, BACK) and quarters is not None:
+        return quarters % 4
+    return _SHADE_OF[outcome]
 
 
-def _draw_starts(axes: Axes, starts: list[Row]) -> set[int]:
+def _draw_starts(axes: Axes, starts: list[StartRow]) -> set[int]:
     points = int(len(starts) ** 0.5)
-    shades = np.array([_shade(row) for row in starts]).reshape(points, points)
+    shades = np.array([_shade(row["outcome"], row["quarters"]) for row in starts])
+    shades = shades.reshape(points, points)
     greatest = abs(starts[0]["omega"]) * points / (points - 1) / (2 * pi)
     axes.imshow(shades, extent=(-pi, pi, -greatest, greatest), vmin=-0.5, vmax=7.5, **_image())
     axes.set_xticks(
@@ -113,15 +117,15 @@ def _image() -> dict[str, Any]:
     return {"origin": "lower", "aspect": "auto", "cmap": _MAP, "interpolation": "nearest"}
 
 
-def _draw_kicks(axes: Axes, kicks: list[Row], model: str) -> set[int]:
-    """Lines of a continuous length, or bars of whole ticks, over phases that need not be evenly spaced."""
+def _draw_kicks(axes: Axes, kicks: list[KickRow], model: ModelName) -> set[int]:
+    """Outcomes over length and phase, whose values need not be evenly spaced."""
     lengths_ms = 1000 * np.array(LENGTHS_S[model])
     axes.set(xlim=(0, 90), ylim=(0, 400), xticks=(0, 30, 60, 90))
     if not kicks:
         axes.text(45, 200, "no wheel rolls here", ha="center")
         return set()
     phases = np.array([row["phase_deg"] for row in kicks[: len(kicks) // len(lengths_ms)]])
-    shades = np.array([_shade(row) for row in kicks]).reshape(len(lengths_ms), -1)
+    shades = np.array([_shade(row["outcome"]) for row in kicks]).reshape(len(lengths_ms), -1)
     half = (lengths_ms[1] - lengths_ms[0]) / 2
     sides = np.concatenate([[0.0], (phases[1:] + phases[:-1]) / 2, [90.0]])
     axes.pcolormesh(
@@ -136,9 +140,9 @@ def _draw_kicks(axes: Axes, kicks: list[Row], model: str) -> set[int]:
     return set(shades.ravel().tolist())
 
 
-def _draw_shares(axes: Axes, rows: list[Row], kind: tuple[str, int]) -> None:
+def _draw_shares(axes: Axes, rows: list[BasinsRow], kind: tuple[str, int]) -> None:
     for model, style in _CURVES.items():
-        shares = reversals(of_kick(rows, model, *kind))
+        shares = reversals(kicks_of(rows, model, *kind))
         axes.plot(
             [1000 * length_s for length_s in shares],
             [100 * share for share in shares.values()],
@@ -159,13 +163,15 @@ def _patches(used: set[int]) -> list[Artist]:
     return [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
 
 
-def _explain(axes: Axes, used: set[int], rows: list[Row]) -> None:
+def _explain(axes: Axes, used: set[int], rows: list[BasinsRow]) -> None:
     """What the shades and the curves mean, and what the kick without a length does."""
     handles = [
         *_patches(used),
         *(Line2D([], [], label=f"reversed, {model}", **style) for model, style in _CURVES.items()),
     ]
-    shares = {model: reversals(of_kick(rows, model, MEMBRANE, 0)).values() for model in MODELS}
+    shares = {
+        model: reversals(kicks_of(rows, model, MEMBRANE, 0)).values() for model in MODEL_NAMES
+    }
     lines = [
         f"{model}: at {100 * share:.0f} % of phases"
         for model, of_model in shares.items()

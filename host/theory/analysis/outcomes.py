@@ -1,16 +1,15 @@
-"""What becomes of wheels: from a start, and from a kick at any phase of rolling.
+"""What wheels do in the end, from any start and after a kick, in either model.
 
-Of the continuous model and of the sampled one.
-
-A quarter turn changes nothing for a wheel, so that the phase of one that rolls is its angle within
-a quarter turn. In a mirror it rolls the other way, so that kicks of wheels that roll forward tell
-those of the others: at the mirrored phase, with the other sign of a shift.
+A wheel looks the same after a quarter turn: the phase of one that rolls is its angle within a
+quarter turn. In a mirror it rolls the other way: kicks of wheels that roll forward also say what
+kicks of the others do, at the mirrored phase and with the other sign of the shift.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
 from math import pi, sqrt
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,118 +22,168 @@ from host.theory.model.symbolic import jacobian_at
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, resting
 from robot.kicks import FROZEN_MODES
 
-REST, BACK, FORWARD, BACKWARD, OTHER = OUTCOMES = (
-    "rest",
-    "forth-and-back",
-    "forward",
-    "backward",
-    "other",
-)
+Outcome = Literal["rest", "forth-and-back", "forward", "backward", "other"]
+REST: Outcome = "rest"
+BACK: Outcome = "forth-and-back"
+FORWARD: Outcome = "forward"
+BACKWARD: Outcome = "backward"
+OTHER: Outcome = "other"
+OUTCOMES: tuple[Outcome, ...] = (REST, BACK, FORWARD, BACKWARD, OTHER)
 QUARTER = pi / 2
-# How long wheels settle, and are then watched twice, in their memories; slower (rad/s) than the
-# last is rest.
-SETTLED, WATCHED, STILL = 60.0, 30.0, 1e-3
+# How long wheels settle, and the length of each of the two windows after that, in units of their
+# memory.
+SETTLE, WINDOW = 60.0, 30.0
+# A slower wheel (rad/s) rests.
+STILL = 1e-3
 
 
 def rest_is_stable(model: Model, wheel: Wheel) -> bool:
-    """Whether a small swing around an even fixpoint fades."""
+    """Whether a small swing around an even fixpoint dies out."""
     if isinstance(model, Sampled):
         return abs(leading(wheel, model.clock)) <= 1.0 + 1e-12
     return bool(np.linalg.eigvals(jacobian_at(at_rest()[:4], wheel)).real.max() <= 1e-9)
 
 
-def outcomes(first: Averages, then: Averages, window_s: float, stable: bool) -> NDArray[np.str_]:
-    """What wheels do, from two windows one after the other: one of OUTCOMES, (wheels,). stable.
+def classify(
+    first: Averages, second: Averages, window_s: float, *, stable: bool
+) -> NDArray[np.str_]:
+    """What wheels do, from two windows of time, one after the other.
 
-    Whether they can rest.
+    A wheel rolls if it covers the same distance in both windows, to a quarter turn, and at least
+    half a turn. It is bound to a well if it covers none; there it comes to rest if rest is stable
+    and its swing fades. A wheel that does neither has not settled, or never does.
 
-    A wheel rolls if it covers the same distance in both, to a quarter turn, and half a turn at
-    least; it is bound to a well if it covers none, and comes to rest there if it can and its swing
-    fades. What does neither has not settled, or never does.
+    Args:
+        first: Averages over the first window, (wheels,).
+        second: Averages over the second window, (wheels,).
+        window_s: Length of a window, s.
+        stable: Whether rest is stable.
+
+    Returns:
+        One of OUTCOMES each, (wheels,).
     """
-    before, after = (window.omega_mean * window_s / QUARTER for window in (first, then))
+    before, after = (window.omega_mean * window_s / QUARTER for window in (first, second))
     bound = (np.abs(before) < 1.0) & (np.abs(after) < 1.0)
     rolls = (np.abs(after) >= 2.0) & (np.abs(after - before) < 1.0 + 1e-3 * np.abs(after))
-    still = bound & stable & ((then.omega_std < STILL) | (then.omega_std < 0.97 * first.omega_std))
+    fades = (second.omega_std < STILL) | (second.omega_std < 0.97 * first.omega_std)
     return np.select(
-        (still, bound, rolls & (after > 0.0), rolls), (REST, BACK, FORWARD, BACKWARD), OTHER
+        (bound & stable & fades, bound, rolls & (after > 0.0), rolls),
+        (REST, BACK, FORWARD, BACKWARD),
+        OTHER,
     )
 
 
-def watched(model: Model, states: Array, wheel: Wheel) -> tuple[NDArray[np.str_], Averages]:
-    """What becomes of wheels from these states.
+def settle_and_classify(
+    model: Model, states: Array, wheel: Wheel
+) -> tuple[NDArray[np.str_], Averages]:
+    """What wheels do in the end.
 
-    Their outcomes, and the averages of the last window.
+    Args:
+        model: The continuous or the sampled model.
+        states: Where they start, (rows, wheels), with the model's rows.
+        wheel: The constants of all wheels.
+
+    Returns:
+        One of OUTCOMES each, (wheels,), and the averages over the last window.
+
+    Raises:
+        WrongUse: The wheels cannot be followed.
     """
     memory, parameters = memory_s(wheel), wheel.columns(states.shape[1])
-    settled = model.averages(states, parameters, SETTLED * memory)
-    first = model.averages(settled.states, parameters, WATCHED * memory)
-    then = model.averages(first.states, parameters, WATCHED * memory)
-    return outcomes(first, then, WATCHED * memory, rest_is_stable(model, wheel)), then
+    settled = model.averages(states, parameters, SETTLE * memory)
+    first = model.averages(settled.states, parameters, WINDOW * memory)
+    second = model.averages(first.states, parameters, WINDOW * memory)
+    stable = rest_is_stable(model, wheel)
+    return classify(first, second, WINDOW * memory, stable=stable), second
 
 
-def started(phi: Array, omega: Array) -> Array:
-    """States of wheels at these angles and speeds, with the potentials of wheels that rest there, (4, wheels)."""
+def starting_states(phi: Array, omega: Array) -> Array:
+    """States of wheels with the potentials of rest.
+
+    Args:
+        phi: Angles, rad, (wheels,).
+        omega: Speeds, rad/s, (wheels,).
+
+    Returns:
+        States, (4, wheels).
+    """
     states = resting(phi)
     states[OMEGA] = omega
     return states
 
 
-def mirrored(states: Array) -> Array:
-    """The same wheels in a mirror along phi = 0."""
+def mirror(states: Array) -> Array:
+    """The same wheels reflected at phi = 0, (rows, wheels)."""
     signs = np.array([1.0, -1.0, -1.0, -1.0, -1.0])
     return np.asarray(states * signs[: len(states), None])
 
 
 def free_speed(wheel: Wheel) -> float:
-    """The speed (rad/s) that the rods' springs could give a wheel: the root of k (1 + a/2) / I."""
+    """The speed (rad/s) that the springs could give a wheel, sqrt(k (1 + a/2) / I)."""
     return sqrt(wheel.k * (1 + wheel.a / 2) / wheel.inertia)
 
 
-def rolling(model: Model, wheel: Wheel, phases: int) -> Array | None:
-    """States of a wheel that rolls forward, at so many moments, (rows, phases), sorted by phase.
+def rolling_states(model: Model, wheel: Wheel, phases: int) -> Array | None:
+    """States of a wheel that rolls forward, at moments that are equally far apart.
 
-    None if none rolls.
+    A share of these moments is therefore a share of kicks that come at any time. The moments cover
+    a quarter turn of the continuous wheel. Those of the sampled wheel are successive ticks; they
+    meet all phases unless a whole number of them makes a quarter turn.
 
-    The moments are equally far apart, so that a share of them is a share of kicks that come at any
-    time: within a quarter turn of the continuous wheel; at successive ticks of the sampled one,
-    which meet all phases unless a whole number of them makes a quarter turn.
+    Args:
+        model: The continuous or the sampled model.
+        wheel: The wheel's constants.
+        phases: How many moments.
+
+    Returns:
+        States sorted by phase, (rows, phases); None if the wheel does not roll.
+
+    Raises:
+        WrongUse: The wheel cannot be followed.
     """
-    (name,), then = watched(
-        model, model.begun(started(np.zeros(1), np.array([2 * free_speed(wheel)]))), wheel
-    )
+    fast = model.begun(starting_states(np.zeros(1), np.array([2 * free_speed(wheel)])))
+    (name,), last = settle_and_classify(model, fast, wheel)
     if name not in (FORWARD, BACKWARD):
         return None
-    step_s = (
-        model.clock.tick_s
-        if isinstance(model, Sampled)
-        else QUARTER / abs(float(then.omega_mean[0])) / phases
-    )
-    states = [then.states if name == FORWARD else mirrored(then.states)]
+    if isinstance(model, Sampled):
+        step_s = model.clock.tick_s
+    else:
+        step_s = QUARTER / abs(float(last.omega_mean[0])) / phases
+    states = [last.states if name == FORWARD else mirror(last.states)]
     while len(states) < phases:
         states.append(model.averages(states[-1], wheel.columns(1), step_s).states)
     found = np.hstack(states)
     return np.asarray(found[:, np.argsort(found[PHI] % QUARTER)])
 
 
-def after_kicks(
-    model: Model, wheel: Wheel, begun: Array, mode: str, sign: int, lengths_s: list[float]
+def outcomes_after_kicks(
+    model: Model, wheel: Wheel, states: Array, mode: str, sign: int, lengths_s: list[float]
 ) -> NDArray[np.str_]:
-    """What becomes of wheels, (rows, wheels), after a kick of each of these lengths, which rise from 0: (lengths, wheels).
+    """What wheels do after a kick.
 
-    A frozen kick has no length: it is the same for each.
+    Args:
+        model: The continuous or the sampled model.
+        wheel: The constants of all wheels.
+        states: When the kick comes, (rows, wheels).
+        mode: The kick's mode, see robot/kicks.py.
+        sign: Sign of a phase kick's shift; 0 for other kicks.
+        lengths_s: Lengths of the kick, s, ascending from 0. They make no difference to a frozen
+            kick, which acts at once.
+
+    Returns:
+        One of OUTCOMES for each length and wheel, (lengths, wheels).
+
+    Raises:
+        WrongUse: The wheels cannot be followed.
     """
+    count = states.shape[1]
     if mode in FROZEN_MODES:
-        ended = [inverted(begun)] * len(lengths_s)
+        after = [inverted(states)] * len(lengths_s)
     else:
-        ended = [begun]
+        after = [states]
         for earlier_s, length_s in pairwise(lengths_s):
-            ended.append(
-                model.kicked(
-                    ended[-1],
-                    wheel.columns(begun.shape[1]),
-                    length_s - earlier_s,
-                    seen_in(mode, sign),
-                )
-            )
-    return watched(model, np.hstack(ended), wheel)[0].reshape(len(lengths_s), begun.shape[1])
+            longer_s = length_s - earlier_s
+            seen = seen_in(mode, sign)
+            after.append(model.kicked(after[-1], wheel.columns(count), longer_s, seen))
+    outcomes, _ = settle_and_classify(model, np.hstack(after), wheel)
+    return outcomes.reshape(len(lengths_s), count)

@@ -1,15 +1,12 @@
-"""Which start leads to which motion, and which kick, of which length, at which phase of rolling.
+"""The study `basins`: which start leads to which motion, and what kicks lead to.
 
-The continuous model and the sampled one.
-
-Wheels start with the potentials that belong to rest where they are. Wheels that are kicked roll
-forward.
+Kicks come at any phase of rolling and have any length. Everything is computed with the continuous
+model and with the sampled one. Wheels start with the potentials of rest at their angle; wheels that
+are kicked roll forward.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from itertools import groupby
 from math import degrees, pi
 from typing import Any
 
@@ -18,65 +15,75 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
-from host.runs.contract import Cell, Findings, Row, Setting
-from host.theory.analysis import outcomes
+from host.runs.contract import Setting
 from host.theory.analysis.outcomes import (
     BACK,
     BACKWARD,
     FORWARD,
-    OUTCOMES,
     QUARTER,
     REST,
-    SETTLED,
-    WATCHED,
-    mirrored,
-    started,
-    watched,
+    SETTLE,
+    WINDOW,
+    Outcome,
+    free_speed,
+    mirror,
+    outcomes_after_kicks,
+    rolling_states,
+    settle_and_classify,
+    starting_states,
 )
 from host.theory.engine.ensemble import FINE, rate_per_s
 from host.theory.engine.kicked import KICKS, Continuous, Model, Sampled, memory_s
-from host.theory.engine.sampled import Clock, as_robot, ticks_in
+from host.theory.engine.sampled import as_robot, ticks_in
 from host.theory.model.wheel import PHI, Array, Wheel, numpy_rates, wheel_of
+from host.theory.studies.basins_report import report
+from host.theory.studies.basins_rows import (
+    CLOCK,
+    CONTINUOUS,
+    LENGTHS_S,
+    MODEL_NAMES,
+    PHASES,
+    SAMPLED,
+    BasinsCell,
+    Check,
+    Kick,
+    KicksCell,
+    Measured,
+    ModelName,
+    Start,
+)
 from robot.kicks import FROZEN_MODES
-from robot.params import Params
 
-CLOCK = Clock(Params().tick_s)
-CONTINUOUS, SAMPLED = "continuous", "sampled"
-MODELS: dict[str, Model] = {CONTINUOUS: Continuous(), SAMPLED: Sampled(CLOCK)}
-# The greatest omega that is tried, in parts of the speed that the springs can give.
+__all__ = ["cells", "report", "simulate"]
+
+MODELS: dict[ModelName, Model] = {CONTINUOUS: Continuous(), SAMPLED: Sampled(CLOCK)}
+# The greatest omega of a start, in units of the speed that the springs can give.
 FASTEST = 2.0
-# Grid lines in a cell; wheels of a check, and those of them that another method follows, for how
-# many of the wheel's memories.
-BAND, CHECKED, FOLLOWED, FOLLOWED_FOR = 16, 400, 12, 4.0
-PHASES = 180
-# At the paper's constants it takes 2000 to see what becomes of a wheel, and a minute for all of
-# them.
+# Grid lines in a cell.
+BAND = 16
+# Wheels of a check. Another program follows the first FOLLOWED of them for FOLLOWED_FOR memories.
+CHECKED, FOLLOWED, FOLLOWED_FOR = 400, 12, 4.0
+# With the paper's constants a wheel takes 2000 steps to settle, all of them together a minute.
 MOST_STEPS = 200_000
-LENGTHS_S = {
-    CONTINUOUS: [round(0.005 * number, 3) for number in range(81)],
-    SAMPLED: [CLOCK.tick_s * ticks for ticks in range(13)],
-}
 
 
-def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
-    """Bands of the grid of starts, kinds of kicks, and a check, of either model.
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
+    """For each model: bands of the grid of starts, kinds of kicks, and a check.
 
-    Raises WrongUse of wheels that take too long.
+    Raises WrongUse if wheels take too many steps to settle.
     """
     wheel = wheel_of(options)
-    steps = memory_s(wheel) * (SETTLED + 2 * WATCHED) * float(rate_per_s(wheel.columns(1))[0])
+    steps = memory_s(wheel) * (SETTLE + 2 * WINDOW) * float(rate_per_s(wheel.columns(1))[0])
     if not steps <= MOST_STEPS:
         raise WrongUse(
             f"to see what becomes of one such wheel takes {steps:.1e} steps: it is too stiff, or"
             " settles too slowly",
             "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
         )
-    found: list[Cell] = []
-    for model in MODELS:
-        found += [
-            {"part": "starts", "model": model, "band": band}
-            for band in range(0, options["points"], BAND)
-        ]
+    found: list[BasinsCell] = []
+    for model in MODEL_NAMES:
+        bands = range(0, options["points"], BAND)
+        found += [{"part": "starts", "model": model, "band": band} for band in bands]
         found += [
             {"part": "kicks", "model": model, "mode": mode, "sign": sign} for mode, sign in KICKS
         ]
@@ -84,121 +91,116 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[Cell]:
     return found
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Row]:
-    """A row for each start or kick, or of a check."""
-    wheel, model, points = (
-        wheel_of(setting.options),
-        MODELS[cell["model"]],
-        setting.options["points"],
-    )
+def simulate(cell: BasinsCell, setting: Setting) -> Measured:
+    """A row for each start, for each length and phase of a kick, or for a check."""
+    wheel, points = wheel_of(setting.options), setting.options["points"]
+    model = MODELS[cell["model"]]
     if cell["part"] == "starts":
         lines = omegas(wheel, points)[cell["band"] : cell["band"] + BAND]
-        phi, omega = (grid.ravel() for grid in np.meshgrid(angles(points), lines))
-        return _starts(model, wheel, phi, omega)
+        phi, omega = np.meshgrid(angles(points), lines)
+        return simulate_starts(model, wheel, phi.ravel(), omega.ravel())
     if cell["part"] == "kicks":
-        frozen = cell["mode"] in FROZEN_MODES
-        return _kicks(
-            model, wheel, cell["mode"], cell["sign"], [0.0] if frozen else LENGTHS_S[cell["model"]]
-        )
+        return _kicks(cell, wheel)
     return [_check(model, wheel, points, np.random.default_rng(setting.seed_of(cell)))]
 
 
 def angles(points: int) -> Array:
-    """Where wheels start, (points,).
+    """The angles of starts, rad, (points,).
 
-    The middles of as many equal parts of -pi to pi, lest any starts at a fixpoint.
+    The midpoints of equal parts of -pi to pi, so that none is a fixpoint.
     """
     return np.asarray((2 * np.arange(points) + 1 - points) * (pi / points))
 
 
 def omegas(wheel: Wheel, points: int) -> Array:
-    """How fast wheels start, (points,), in rad/s.
+    """The speeds of starts, rad/s, (points,).
 
-    In scale with the springs, or with the wheel's memory where there are none.
+    Scaled with the speed that the springs can give; without springs, with the wheel's memory.
     """
-    greatest = FASTEST * outcomes.free_speed(wheel) or pi / memory_s(wheel)
+    greatest = FASTEST * free_speed(wheel) or pi / memory_s(wheel)
     return np.asarray((2 * np.arange(points) + 1 - points) * (greatest / points))
 
 
-def _starts(model: Model, wheel: Wheel, phi: Array, omega: Array) -> list[Row]:
-    """quarters: of a wheel that is bound in the end, the number of its well, in quarter turns from phi = 0, full turns counted.
-
-    Without springs, or with a = 0, there are no wells, and a wheel rests anywhere.
-    """
-    pulled = wheel.k * wheel.a > 0.0
-    names, then = watched(model, model.begun(started(phi, omega)), wheel)
-    wells = np.rint(then.states[PHI] / QUARTER)
+def simulate_starts(model: Model, wheel: Wheel, phi: Array, omega: Array) -> list[Start]:
+    """What wheels come to from these angles (rad) and speeds (rad/s), (wheels,)."""
+    has_wells = wheel.k * wheel.a > 0.0
+    names, last = settle_and_classify(model, model.begun(starting_states(phi, omega)), wheel)
+    wells = np.rint(last.states[PHI] / QUARTER).tolist()
+    columns = (phi.tolist(), omega.tolist(), names.tolist(), wells)
     return [
         {
-            "phi": start,
+            "phi": angle,
             "omega": speed,
-            "outcome": str(name),
-            "quarters": int(well) if pulled and name in (REST, BACK) else None,
+            "outcome": outcome,
+            "quarters": int(well) if has_wells and outcome in (REST, BACK) else None,
         }
-        for start, speed, name, well in zip(phi.tolist(), omega.tolist(), names, wells, strict=True)
+        for angle, speed, outcome, well in zip(*columns, strict=True)
     ]
 
 
-def _kicks(model: Model, wheel: Wheel, mode: str, sign: int, lengths_s: list[float]) -> list[Row]:
-    """A row for each length and phase; none if no wheel rolls."""
-    begun = outcomes.rolling(model, wheel, PHASES)
-    if begun is None:
+def _kicks(cell: KicksCell, wheel: Wheel) -> list[Kick]:
+    """A row for each length and phase; none if the wheel does not roll."""
+    model = MODELS[cell["model"]]
+    lengths_s = [0.0] if cell["mode"] in FROZEN_MODES else LENGTHS_S[cell["model"]]
+    states = rolling_states(model, wheel, PHASES)
+    if states is None:
         return []
-    phases = [degrees(phi) for phi in (begun[PHI] % QUARTER).tolist()]
+    found = outcomes_after_kicks(model, wheel, states, cell["mode"], cell["sign"], lengths_s)
+    phases = [degrees(phi) for phi in (states[PHI] % QUARTER).tolist()]
     return [
-        {"length_s": length_s, "phase_deg": phase, "outcome": str(outcome)}
-        for length_s, line in zip(
-            lengths_s, outcomes.after_kicks(model, wheel, begun, mode, sign, lengths_s), strict=True
-        )
+        {"length_s": length_s, "phase_deg": phase, "outcome": outcome}
+        for length_s, line in zip(lengths_s, found.tolist(), strict=True)
         for phase, outcome in zip(phases, line, strict=True)
     ]
 
 
-def _check(model: Model, wheel: Wheel, points: int, rng: np.random.Generator) -> Row:
-    """Of starts on the grid, the share that comes to the same by other means.
-
-    turned, mirrored: of wheels a quarter turn ahead, and in a mirror. finer: with half the step,
-    None of a model without steps. angle_off: by how much (rad) the first few, followed for a short
-    time by another program, are elsewhere.
-    """
-    states = model.begun(
-        started(rng.choice(angles(points), CHECKED), rng.choice(omegas(wheel, points), CHECKED))
-    )
-    names, _ = watched(model, states, wheel)
-    turned = (
-        states[[1, 0, *range(2, len(states))]]
-        * np.array([-1.0, *[1.0] * (len(states) - 1)])[:, None]
-    )
-    turned[PHI] += QUARTER
-    opposite = {FORWARD: BACKWARD, BACKWARD: FORWARD}
-    mirror = watched(model, mirrored(states), wheel)[0]
-    finer = (
-        watched(Continuous(2 * FINE), states, wheel)[0] if isinstance(model, Continuous) else None
-    )
-    seconds, few = FOLLOWED_FOR * memory_s(wheel), states[:, :FOLLOWED]
-    others = [_angle_by_another_method(model, state.tolist(), wheel, seconds) for state in few.T]
+def _check(model: Model, wheel: Wheel, points: int, rng: np.random.Generator) -> Check:
+    """Random starts of the grid, by symmetry, with finer steps, and by another program."""
+    phi, omega = rng.choice(angles(points), CHECKED), rng.choice(omegas(wheel, points), CHECKED)
+    states = model.begun(starting_states(phi, omega))
+    names = _names(model, states, wheel)
+    opposite: dict[Outcome, Outcome] = {FORWARD: BACKWARD, BACKWARD: FORWARD}
+    in_mirror = _names(model, mirror(states), wheel).tolist()
+    finer = None
+    if isinstance(model, Continuous):
+        finer = _same(names, _names(Continuous(2 * FINE), states, wheel))
     return {
-        "turned": _same(names, watched(model, turned, wheel)[0]),
-        "mirrored": _same(names, np.array([opposite.get(str(name), str(name)) for name in mirror])),
-        "finer": None if finer is None else _same(names, finer),
-        "angle_off": float(
-            np.max(
-                np.abs(model.averages(few, wheel.columns(FOLLOWED), seconds).states[PHI] - others)
-            )
-        ),
+        "turned": _same(names, _names(model, _turn(states), wheel)),
+        "mirrored": _same(names, np.array([opposite.get(name, name) for name in in_mirror])),
+        "finer": finer,
+        "angle_off": _angle_off(model, states[:, :FOLLOWED], wheel),
     }
+
+
+def _names(model: Model, states: Array, wheel: Wheel) -> NDArray[np.str_]:
+    return settle_and_classify(model, states, wheel)[0]
+
+
+def _turn(states: Array) -> Array:
+    """The same wheels a quarter turn ahead."""
+    x1, x2, *others = states
+    found = np.array([-x2, x1, *others])
+    found[PHI] += QUARTER
+    return found
 
 
 def _same(names: NDArray[np.str_], others: NDArray[np.str_]) -> float:
     return float(np.mean(names == others))
 
 
-def _angle_by_another_method(
-    model: Model, state: list[float], wheel: Wheel, seconds: float
-) -> float:
-    """The angle after some seconds by scipy's integrator, or by the robot's own wheel."""
+def _angle_off(model: Model, states: Array, wheel: Wheel) -> float:
+    """The greatest difference (rad) of an angle to another program's after a short time."""
+    seconds = FOLLOWED_FOR * memory_s(wheel)
+    own = model.averages(states, wheel.columns(states.shape[1]), seconds).states[PHI]
+    others = [_angle_elsewhere(model, state.tolist(), wheel, seconds) for state in states.T]
+    return float(np.max(np.abs(own - others)))
+
+
+def _angle_elsewhere(model: Model, state: list[float], wheel: Wheel, seconds: float) -> float:
+    """The angle (rad) after some seconds, by scipy's integrator or by the robot's own wheel."""
     if isinstance(model, Sampled):
-        return float(as_robot(state, wheel, model.clock, ticks_in(seconds, model.clock) + 1)[0, -1])
+        ticks = ticks_in(seconds, model.clock) + 1
+        return float(as_robot(state, wheel, model.clock, ticks)[0, -1])
     solved = solve_ivp(
         lambda _, y: numpy_rates(*y, *wheel),
         (0.0, seconds),
@@ -208,113 +210,3 @@ def _angle_by_another_method(
         atol=1e-11,
     )
     return float(solved.y[PHI, -1])
-
-
-def report(rows: list[Row], setting: Setting) -> Findings:
-    """No claim of the paper's: how large the basins are, which kicks reverse a wheel, and where the two models differ."""
-    starts = {model: part_of(rows, "starts", model) for model in MODELS}
-    kicks = [
-        (mode, sign, {model: of_kick(rows, model, mode, sign) for model in MODELS})
-        for mode, sign in KICKS
-    ]
-    unlike = [
-        (one["outcome"], one["quarters"]) != (two["outcome"], two["quarters"])
-        for one, two in zip(*starts.values(), strict=True)
-    ]
-    checks = {model: part_of(rows, "check", model)[0] for model in MODELS}
-    numbers = {
-        "tick_s": CLOCK.tick_s,
-        "basins": {model: _basins(own) for model, own in starts.items()},
-        "starts_that_end_otherwise_if_sampled": float(np.mean(unlike)),
-        "kicks": [
-            {"model": model, "mode": mode, "sign": sign, **_reversals(own[model])}
-            for mode, sign, own in kicks
-            for model in MODELS
-            if own[model]
-        ],
-        "kicks_that_end_otherwise_if_sampled": [
-            {"mode": mode, "sign": sign, "share": _unlike(own)}
-            for mode, sign, own in kicks
-            if all(own.values())
-        ],
-        "no_wheel_rolls": [model for model in MODELS if not kicks[0][2][model]],
-        "accuracy": {
-            "same_outcome": {
-                model: {name: check[name] for name in ("turned", "mirrored", "finer")}
-                for model, check in checks.items()
-            },
-            "angle_off_rad": {model: check["angle_off"] for model, check in checks.items()},
-            "kick_length_s": LENGTHS_S[CONTINUOUS][1],
-            "phases": PHASES,
-        },
-    }
-    return Findings([], numbers)
-
-
-def part_of(rows: list[Row], part: str, model: str) -> list[Row]:
-    """The rows of a part of the study, of one model."""
-    return [row for row in rows if row["part"] == part and row["model"] == model]
-
-
-def of_kick(rows: list[Row], model: str, mode: str, sign: int) -> list[Row]:
-    """The rows of a kind of kick, sorted by length and phase."""
-    return [
-        row for row in part_of(rows, "kicks", model) if (row["mode"], row["sign"]) == (mode, sign)
-    ]
-
-
-def reversals(kicks: list[Row]) -> dict[float, float]:
-    """The share of phases at which a kick of each length (s) reverses a wheel."""
-    lines = groupby(kicks, lambda row: float(row["length_s"]))
-    return {
-        length_s: float(np.mean([row["outcome"] == BACKWARD for row in line]))
-        for length_s, line in lines
-    }
-
-
-def _basins(starts: list[Row]) -> dict[str, Any]:
-    """shares: of outcomes. wells: of the wells of wheels that are bound. turned_around.
-
-    Of those that roll, rolling against the start.
-    """
-    counts, wells = (Counter(row[name] for row in starts) for name in ("outcome", "quarters"))
-    rolling_starts = [row for row in starts if row["outcome"] in (FORWARD, BACKWARD)]
-    around = [(row["outcome"] == FORWARD) != (row["omega"] > 0.0) for row in rolling_starts]
-    return {
-        "shares": {outcome: counts[outcome] / len(starts) for outcome in OUTCOMES},
-        "wells": {
-            str(well): wells[well] / len(starts)
-            for well in sorted(well for well in wells if well is not None)
-        },
-        "turned_around": float(np.mean(around)) if around else None,
-    }
-
-
-def _reversals(kicks: list[Row]) -> dict[str, Any]:
-    """sure_s: the ranges of lengths, shortest and longest, at which a wheel is reversed whatever its phase."""
-    shares = reversals(kicks)
-    stretches = [
-        [length_s for length_s, _ in line]
-        for sure, line in groupby(shares.items(), lambda item: item[1] == 1.0)
-        if sure
-    ]
-    return {
-        "reversed": [{"length_s": length_s, "share": share} for length_s, share in shares.items()],
-        "sure_s": [[stretch[0], stretch[-1]] for stretch in stretches],
-    }
-
-
-def _unlike(kicks: dict[str, list[Row]]) -> float:
-    """The share of kicks of the sampled wheel that end otherwise than those of the continuous one of the next length and phase."""
-    lines = {
-        length_s: list(line)
-        for length_s, line in groupby(kicks[CONTINUOUS], lambda row: float(row["length_s"]))
-    }
-    unlike = []
-    for length_s, line in groupby(kicks[SAMPLED], lambda row: float(row["length_s"])):
-        near = lines[min(lines, key=lambda other, of=length_s: abs(other - of))]  # type: ignore[misc]
-        phases = np.array([row["phase_deg"] for row in near])
-        for row in line:
-            away = np.abs((phases - row["phase_deg"] + 45.0) % 90.0 - 45.0)
-            unlike.append(near[int(np.argmin(away))]["outcome"] != row["outcome"])
-    return float(np.mean(unlike))

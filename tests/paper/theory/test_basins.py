@@ -13,18 +13,19 @@ from scipy.integrate import solve_ivp
 from host.errors import WrongUse
 from host.figures.theory.basins import draw
 from host.runs.contract import Findings, Setting
-from host.theory.analysis import outcomes
 from host.theory.analysis.outcomes import (
     BACK,
     BACKWARD,
     FORWARD,
     OTHER,
     REST,
-    after_kicks,
-    mirrored,
-    rolling,
-    started,
-    watched,
+    classify,
+    mirror,
+    outcomes_after_kicks,
+    rest_is_stable,
+    rolling_states,
+    settle_and_classify,
+    starting_states,
 )
 from host.theory.engine import sampled
 from host.theory.engine.ensemble import Averages
@@ -45,15 +46,15 @@ TICK_S = 0.03
 
 
 @pytest.fixture(scope="module")
-def begun():
+def rolling():
     """Wheels that roll forward, of either model."""
-    return [rolling(model, WHEEL, PHASES) for model in MODELS]
+    return [rolling_states(model, WHEEL, PHASES) for model in MODELS]
 
 
 def shares(model, wheels, mode, sign, lengths_s):
     """The share of wheels that a kick of each length reverses."""
     return (
-        (after_kicks(model, WHEEL, wheels, mode, sign, [0.0, *lengths_s])[1:] == BACKWARD)
+        (outcomes_after_kicks(model, WHEEL, wheels, mode, sign, [0.0, *lengths_s])[1:] == BACKWARD)
         .mean(axis=1)
         .tolist()
     )
@@ -100,7 +101,7 @@ def test_a_kicked_wheel_moves_as_another_integrator_moves_it(kick):
 
 
 def test_without_a_kick_a_kicked_wheel_is_any_wheel():
-    states = started(np.linspace(-3.0, 3.0, 7), np.linspace(-9.0, 9.0, 7))
+    states = starting_states(np.linspace(-3.0, 3.0, 7), np.linspace(-9.0, 9.0, 7))
     for model in MODELS:
         kicked = model.kicked(model.begun(states), WHEEL.columns(7), 0.6, PLAIN)
         assert kicked == pytest.approx(
@@ -109,39 +110,39 @@ def test_without_a_kick_a_kicked_wheel_is_any_wheel():
 
 
 @pytest.mark.parametrize(("mode", "sign"), KICKS[1:])
-def test_a_sampled_kick_reverses_the_wheels_that_the_robots_own_kick_reverses(begun, mode, sign):
+def test_a_sampled_kick_reverses_the_wheels_that_the_robots_own_kick_reverses(rolling, mode, sign):
     lengths = (3, 5, 8)
-    found = after_kicks(
-        Sampled(), WHEEL, begun[1], mode, sign, [0.0, *(TICK_S * ticks for ticks in lengths)]
+    found = outcomes_after_kicks(
+        Sampled(), WHEEL, rolling[1], mode, sign, [0.0, *(TICK_S * ticks for ticks in lengths)]
     )[1:]
     shift = {"shift": sign * 3 * pi / 4} if sign else {}
     for ticks, line in zip(lengths, found, strict=True):
         kick = parse({"id": "test", "mode": mode, "ticks": ticks, **shift}, (1, 1), Params(), 0)
-        for state, outcome in list(zip(begun[1].T.tolist(), line, strict=True))[::5]:
+        for state, outcome in list(zip(rolling[1].T.tolist(), line, strict=True))[::5]:
             phi, _ = sampled.as_robot(state, WHEEL, Clock(), 300, kick)
             assert (phi[299] < phi[250]) == (outcome == BACKWARD)
 
 
 @NAMED
-def test_a_quarter_turn_ahead_a_kick_does_the_same(model, begun):
-    wheels = begun[MODELS.index(model)]
+def test_a_quarter_turn_ahead_a_kick_does_the_same(model, rolling):
+    wheels = rolling[MODELS.index(model)]
     turned = np.vstack([-wheels[1], wheels[0], wheels[2] + pi / 2, wheels[3:]])
     for mode, sign in KICKS:
         lengths_s = [0.0, 0.12, 0.24]
         assert (
-            after_kicks(model, WHEEL, wheels, mode, sign, lengths_s)
-            == after_kicks(model, WHEEL, turned, mode, sign, lengths_s)
+            outcomes_after_kicks(model, WHEEL, wheels, mode, sign, lengths_s)
+            == outcomes_after_kicks(model, WHEEL, turned, mode, sign, lengths_s)
         ).mean() > 0.99
 
 
 @NAMED
-def test_in_a_mirror_a_kick_of_the_other_sign_does_the_other(model, begun):
-    wheels = begun[MODELS.index(model)]
+def test_in_a_mirror_a_kick_of_the_other_sign_does_the_other(model, rolling):
+    wheels = rolling[MODELS.index(model)]
     opposite = {FORWARD: BACKWARD, BACKWARD: FORWARD}
     for mode, sign in KICKS:
         lengths_s = [0.0, 0.12, 0.24]
-        forward = after_kicks(model, WHEEL, wheels, mode, sign, lengths_s)
-        backward = after_kicks(model, WHEEL, mirrored(wheels), mode, -sign, lengths_s)
+        forward = outcomes_after_kicks(model, WHEEL, wheels, mode, sign, lengths_s)
+        backward = outcomes_after_kicks(model, WHEEL, mirror(wheels), mode, -sign, lengths_s)
         assert (
             np.mean(
                 [
@@ -154,16 +155,16 @@ def test_in_a_mirror_a_kick_of_the_other_sign_does_the_other(model, begun):
 
 
 @NAMED
-def test_inverted_potentials_always_reverse_a_wheel(model, begun):
+def test_inverted_potentials_always_reverse_a_wheel(model, rolling):
     assert set(
-        after_kicks(model, WHEEL, begun[MODELS.index(model)], MEMBRANE, 0, [0.0]).ravel()
+        outcomes_after_kicks(model, WHEEL, rolling[MODELS.index(model)], MEMBRANE, 0, [0.0]).ravel()
     ) == {BACKWARD}
 
 
 @NAMED
-def test_a_kick_of_no_length_does_nothing_and_some_lengths_always_reverse(model, begun):
-    wheels = begun[MODELS.index(model)]
-    assert set(after_kicks(model, WHEEL, wheels, POSITION, 0, [0.0]).ravel()) == {FORWARD}
+def test_a_kick_of_no_length_does_nothing_and_some_lengths_always_reverse(model, rolling):
+    wheels = rolling[MODELS.index(model)]
+    assert set(outcomes_after_kicks(model, WHEEL, wheels, POSITION, 0, [0.0]).ravel()) == {FORWARD}
     assert shares(model, wheels, POSITION, 0, [0.06, 0.18, 0.36]) == [
         0.0,
         1.0,
@@ -173,19 +174,19 @@ def test_a_kick_of_no_length_does_nothing_and_some_lengths_always_reverse(model,
     assert max(shares(model, wheels, PHASE, -1, [0.03, 0.06, 0.09])) == 0.0
 
 
-def test_the_wrong_sign_is_sure_for_the_sampled_wheel_only(begun):
+def test_the_wrong_sign_is_sure_for_the_sampled_wheel_only(rolling):
     continuous, by_ticks = (
         shares(model, wheels, PHASE, -1, [0.18, 0.21])
-        for model, wheels in zip(MODELS, begun, strict=True)
+        for model, wheels in zip(MODELS, rolling, strict=True)
     )
     assert by_ticks == [1.0, 1.0]
     assert max(continuous) < 0.75
 
 
-def test_a_kick_that_altered_the_projection_too_would_never_reverse(begun):
-    """Seen and pulled at -(cos, sin) alike, the wheel is one that is half a turn ahead, of which only the potentials are not."""
+def test_a_kick_that_altered_the_projection_too_would_never_reverse(rolling):
+    """If rods pulled where neurons see the wheel, it would be one that is half a turn ahead."""
     ahead, pushed, kept, gained = sampled.coast(TICK_S, WHEEL.inertia, WHEEL.friction)
-    kicked = begun[1].copy()
+    kicked = rolling[1].copy()
     for number in range(PHASES):
         x1, x2, phi, omega, _ = kicked[:, number].tolist()
         for _ in range(5):
@@ -195,14 +196,14 @@ def test_a_kick_that_altered_the_projection_too_would_never_reverse(begun):
             )
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
         kicked[:, number] = x1, x2, phi, omega, 0.0
-    right = Sampled().kicked(begun[1], WHEEL.columns(PHASES), 5 * TICK_S, seen_in(POSITION, 0))
-    assert np.mean(watched(Sampled(), right, WHEEL)[0] == BACKWARD) == 1.0
-    assert np.mean(watched(Sampled(), kicked, WHEEL)[0] == BACKWARD) == 0.0
+    right = Sampled().kicked(rolling[1], WHEEL.columns(PHASES), 5 * TICK_S, seen_in(POSITION, 0))
+    assert np.mean(settle_and_classify(Sampled(), right, WHEEL)[0] == BACKWARD) == 1.0
+    assert np.mean(settle_and_classify(Sampled(), kicked, WHEEL)[0] == BACKWARD) == 0.0
 
 
 @NAMED
-def test_phases_cover_the_quarter_turn_evenly_in_time(model, begun):
-    phases = begun[MODELS.index(model)][PHI] % (pi / 2)
+def test_phases_cover_the_quarter_turn_evenly_in_time(model, rolling):
+    phases = rolling[MODELS.index(model)][PHI] % (pi / 2)
     assert (np.diff(phases) >= 0).all()
     assert np.diff(np.concatenate([[phases[-1] - pi / 2], phases])).max() < 4 * pi / 2 / PHASES
 
@@ -220,34 +221,35 @@ def test_phases_cover_the_quarter_turn_evenly_in_time(model, begun):
         ((0.0, 0.0), (0.0, 0.0), REST),
     ],
 )
-def test_outcomes_are_told_from_two_windows(travel, std, expected):
+def test_outcomes_are_classified_by_two_windows(travel, std, expected):
     windows = [
         Averages(np.array([quarters * pi / 2 / 10.0]), np.array([own]), np.zeros((4, 1)))
         for quarters, own in zip(travel, std, strict=True)
     ]
-    assert outcomes.outcomes(*windows, 10.0, stable=True).tolist() == [expected]
+    assert classify(*windows, 10.0, stable=True).tolist() == [expected]
     if expected == REST:
-        assert outcomes.outcomes(*windows, 10.0, stable=False).tolist() == [BACK]
+        assert classify(*windows, 10.0, stable=False).tolist() == [BACK]
 
 
 @NAMED
 def test_rest_is_stable_below_each_models_own_k(model):
     k_c = 1.5873 if isinstance(model, Continuous) else 1.7712
-    assert outcomes.rest_is_stable(model, WHEEL._replace(k=k_c - 1e-4))
-    assert not outcomes.rest_is_stable(model, WHEEL._replace(k=k_c + 1e-4))
+    assert rest_is_stable(model, WHEEL._replace(k=k_c - 1e-4))
+    assert not rest_is_stable(model, WHEEL._replace(k=k_c + 1e-4))
 
 
 def test_between_the_two_k_c_the_continuous_wheel_swings_and_the_sampled_one_rests():
-    states = started(np.array([0.1, 0.3, 1.7]), np.zeros(3))
+    states = starting_states(np.array([0.1, 0.3, 1.7]), np.zeros(3))
     names = [
-        watched(model, model.begun(states), WHEEL._replace(k=1.65))[0].tolist() for model in MODELS
+        settle_and_classify(model, model.begun(states), WHEEL._replace(k=1.65))[0].tolist()
+        for model in MODELS
     ]
     assert names == [[BACK] * 3, [REST] * 3]
 
 
 @NAMED
 def test_slow_wheels_rest_where_they_are_and_fast_ones_wells_further_on(model):
-    rows = basins._starts(
+    rows = basins.simulate_starts(
         model,
         WHEEL._replace(k=1.2),
         np.array([0.1, pi / 2 - 0.1, 0.1, -0.1]),
@@ -260,9 +262,9 @@ def test_slow_wheels_rest_where_they_are_and_fast_ones_wells_further_on(model):
 
 @NAMED
 def test_without_springs_a_wheel_rests_anywhere_and_none_rolls(model):
-    (row,) = basins._starts(model, WHEEL._replace(k=0.0), np.array([0.5]), np.array([3.0]))
+    (row,) = basins.simulate_starts(model, WHEEL._replace(k=0.0), np.array([0.5]), np.array([3.0]))
     assert (row["outcome"], row["quarters"]) == (REST, None)
-    assert rolling(model, WHEEL._replace(k=0.0), 4) is None
+    assert rolling_states(model, WHEEL._replace(k=0.0), 4) is None
 
 
 @pytest.mark.parametrize("changed", [{"f": 0.0}, {"f": 1e-3}, {"I": 1e-6}])
@@ -273,7 +275,9 @@ def test_wheels_that_hardly_settle_or_are_stiff_are_refused(changed):
 
 def test_a_tau_too_short_for_the_tick_is_refused():
     with pytest.raises(WrongUse, match="run away"):
-        basins._starts(Sampled(), WHEEL._replace(tau_s=0.01), np.array([0.5]), np.array([3.0]))
+        basins.simulate_starts(
+            Sampled(), WHEEL._replace(tau_s=0.01), np.array([0.5]), np.array([3.0])
+        )
 
 
 @pytest.fixture(scope="module")
@@ -291,9 +295,9 @@ def run():
         return rows, basins.report(rows, setting)
 
 
-def test_the_study_tells_basins_sure_kicks_and_its_accuracy(run):
+def test_the_study_reports_basins_sure_kicks_and_its_accuracy(run):
     numbers = run[1].numbers
-    for model in basins.MODELS:
+    for model in basins.MODEL_NAMES:
         of_model = numbers["basins"][model]
         assert of_model["shares"][FORWARD] == of_model["shares"][BACKWARD] == 0.5
         assert 0.1 < of_model["turned_around"] < 0.4
