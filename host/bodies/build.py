@@ -1,4 +1,4 @@
-"""Build the simulated car or train that a person asks for, or say what is wrong with the request."""
+"""Build the simulated car or train that a person asks for, or say what is wrong with it."""
 
 from __future__ import annotations
 

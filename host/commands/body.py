@@ -184,9 +184,9 @@ def _watchers(
 
         watchers.append(Film(options.film, body.model, body.cars))
     if options.live:
-        from host.films.body import live
+        from host.films.body import open_viewer
 
-        watchers.append(live(body.model, body.data))
+        watchers.append(open_viewer(body.model, body.data))
     return watchers
 
 

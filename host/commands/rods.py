@@ -9,20 +9,21 @@ HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverse
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Where to."""
+    """Where the film goes."""
     parser.add_argument(
         "--out",
         type=Path,
         default=Path("rods.mp4"),
         metavar="FILE",
-        help="the film, .mp4 or .gif (default %(default)s)",
+        help="where the film goes, .mp4 or .gif (default %(default)s)",
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Kick the robot, keep the log, and draw the left wheel around the kick.
 
-    1 if it did not reverse.
+    Returns:
+        The exit status: 1 if the robot did not reverse.
     """
     from host.errors import NotDone
     from host.figures.robot.rods import SIZE, pictures
@@ -41,14 +42,9 @@ def run(options: argparse.Namespace) -> int:
                         "the wheels did not settle", "are the parameters those of a steady motion?"
                     )
                 outcome = kick_and_watch(robot, log, PHASE)
-                robot.wait(
-                    max(
-                        0.0,
-                        WINDOW_S[1]
-                        - (log.records[-1].t_s - log.records[log.kicks()[0][0]].t_s)
-                        + 0.1,
-                    )
-                )
+                kick_s = log.records[log.kicks()[0][0]].t_s
+                recorded_s = log.records[-1].t_s - kick_s
+                robot.wait(max(0.0, WINDOW_S[1] - recorded_s + 0.1))
         shown = course(log, "left", WINDOW_S, 1 / (FPS * SLOWER))
         with progress("drawing", len(shown.t_s)) as advance:
             for picture in pictures(shown, SLOWER):

@@ -1,1 +1,1 @@
-"""Films: pictures in a row, MuJoCo's camera, and the course of a wheel's rods."""
+"""Films of simulated bodies, and of the rods of a robot's wheel."""

@@ -1,6 +1,6 @@
-"""Looking at a simulated body.
+"""Look at a simulated body.
 
-A film by a camera that follows it, without any display, or MuJoCo's viewer in real time.
+A film by a camera that follows it, which needs no display; or MuJoCo's viewer in real time.
 """
 
 from __future__ import annotations
@@ -24,32 +24,41 @@ from host.films.movie import FPS, Movie, Picture
 from host.util.extras import need
 
 SIZE = (960, 540)
-# How long (s) the camera takes to follow, and from how far (m) it looks: at a point, and so many
-# times the body's greatest half more.
-FOLLOW_S, NEAR_M, FURTHER = 0.3, 0.9, 3.0
+# The camera follows within FOLLOW_S (s). It is NEAR_M (m) away, and farther for a larger body: by
+# FARTHER times the greatest distance of a car from the body's centre.
+FOLLOW_S, NEAR_M, FARTHER = 0.3, 0.9, 3.0
 AZIMUTH_DEG, ELEVATION_DEG = 125.0, -28.0
-# How long (s) the viewer may take to close.
-CLOSING_S = 5.0
-# What draws without a display, the best first, and the library that it needs.
+# The viewer may take this long to close (s), and shows a picture at most this often (s).
+CLOSING_S, SHOW_S = 5.0, 1 / 60
+# What can draw without a display, the best first, and the library that it needs.
 _LIBRARIES = {"egl": "EGL", "osmesa": "OSMesa"}
 _INSTALL = "on Debian: apt install libegl1, or libosmesa6"
 
 
 class Film:
-    """A film of a body as it runs.
+    """A film of a body as it runs, as fast as the simulated time.
 
-    An instance is called with its mujoco.MjData as often as there may be something new.
+    Use it in a `with` block, and call it with the body's mujoco.MjData whenever there may be
+    something new. The environment variable MUJOCO_GL chooses what draws (egl or osmesa); by default
+    it is the first that is installed.
 
-    path: .mp4 or .gif. cars: how many the body has. The film runs as fast as the simulated time.
-    Raises, when it is made and so before anything runs, NotDone if nothing here can draw and
-    WrongUse if the film cannot be written. MUJOCO_GL chooses what draws (egl, osmesa); else what
-    there is does.
+    Args:
+        path: of the film, .mp4 or .gif.
+        model: the body's mujoco.MjModel.
+        cars: how many cars the body has.
+        size: width and height in pixels, both even.
+        fps: pictures per second.
+
+    Raises:
+        NotDone: if nothing here can draw.
+        WrongUse: if the film cannot be written.
     """
 
     def __init__(
         self, path: Path, model: Any, cars: int, *, size: tuple[int, int] = SIZE, fps: float = FPS
     ) -> None:
-        self._fps, self._begun_s = fps, -1.0
+        self._fps = fps
+        self._start_s: float | None = None
         self._camera = Camera(model, cars, size, follow=1 / (fps * FOLLOW_S))
         try:
             self._movie = Movie(path, size, fps)
@@ -62,9 +71,9 @@ class Film:
 
     def __call__(self, data: Any) -> None:
         """Take a picture if it is time for one."""
-        if self._begun_s < 0.0:
-            self._begun_s = data.time
-        while self._movie.pictures <= self._fps * (data.time - self._begun_s) + 1e-6:
+        if self._start_s is None:
+            self._start_s = data.time
+        while self._movie.pictures <= self._fps * (data.time - self._start_s) + 1e-6:
             self._movie.add(self._camera.picture(data))
 
     def __exit__(
@@ -78,9 +87,16 @@ class Film:
 
 
 class Camera:
-    """Takes pictures of size (width, height) of a body of so many cars.
+    """A camera that follows a body.
 
-    From picture to picture it goes the part `follow` of its way.
+    Args:
+        model: the body's mujoco.MjModel.
+        cars: how many cars the body has.
+        size: width and height of its pictures in pixels.
+        follow: the part of its way to the body that it goes from picture to picture.
+
+    Raises:
+        NotDone: if nothing here can draw.
     """
 
     def __init__(self, model: Any, cars: int, size: tuple[int, int], follow: float) -> None:
@@ -88,100 +104,101 @@ class Camera:
 
         self._mujoco, self._model, self._size, self._follow = mujoco, model, size, min(1.0, follow)
         self._bodies = [model.body(f"car{car}_car").id for car in range(cars)]
-        self._gl = _context(size)
-        # Scenes may have been written for smaller pictures.
+        self._gl = _open_gl(size)
+        # A scene may limit pictures to a smaller size.
         model.vis.global_.offwidth = max(size[0], model.vis.global_.offwidth)
         model.vis.global_.offheight = max(size[1], model.vis.global_.offheight)
-        self._scene, self._options, self._view = (
-            mujoco.MjvScene(model, maxgeom=10000),
-            mujoco.MjvOption(),
-            mujoco.MjvCamera(),
-        )
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._scene.flags[
-            mujoco.mjtRndFlag.mjRND_REFLECTION
-        ] = False
+        self._scene = mujoco.MjvScene(model, maxgeom=10000)
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+        self._options = mujoco.MjvOption()
         self._drawing = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._drawing)
-        self._view.azimuth, self._view.elevation, self._view.distance = (
-            AZIMUTH_DEG,
-            ELEVATION_DEG,
-            0.0,
-        )
+        self._view = mujoco.MjvCamera()
+        self._view.azimuth, self._view.elevation = AZIMUTH_DEG, ELEVATION_DEG
+        self._view.distance = 0.0  # until the first picture
 
     def picture(self, data: Any) -> Picture:
-        """What it looks like now, (height, width, 3)."""
+        """What the body looks like now.
+
+        Args:
+            data: the body's mujoco.MjData.
+
+        Returns:
+            The picture, (height, width, 3).
+        """
         mujoco, view = self._mujoco, self._view
         self._gl.make_current()
         cars = data.xpos[self._bodies]
         centre = cars.mean(axis=0)
         if view.distance == 0.0:
-            view.distance = NEAR_M + FURTHER * np.linalg.norm(cars - centre, axis=1).max()
+            view.distance = NEAR_M + FARTHER * np.linalg.norm(cars - centre, axis=1).max()
             view.lookat[:] = centre
         view.lookat += self._follow * (centre - view.lookat)
         width, height = self._size
-        place, picture = mujoco.MjrRect(0, 0, width, height), np.empty((height, width, 3), np.uint8)
+        everything = mujoco.mjtCatBit.mjCAT_ALL
         mujoco.mjv_updateScene(
-            self._model, data, self._options, None, view, mujoco.mjtCatBit.mjCAT_ALL, self._scene
+            self._model, data, self._options, None, view, everything, self._scene
         )
-        mujoco.mjr_render(place, self._scene, self._drawing)
-        clock = f"{data.time:.1f} s"
-        mujoco.mjr_overlay(
-            mujoco.mjtFont.mjFONT_NORMAL,
-            mujoco.mjtGridPos.mjGRID_TOPLEFT,
-            place,
-            clock,
-            "",
-            self._drawing,
-        )
-        mujoco.mjr_readPixels(picture, None, place, self._drawing)
+        whole = mujoco.MjrRect(0, 0, width, height)
+        mujoco.mjr_render(whole, self._scene, self._drawing)
+        font, corner = mujoco.mjtFont.mjFONT_NORMAL, mujoco.mjtGridPos.mjGRID_TOPLEFT
+        mujoco.mjr_overlay(font, corner, whole, f"{data.time:.1f} s", "", self._drawing)
+        picture = np.empty((height, width, 3), np.uint8)
+        mujoco.mjr_readPixels(picture, None, whole, self._drawing)
         return picture[::-1]
 
     def close(self) -> None:
-        """Give back what draws."""
+        """Free what draws."""
         self._drawing.free()
         self._gl.free()
 
 
-def _context(size: tuple[int, int]) -> Any:
-    """A place to draw in. Raises NotDone."""
-    chosen = os.environ.get("MUJOCO_GL", "").strip().lower()
-    asked = f"MUJOCO_GL={chosen}: " if chosen else ""
-    chosen = chosen or next(
-        (name for name, library in _LIBRARIES.items() if find_library(library)), ""
-    )
-    if not chosen:
+def _open_gl(size: tuple[int, int]) -> Any:
+    """Open a place to draw in, without a display. Raises NotDone."""
+    wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
+    name = wanted or next((name for name in _LIBRARIES if find_library(_LIBRARIES[name])), "")
+    if not name:
         raise NotDone(
             "no film can be made here: there is neither EGL nor OSMesa to draw with", _INSTALL
         )
     try:
-        context = import_module("mujoco." + chosen).GLContext(*size)
+        context = import_module("mujoco." + name).GLContext(*size)
         context.make_current()
-    except (
-        Exception
-    ) as error:  # what is wrong with a system's OpenGL comes as any kind of exception
-        hint = (
-            f"unset MUJOCO_GL, or set it to {' or '.join(_LIBRARIES)}; " if asked else ""
-        ) + _INSTALL
-        raise NotDone(
-            f"no film can be made here: {asked}{chosen} cannot draw ({error})", hint
-        ) from error
+    except Exception as error:  # a broken OpenGL raises exceptions of any kind
+        if wanted:
+            cause = f"MUJOCO_GL={name}: {name} cannot draw ({error})"
+            hint = f"unset MUJOCO_GL, or set it to {' or '.join(_LIBRARIES)}; {_INSTALL}"
+        else:
+            cause, hint = f"{name} cannot draw ({error})", _INSTALL
+        raise NotDone(f"no film can be made here: {cause}", hint) from error
     return context
 
 
-class _Closed(Exception):
-    """Whoever watched has closed the window."""
+class _WindowClosed(Exception):
+    """The user has closed the viewer's window."""
 
 
 @contextmanager
-def live(model: Any, data: Any) -> Iterator[Callable[[Any], None]]:
-    """MuJoCo's viewer: yields what to call with the data as they change, which holds them back to real time. Raises NotDone.
+def open_viewer(model: Any, data: Any) -> Iterator[Callable[[Any], None]]:
+    """Open MuJoCo's viewer.
 
-    When its window is closed, the `with` block ends early, without an error.
+    When the user closes its window, the `with` block ends early, without an error.
+
+    Args:
+        model: the body's mujoco.MjModel.
+        data: its mujoco.MjData.
+
+    Yields:
+        A function to call with the data whenever they change. It shows them, and waits until real
+        time has caught up with simulated time.
+
+    Raises:
+        NotDone: if no window can be opened.
     """
     need("glfw", "bodies")
-    if sys.platform == "linux" and not (
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    ):
+    has_display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if sys.platform == "linux" and not has_display:
         raise NotDone(
             "the viewer needs a display, and there is none",
             "--film FILE.mp4 makes a film instead; over ssh, use ssh -X",
@@ -191,50 +208,45 @@ def live(model: Any, data: Any) -> Iterator[Callable[[Any], None]]:
     from mujoco import viewer
 
     cars = [number for number in range(model.nbody) if model.body(number).name.endswith("_car")]
-    others = set(threading.enumerate())
+    other_threads = set(threading.enumerate())
     try:
         with viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False) as window:
-            window.cam.type, window.cam.trackbodyid = (
-                mujoco.mjtCamera.mjCAMERA_TRACKING,
-                cars[len(cars) // 2],
-            )
-            window.cam.azimuth, window.cam.elevation, window.cam.distance = (
-                AZIMUTH_DEG,
-                ELEVATION_DEG,
-                2 * NEAR_M,
-            )
-            begun_s, shown_s = time.monotonic() - data.time, -np.inf
+            window.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING
+            window.cam.trackbodyid = cars[len(cars) // 2]
+            window.cam.azimuth, window.cam.elevation = AZIMUTH_DEG, ELEVATION_DEG
+            window.cam.distance = 2 * NEAR_M
+            start_s, shown_s = time.monotonic() - data.time, -np.inf
 
-            def watch(data: Any) -> None:
+            def show(data: Any) -> None:
                 nonlocal shown_s
-                if data.time - shown_s < 1 / 60:
+                if data.time - shown_s < SHOW_S:
                     return
                 if not window.is_running():
-                    raise _Closed
+                    raise _WindowClosed
                 window.sync()
                 shown_s = data.time
-                time.sleep(max(0.0, begun_s + data.time - time.monotonic()))
+                time.sleep(max(0.0, start_s + data.time - time.monotonic()))
 
-            with suppress(_Closed):
-                yield watch
+            with suppress(_WindowClosed):
+                yield show
     finally:
-        # A window that still draws while the program ends takes the program down with it.
-        for thread in set(threading.enumerate()) - others:
+        # The program would crash if it ended while a window is still drawing.
+        for thread in set(threading.enumerate()) - other_threads:
             thread.join(CLOSING_S)
 
 
 def _try_window() -> None:
-    """Raises NotDone if no window can be opened, for which the viewer would wait for ever."""
+    """Raise NotDone if no window can be opened; the viewer would wait for one for ever."""
     import warnings
 
     import glfw
 
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         works = glfw.init()
         glfw.terminate()
     if not works:
-        words = str(said[-1].message) if said else "GLFW does not say why"
+        cause = str(caught[-1].message) if caught else "GLFW does not say why"
         raise NotDone(
-            f"the viewer cannot open a window: {words}", "--film FILE.mp4 makes a film instead"
+            f"the viewer cannot open a window: {cause}", "--film FILE.mp4 makes a film instead"
         )

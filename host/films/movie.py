@@ -1,4 +1,4 @@
-"""Pictures, one after the other, into a film: .mp4 by ffmpeg, or .gif by Pillow."""
+"""Write pictures, one after the other, to a film: .mp4 by ffmpeg, or .gif by Pillow."""
 
 from __future__ import annotations
 
@@ -18,26 +18,39 @@ from host.util.extras import need
 Picture = NDArray[np.uint8]
 
 FPS = 25
-# A GIF's colours, and from how many of its pictures they are taken.
+# How many colours a GIF has, and from how many of its pictures they are chosen.
 _COLOURS, _SAMPLES = 64, 12
 
 
 class Movie:
-    """A film of so many pictures a second, of (width, height) in pixels, both even, within the `with` block.
+    """A film, to be written in a `with` block.
 
-    However the block is left, the pictures that were added until then make a film that plays.
-    Raises WrongUse if the file's name ends on nothing that can be written or no such file can be
-    made, and NotDone if it cannot be finished.
+    If the block ends early, the pictures up to then make a film that plays. Without any picture
+    there is no file.
+
+    Args:
+        path: of the film; its ending, .mp4 or .gif, says how it is written.
+        size: width and height in pixels, both even.
+        fps: pictures per second.
+
+    Attributes:
+        path: of the film.
+        pictures: how many have been added.
+
+    Raises:
+        WrongUse: if the ending is unknown, or the file cannot be written.
+        NotDone: in the block or at its end, if the film cannot be finished.
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float = FPS) -> None:
-        ways: dict[str, type[_Mp4 | _Gif]] = {".mp4": _Mp4, ".gif": _Gif}
-        if path.suffix.lower() not in ways:
+        writers: dict[str, type[_Mp4 | _Gif]] = {".mp4": _Mp4, ".gif": _Gif}
+        ending = path.suffix.lower()
+        if ending not in writers:
             raise WrongUse(
                 f"there is no way to write a film into '{path.name}'",
-                f"its name should end with {' or '.join(ways)}",
+                f"its name should end with {' or '.join(writers)}",
             )
-        if path.suffix.lower() == ".mp4":
+        if ending == ".mp4":
             need("imageio_ffmpeg", "bodies")
         try:
             with path.open("ab"):
@@ -45,19 +58,26 @@ class Movie:
         except OSError as error:
             raise WrongUse(
                 f"the film {path} cannot be written: {error.strerror}",
-                "name a file in a folder that there is",
+                "name a file in a folder that exists",
             ) from error
         self.path, self.pictures = path, 0
-        self._way, self._size, self._fps = ways[path.suffix.lower()], size, fps
+        self._start_writer, self._size, self._fps = writers[ending], size, fps
         self._writer: _Mp4 | _Gif | None = None
 
     def __enter__(self) -> Self:
         return self
 
     def add(self, picture: Picture) -> None:
-        """The next picture, (height, width, 3)."""
+        """Add the next picture.
+
+        Args:
+            picture: (height, width, 3).
+
+        Raises:
+            NotDone: if the film cannot be written.
+        """
         if self._writer is None:
-            self._writer = self._way(self.path, self._size, self._fps)
+            self._writer = self._start_writer(self.path, self._size, self._fps)
         self._writer.add(np.ascontiguousarray(picture))
         self.pictures += 1
 
@@ -74,43 +94,22 @@ class Movie:
 
 
 class _Mp4:
-    """H.264, as every player and browser shows it.
+    """Writes H.264, which every player and browser shows.
 
-    A signal from the keyboard is for this program, not for ffmpeg.
+    ffmpeg has a session of its own, so that Ctrl-C reaches this program only, and ffmpeg can finish
+    the film.
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
         from imageio_ffmpeg import get_ffmpeg_exe
 
         self._path = path
-        source = [
-            "-f",
-            "rawvideo",
-            "-pix_fmt",
-            "rgb24",
-            "-s",
-            "{}x{}".format(*size),
-            "-r",
-            f"{fps:g}",
-            "-i",
-            "pipe:",
-        ]
-        film = [
-            "-c:v",
-            "libx264",
-            "-crf",
-            "22",
-            "-pix_fmt",
-            "yuv420p",
-            "-movflags",
-            "+faststart",
-            "-f",
-            "mp4",
-            "-y",
-            str(path.resolve()),
-        ]
+        width, height = size
+        source = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i pipe:"
+        film = "-c:v libx264 -crf 22 -pix_fmt yuv420p -movflags +faststart -f mp4 -y"
+        command = [get_ffmpeg_exe(), "-loglevel", "error", *source.split(), *film.split()]
         self._process = subprocess.Popen(
-            [get_ffmpeg_exe(), "-loglevel", "error", *source, *film],
+            [*command, str(path.resolve())],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
@@ -126,43 +125,46 @@ class _Mp4:
 
     def finish(self) -> None:
         if self._process.poll() is None:
-            said = self._process.communicate()[1]
+            errors = self._process.communicate()[1]
             if self._process.returncode:
-                raise self._failure(said)
+                raise self._failure(errors)
 
-    def _failure(self, said: bytes) -> NotDone:
-        words = said.decode(errors="replace").strip().splitlines()
-        return NotDone(
-            f"the film {self._path} could not be written:"
-            f" {words[-1] if words else 'ffmpeg ended early'}",
-            "is the disk full?",
-        )
+    def _failure(self, errors: bytes) -> NotDone:
+        lines = errors.decode(errors="replace").strip().splitlines()
+        cause = lines[-1] if lines else "ffmpeg ended early"
+        return NotDone(f"the film {self._path} could not be written: {cause}", "is the disk full?")
 
 
 class _Gif:
-    """One table of colours for all pictures, without dithering, so that what does not move takes no room. In memory until it ends."""
+    """Writes a GIF, with one table of colours for all pictures.
+
+    There is no dithering: what does not move takes no room. Pictures stay in memory to the end.
+    """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
         self._path, self._shape, self._ms = path, (size[1], size[0], 3), 1000 / fps
-        self._packed: list[bytes] = []
+        self._compressed: list[bytes] = []
 
     def add(self, picture: Picture) -> None:
-        self._packed.append(zlib.compress(picture.tobytes(), 1))
+        self._compressed.append(zlib.compress(picture.tobytes(), 1))
 
     def _picture(self, number: int) -> Picture:
-        return np.frombuffer(zlib.decompress(self._packed[number]), np.uint8).reshape(self._shape)
+        return np.frombuffer(zlib.decompress(self._compressed[number]), np.uint8).reshape(
+            self._shape
+        )
 
     def finish(self) -> None:
         from PIL import Image
 
-        chosen = np.unique(np.linspace(0, len(self._packed) - 1, _SAMPLES).round().astype(int))
-        sample = Image.fromarray(np.concatenate([self._picture(number) for number in chosen]))
+        last = len(self._compressed) - 1
+        samples = np.unique(np.linspace(0, last, _SAMPLES).round().astype(int))
+        sample = Image.fromarray(np.concatenate([self._picture(number) for number in samples]))
         palette = sample.quantize(
             _COLOURS, method=Image.Quantize.MAXCOVERAGE, kmeans=2, dither=Image.Dither.NONE
         )
 
         def quantized() -> Iterator[Any]:
-            for number in range(len(self._packed)):
+            for number in range(last + 1):
                 yield Image.fromarray(self._picture(number)).quantize(
                     palette=palette, dither=Image.Dither.NONE
                 )

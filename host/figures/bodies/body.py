@@ -1,108 +1,98 @@
-"""The course of a simulated body.
-
-Its path from above, its wheels' speeds, and their order parameter.
-"""
+"""The run of a simulated body: its path from above, its wheels' speeds, and their order."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from host.figures.bodies.from_above import label_metres
 from host.figures.style import COLOURS, SIZE, styled
 from sim_motor.bodies.measures import Array, course, order
 
+_START: Any = {"marker": "o", "markersize": 9, "markerfacecolor": "white", "linestyle": "none"}
+_BODY = COLOURS[4]
+
 
 def draw(
-    columns: tuple[str, ...], rows: Array, summary: dict[str, Any], kicked_s: list[float]
+    columns: tuple[str, ...], rows: Array, summary: dict[str, Any], kicks_s: list[float]
 ) -> Figure:
-    """The figure of a body's rows. kicked_s: when it was kicked."""
-    moved = course(columns, rows)
+    """The figure of a body's run.
+
+    Args:
+        columns: names of the columns.
+        rows: (times, columns), as a Body has them.
+        summary: of the run, with the request's fields.
+        kicks_s: when the body was kicked (s).
+
+    Returns:
+        The figure.
+    """
+    motion = course(columns, rows)
     with styled():
         figure = Figure(**SIZE)
         axes: Any = figure.subplot_mosaic(
             [["path", "speed"], ["path", "order"]], width_ratios=(1.0, 1.25)
         )
-        _draw_path(axes["path"], moved.centre_m, columns, rows)
-        axes["speed"].plot(moved.t_s, moved.omega, color=COLOURS[0], linewidth=0.6, alpha=0.5)
-        axes["speed"].plot(moved.t_s, moved.omega.mean(axis=1), color="black", linewidth=1.5)
+        _draw_path(axes["path"], motion.centre_m, columns, rows[-1])
+        axes["speed"].plot(motion.t_s, motion.omega, color=COLOURS[0], linewidth=0.6, alpha=0.5)
+        axes["speed"].plot(motion.t_s, motion.omega.mean(axis=1), color="black", linewidth=1.5)
         axes["speed"].set_ylabel(r"$\omega$ (rad/s)")
-        axes["order"].plot(moved.t_s, order(moved.omega), color=COLOURS[2])
+        axes["order"].plot(motion.t_s, order(motion.omega), color=COLOURS[2])
         axes["order"].set(xlabel="time (s)", ylabel="order parameter", ylim=(-0.03, 1.06))
         axes["order"].sharex(axes["speed"])
         for time_s in summary["reversals"]:
             axes["speed"].axvline(time_s, color=COLOURS[1], linewidth=1.0, linestyle=":")
-        for time_s in kicked_s:
+        for time_s in kicks_s:
             axes["speed"].axvline(time_s, color=COLOURS[3], linewidth=1.5)
-        figure.legend(
-            handles=_legend(bool(summary["reversals"]), bool(kicked_s)),
-            loc="outside lower center",
-            ncols=4,
-            fontsize=11,
-        )
+        handles = _legend(bool(summary["reversals"]), bool(kicks_s))
+        figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=11)
         figure.suptitle(_title(summary), fontsize=15)
     return figure
 
 
-def _draw_path(axes: Any, centre: Array, columns: tuple[str, ...], rows: Array) -> None:
+def _draw_path(axes: Axes, centre: Array, columns: tuple[str, ...], end: Array) -> None:
+    """Draw the path of the centre, (times, 3), and the body's head and tail in the last row."""
+    cars = [name.removesuffix("_x_m") for name in columns if name.endswith("_x_m")]
     head, tail = (
-        rows[:, [columns.index(f"{car}_{axis}_m") for axis in "xy"]]
-        for car in ("car0", _last(columns))
+        end[[columns.index(f"{car}_{axis}_m") for axis in "xy"]] for car in (cars[0], cars[-1])
     )
     axes.plot(*centre[:, :2].T, color=COLOURS[0])
-    axes.plot(
-        *centre[0, :2],
-        marker="o",
-        markersize=9,
-        markerfacecolor="white",
-        markeredgecolor="black",
-        linestyle="none",
-    )
-    axes.plot(
-        *np.array([head[-1], tail[-1]]).T, color=COLOURS[4], linewidth=5, solid_capstyle="round"
-    )
-    axes.plot(*head[-1], marker="o", markersize=9, color=COLOURS[4])
-    axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", adjustable="datalim")
+    axes.plot(*centre[0, :2], **_START, markeredgecolor="black")
+    axes.plot(*np.array([head, tail]).T, color=_BODY, linewidth=5, solid_capstyle="round")
+    axes.plot(*head, marker="o", markersize=9, color=_BODY)
+    label_metres(axes)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.locator_params(axis="x", nbins=5)
 
 
-def _last(columns: tuple[str, ...]) -> str:
-    return [column for column in columns if column.endswith("_x_m")][-1].removesuffix("_x_m")
-
-
-def _legend(reversed_: bool, kicked: bool) -> list[Line2D]:
+def _legend(has_reversals: bool, has_kicks: bool) -> list[Line2D]:
     handles = [
-        Line2D([], [], color=COLOURS[0], label="path of the centre, wheels"),
+        Line2D([], [], color=COLOURS[0], label="path of the centre; each wheel"),
         Line2D([], [], color="black", label="mean of all wheels"),
-        Line2D(
-            [],
-            [],
-            marker="o",
-            color="black",
-            markerfacecolor="white",
-            linestyle="none",
-            label="start",
-        ),
-        Line2D([], [], marker="o", color=COLOURS[4], linewidth=5, label="end, with its head"),
+        Line2D([], [], **_START, markeredgecolor="black", label="start"),
+        Line2D([], [], marker="o", color=_BODY, linewidth=5, label="end, with its head"),
     ]
-    if reversed_:
+    if has_reversals:
         handles.append(Line2D([], [], color=COLOURS[1], linestyle=":", label="reversal"))
-    if kicked:
+    if has_kicks:
         handles.append(Line2D([], [], color=COLOURS[3], label="kick"))
     return handles
 
 
 def _title(summary: dict[str, Any]) -> str:
-    cars = "a car" if summary["cars"] == 1 else f"a train of {summary['cars']} cars"
+    body = "A car" if summary["cars"] == 1 else f"A train of {summary['cars']} cars"
     count = len(summary["reversals"])
-    words = f"{cars} ({summary['preset']}, {summary['scene']}): {summary['mean_speed']:.2f} m/s, "
-    words += (
-        f"{count} reversal{'' if count == 1 else 's'} in {summary['time_s']:.0f} s, order"
-        f" {summary['order_parameter']:.2f}"
-    )
-    return (
-        words[0].upper()
-        + words[1:]
-        + "".join(f", {what}" for what in ("stuck", "flipped") if summary[what])
+    reversals = f"{count} reversal" if count == 1 else f"{count} reversals"
+    states = [state for state in ("stuck", "flipped") if summary[state]]
+    return ", ".join(
+        [
+            f"{body} ({summary['preset']}, {summary['scene']}): {summary['mean_speed']:.2f} m/s",
+            f"{reversals} in {summary['time_s']:.0f} s",
+            f"order {summary['order_parameter']:.2f}",
+            *states,
+        ]
     )

@@ -46,7 +46,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         panels[0].set_ylabel("$y$ (m)")
         figure.colorbar(lines, ax=panels, shrink=0.8, label="time (min)")
         figure.suptitle(
-            f"A car between four slopes (dashed: their feet), for {minutes:.0f} min; dot: where it"
+            f"A car between four slopes (dashed: their feet), for {minutes:.2g} min; dot: where it"
             " ends",
             fontsize=15,
         )
@@ -75,6 +75,6 @@ def _draw_path(axes: Axes, path: list[PositionRow]) -> LineCollection:
 def _title(angle: AngleNumbers, shown: DriveRow) -> str:
     return (
         f"{angle['angle']:g} rad: {angle['inside']} of {angle['cars']} inside,"
-        f" {angle['flipped']} flipped;\nshown: {shown['path_m']:.0f} m, {shown['reversals']}"
-        " reversals"
+        f" {angle['flipped']} flipped;\nshown: {shown['path_m']:.0f} m, reversals:"
+        f" {shown['reversals']}"
     )

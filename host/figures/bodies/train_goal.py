@@ -68,7 +68,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         figure.legend(handles=_legend(), loc="outside lower center", ncols=4, fontsize=11)
         words = ", ".join(f"{entry['way']} {entry['reached']}" for entry in numbers["ways"])
         figure.suptitle(
-            f"Of {len(by_way[PLANNED])} goals {AWAY_M:g} m away a train reaches, by {words}",
+            f"Goals {AWAY_M:g} m away that a train reaches, of {len(by_way[PLANNED])}: {words}",
             fontsize=15,
         )
     return figure

@@ -41,8 +41,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         for axes, shown in zip(paths, SHOWN, strict=True):
             _draw_path(axes, positions(rows, shown), shown)
         figure.suptitle(
-            f"A train between four slopes, {kinds[0]['runs']} runs each (left: farther than 2 m up"
-            " a slope)",
+            f"A train between four slopes, runs of each: {kinds[0]['runs']}"
+            " (left: farther than 2 m up a slope)",
             fontsize=15,
         )
     return figure
@@ -77,7 +77,7 @@ def _draw_path(axes: Axes, path: list[PositionRow], shown: Kind) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     label_metres(axes)
     axes.set_title(
-        f"{shown['preset']}, $k$ = {shown['k']:g} N, {shown['angle']:g} rad: head,"
+        f"{shown['preset']}, $k$ = {shown['k']:g} N, {shown['angle']:g} rad: head, from the dot,"
         f" {path[-1]['t_s']:.0f} s",
-        fontsize=13,
+        fontsize=12,
     )

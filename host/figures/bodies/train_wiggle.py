@@ -113,7 +113,7 @@ def _finish_lags(axes: Axes) -> None:
     axes.axhspan(*AUTHORS_LAG_DEG, color="lightgrey", zorder=0, label="authors' program")
     axes.set(
         xlabel="joint, from the head",
-        ylabel="phase minus the previous joint's (°)",
+        ylabel="phase shift per joint (°)",
         ylim=(-200, 20),
         xticks=range(2, 1 + JOINTS),
     )

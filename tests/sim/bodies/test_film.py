@@ -180,10 +180,10 @@ def test_without_egl_and_osmesa_it_says_so(monkeypatch):
 def test_the_viewer_needs_a_display(monkeypatch):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
-    with pytest.raises(NotDone, match="display"), film.live(None, None):
+    with pytest.raises(NotDone, match="display"), film.open_viewer(None, None):
         pass
     monkeypatch.setenv("DISPLAY", ":4711")  # where there is none
-    with pytest.raises(NotDone, match="window"), film.live(None, None):
+    with pytest.raises(NotDone, match="window"), film.open_viewer(None, None):
         pass
 
 
@@ -216,7 +216,7 @@ def test_live_keeps_to_real_time_and_ends_with_its_window(monkeypatch):
     monkeypatch.setattr(film, "time", clock)
     monkeypatch.setattr(viewer, "launch_passive", lambda *given, **options: Window(30))
     car = build_body(BodyRequest(seed=3))
-    with film.live(car.model, car.data) as watch:
+    with film.open_viewer(car.model, car.data) as watch:
         car.run(60.0, lambda _: watch(car.data))
     assert car.time_s == pytest.approx(
         30 * 0.02, abs=0.03
