@@ -11,20 +11,13 @@ from mcap.reader import make_reader
 CAR = ("body", "car", "--time", "1.5", "--seed", "4")
 
 
-def test_a_car_is_told_in_json_and_kept_in_files(kickctl, tmp_path):
-    status, out, _ = kickctl(
-        *CAR,
-        "--json",
-        "--out",
-        str(tmp_path),
-        "--kick",
-        "t=0.5,mode=phase,wheel=left,seconds=0.2,shift=pi/2",
-    )
+def test_a_car_is_summarized_in_json_and_kept_in_files(kickctl, tmp_path):
+    kick = "t=0.5,mode=phase,wheel=left,seconds=0.2,shift=pi/2"
+    status, out, _ = kickctl(*CAR, "--json", "--out", str(tmp_path), "--kick", kick)
     summary = json.loads(out)
     assert status == 0
-    assert {"reversals", "mean_speed", "order_parameter", "path_length", "flipped", "stuck"} <= set(
-        summary
-    )
+    measures = {"reversals", "mean_speed", "order_parameter", "path_length", "flipped", "stuck"}
+    assert measures <= set(summary)
     assert (summary["cars"], summary["seed"], summary["time_s"]) == (1, 4, pytest.approx(1.5))
     folder = tmp_path / summary["folder"].split("/")[-1]
     with (folder / "state.csv").open(newline="", encoding="utf-8") as file:
@@ -59,23 +52,13 @@ def test_the_parameters_that_are_given_are_those_of_the_car(kickctl, tmp_path):
 
 
 def test_the_model_is_a_file_for_any_viewer(kickctl, tmp_path):
-    status, _, _ = kickctl(
-        "body",
-        "train",
-        "--cars",
-        "3",
-        "--time",
-        "0.1",
-        "--out",
-        str(tmp_path),
-        "--model",
-        str(tmp_path / "train.xml"),
-    )
-    model = mujoco.MjModel.from_xml_path(str(tmp_path / "train.xml"))
+    path, train = str(tmp_path / "train.xml"), ("body", "train", "--cars", "3", "--time", "0.1")
+    status, _, _ = kickctl(*train, "--out", str(tmp_path), "--model", path)
+    model = mujoco.MjModel.from_xml_path(path)
     assert (status, model.nu) == (0, 6)
 
 
-def test_what_was_simulated_until_it_broke_is_kept(kickctl, tmp_path):
+def test_what_was_simulated_before_it_became_unstable_is_kept(kickctl, tmp_path):
     status, _, err = kickctl(*CAR, "--k", "1e9", "--out", str(tmp_path))
     assert status == 1
     assert "cannot be followed" in err

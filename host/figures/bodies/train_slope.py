@@ -77,7 +77,7 @@ def _draw_path(axes: Axes, path: list[PositionRow], shown: Kind) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     label_metres(axes)
     axes.set_title(
-        f"{shown['preset']}, $k$ = {shown['k']:g} N, {shown['angle']:g} rad: head, from the dot,"
-        f" {path[-1]['t_s']:.0f} s",
+        f"{shown['preset']}, $k$ = {shown['k']:g} N, {shown['angle']:g} rad:\n"
+        f"way of the head from the dot on, for {path[-1]['t_s']:.0f} s",
         fontsize=12,
     )

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+from typing import NotRequired, get_origin, get_type_hints
 
 import numpy as np
 
@@ -39,3 +40,10 @@ def build_run(omega, x=0.0, y=0.0, dt_s=0.005):
         [np.broadcast_to(x, t.shape), np.broadcast_to(y, t.shape), np.zeros_like(t)], axis=1
     )
     return BodyRun(Course(t, omega, centre, np.zeros_like(t)), np.zeros((len(t), 8)), centre, None)
+
+
+def has_columns_of(row, kind):
+    """Whether a row has all columns of a TypedDict, and no others."""
+    columns = get_type_hints(kind, include_extras=True)
+    needed = {name for name, hint in columns.items() if get_origin(hint) is not NotRequired}
+    return needed <= set(row) <= set(columns)

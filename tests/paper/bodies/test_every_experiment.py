@@ -3,7 +3,7 @@
 import importlib
 import json
 import sys
-from typing import NotRequired, get_args, get_origin, get_type_hints
+from typing import get_args
 
 import pytest
 
@@ -12,7 +12,7 @@ from host.experiments.bodies import train_kick
 from host.experiments.registry import BODIES, TABLE
 from host.perform.run import perform
 from host.util.installation import install_command
-from tests.paper.bodies.short_runs import module, plain, setting
+from tests.paper.bodies.short_runs import has_columns_of, module, plain, setting
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -20,13 +20,6 @@ def test_cells_are_plain_data_and_no_two_are_the_same(name):
     cells = module(name).cells(setting(name).options, batch=True)
     assert plain(cells) == cells
     assert len({json.dumps(cell, sort_keys=True) for cell in cells}) == len(cells)
-
-
-def has_columns_of(row, kind):
-    """Whether a row has all columns of a TypedDict, and no others."""
-    columns = get_type_hints(kind, include_extras=True)
-    needed = {name for name, hint in columns.items() if get_origin(hint) is not NotRequired}
-    return needed <= set(row) <= set(columns)
 
 
 # train-goal takes longer, as its train must learn: test_train_goal.py.

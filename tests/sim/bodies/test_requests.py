@@ -1,0 +1,28 @@
+"""Bodies that people ask for, and how impossible ones are refused."""
+
+import pytest
+
+from host.bodies.build import BodyRequest, build_body
+from host.errors import WrongUse
+
+
+def test_what_cannot_be_is_refused_in_words(tmp_path):
+    broken = tmp_path / "broken.xml"
+    broken.write_text("<mujoco><worldbody><geom type='plane' size='1 1'/></worldbody></mujoco>")
+    torn = tmp_path / "torn.xml"
+    torn.write_text("<mujoco><worldbody>")
+    for asked, reason in (
+        (BodyRequest(scene="moon"), "no scene"),
+        (BodyRequest(scene=str(broken)), "size"),
+        (BodyRequest(scene=str(torn)), "XML"),
+        (BodyRequest(scene=str(tmp_path / "none.xml")), "none.xml"),
+        (BodyRequest(cars=0), "0 cars"),
+        (BodyRequest(scene="flat", angle=0.2), "no slopes"),
+        (BodyRequest(scene="slopes", angle=2.0), "slopes of"),
+        (BodyRequest(k=float("nan")), "k cannot"),
+        (BodyRequest(tau=0.0), "tau"),
+        (BodyRequest(drag=-1.0), "drag"),
+        (BodyRequest(preset="porsche"), "no preset"),
+    ):
+        with pytest.raises(WrongUse, match=reason):
+            build_body(asked)
