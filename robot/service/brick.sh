@@ -178,7 +178,8 @@ start_program() { # start the current release and wait until it is ready and wel
     fi
     waited=0
     while [ -z "$(port)" ]; do
-        if [ -e "$ROOT/robot.pid" ] && [ -z "$(program_pid)" ]; then
+        # An empty robot.pid belongs to a program that is about to write its number.
+        if [ -s "$ROOT/robot.pid" ] && [ -z "$(program_pid)" ]; then
             tell "it ended before it was ready"
             return 1
         elif [ "$waited" -ge $((2 * READY_S)) ]; then

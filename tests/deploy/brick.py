@@ -177,8 +177,7 @@ class Brick:
 
     def pid(self):
         """The number of the robot's program, None if it does not run."""
-        path = self.kickctl / "robot.pid"
-        pid = int("0" + path.read_text(encoding="ascii").strip()) if path.exists() else 0
+        pid = int("0" + self._text("robot.pid").strip())
         return pid if pid in self.processes() else None
 
     def runs(self):
@@ -193,9 +192,17 @@ class Brick:
         wait_until(lambda: self.pid() is None)
 
     def log(self):
-        log = self.kickctl / "robot.log"
-        # Between two releases there is none for a moment.
-        return log.read_text(encoding="utf-8") if log.exists() else ""
+        """What the robot's program has written."""
+        return self._text("robot.log")
+
+    def _text(self, name):
+        """The text of a file below ~/kickctl.
+
+        Empty if there is no file: between two releases deploy removes it.
+        """
+        with contextlib.suppress(FileNotFoundError):
+            return (self.kickctl / name).read_text(encoding="utf-8")
+        return ""
 
     def uri(self):
         """The robot's address through the tunnel."""

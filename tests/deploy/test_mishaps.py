@@ -267,6 +267,14 @@ def test_a_process_that_only_has_the_old_number_is_left_alone(deployed, checkout
     assert deployed.runs() == deployed.release()
 
 
+def test_a_program_that_has_yet_to_write_its_number_is_waited_for(brick, checkout):
+    """Its shell creates robot.pid and then writes to it: deploy may look in between."""
+    brick.replace("setsid", ': >~/kickctl/robot.pid; sleep 1; exec /usr/bin/setsid "$@"')
+    status, output = checkout.deploy()
+    assert status == 0, output
+    assert brick.runs() == brick.release()
+
+
 def test_two_deploys_at_once_do_not_get_into_each_others_way(deployed, checkout):
     with checkout.deploying() as one, checkout.deploying() as other:
         outputs = [process.communicate(timeout=100)[0] for process in (one, other)]
