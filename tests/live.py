@@ -30,11 +30,14 @@ def impatient():
     return mock.patch.multiple("host.client.connection.Connection", **IMPATIENT)
 
 
-def wait_until(condition, what):
-    """Wait for a condition that takes no long time to come true."""
+def wait_until(condition, what, found=lambda: ""):
+    """Wait for a condition that does not take long to come true.
+
+    what: the condition in words; found: what is there instead, for the message.
+    """
     until = time.monotonic() + PATIENCE_S
     while not condition():
-        assert time.monotonic() < until, f"{what}: not within {PATIENCE_S:g} s"
+        assert time.monotonic() < until, f"{what}: not within {PATIENCE_S:g} s; {found()}"
         time.sleep(LOOK_S)
 
 
@@ -229,7 +232,9 @@ class Live:
             self.robot.start()
         with self.watch() as watch:
             wait_until(
-                lambda: watch.running() == len(PORTS) or self.state() == "fault", "the motors run"
+                lambda: watch.running() == len(PORTS) or self.state() == "fault",
+                "the motors run",
+                lambda: f"{watch.running()} do, {self.robot.status()}, {self.log.events[-10:]}",
             )
         assert self.state() == "running", f"it does not run: {self.reason()}"
         time.sleep(chance.uniform(0.1, 0.4))
@@ -254,5 +259,5 @@ class Live:
                 self.robot.pump(0.0)
             return [item["reason"] for item in self.log.events[since:] if item["event"] == event]
 
-        wait_until(found, f"the host is told '{event}'")
+        wait_until(found, f"the host is told '{event}'", lambda: self.log.events[since:])
         return found()[0]
