@@ -104,12 +104,11 @@ def watch(link, stop, silence_s=SILENCE_S):
                 link.send(beat)
                 patience_s = silence_s
             else:
-                fresh = patience_s == silence_s
                 patience_s = (
                     None if stop("the loop was silent for {:g} s".format(silence_s)) else AGAIN_S
                 )
-                if fresh:
-                    link.send(_STOPPED)
+                # After every stop: the loop may have woken and driven the motors meanwhile.
+                _tell_stopped(link)
     except OSError:
         beat = b""
     link.close()
@@ -117,6 +116,14 @@ def watch(link, stop, silence_s=SILENCE_S):
         if stop("" if beat else "the loop's process has died"):
             break
         select.select((), (), (), AGAIN_S)
+
+
+def _tell_stopped(link):
+    """Tell the loop that the motors were stopped, unless the link is full of that already."""
+    try:
+        link.send(_STOPPED, socket.MSG_DONTWAIT)
+    except BlockingIOError:
+        pass
 
 
 class Watchdog(object):

@@ -212,7 +212,7 @@ SILENT, DEAD = "the loop was silent for 0.05 s", "the loop's process has died"
 def watching(stop, silence_s=0.05):
     """(the loop's end of a link on which one beat was answered, the thread that watches the other)."""
     one, other = socket.socketpair()
-    thread = threading.Thread(target=lambda: watch(other, stop, silence_s=silence_s))
+    thread = threading.Thread(target=lambda: watch(other, stop, silence_s=silence_s), daemon=True)
     thread.start()
     one.send(b".")
     assert one.recv(1) == b"."
@@ -222,12 +222,23 @@ def watching(stop, silence_s=0.05):
 def test_motors_that_do_not_obey_while_the_loop_is_silent_are_told_again_until_they_do():
     told = []
     link, thread = watching(lambda reason: told.append(reason) or len(told) >= 3)
-    assert link.recv(1) == b"!"
-    assert eventually(lambda: len(told) == 3)
+    # One for each time, for the loop may have driven the motors in between.
+    assert [link.recv(1) for _ in range(3)] == [b"!"] * 3
+    assert len(told) == 3
     time.sleep(0.3)
     link.close()
     thread.join(PATIENCE_S)
     assert told == [SILENT] * 3 + [DEAD]
+
+
+def test_a_loop_that_reads_nothing_does_not_keep_the_watchdog_from_stopping_the_motors(monkeypatch):
+    monkeypatch.setattr(watchdog_module, "AGAIN_S", 1e-5)
+    told = []
+    link, thread = watching(lambda reason: told.append(reason) or reason == DEAD)
+    assert eventually(lambda: len(told) > 5000)  # more than the link can hold
+    link.close()
+    thread.join(PATIENCE_S)
+    assert told[-1] == DEAD
 
 
 def test_motors_that_do_not_obey_when_the_loop_is_dead_are_told_again_until_they_do():
