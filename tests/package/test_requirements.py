@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from host.commands import doctor
 from host.util import installation, requirements
 
 KICKCTL = """\
@@ -85,5 +86,28 @@ def test_installed_the_verb_and_pip_are_named(monkeypatch, tmp_path):
 
 
 def test_the_script_is_there_and_is_the_one_at_the_top():
-    assert installation.DEPLOY_SCRIPT.is_symlink()
-    assert installation.DEPLOY_SCRIPT.resolve() == Path(installation.ROOT, "deploy.sh")
+    script = Path(installation.ROOT, "deploy.sh")
+    assert installation.DEPLOY_SCRIPT.read_bytes() == script.read_bytes()
+
+
+def libraries():
+    """What doctor finds about libraries: (found, remedy) by name."""
+    return {finding.what: (finding.found, finding.remedy) for finding in doctor._libraries()}
+
+
+def test_doctor_names_what_is_missing_and_how_to_get_it(packages):
+    install = installation.install_command()
+    found = libraries()
+    assert found["libraries"] == ("missing: absent, present>=1.0", f"install them: {install}")
+    words, remedy = found["extra bodies"]
+    assert "engine>=4" in words
+    assert installation.install_command("bodies") in words
+    assert remedy == ""  # nobody has to have an extra
+
+
+def test_doctor_of_a_folder_that_was_never_installed_says_so(monkeypatch):
+    monkeypatch.setattr(requirements, "PACKAGE", "of-this-name-there-is-none")
+    ((what, (found, remedy)),) = libraries().items()
+    assert what == "libraries"
+    assert "without being installed" in found
+    assert installation.install_command() in remedy
