@@ -23,7 +23,7 @@ def kickctl_command() -> str:
         return "kickctl"
     if Path(sys.argv[0]).name == "kickctl":
         return shlex.quote(sys.argv[0])
-    return f"{shlex.quote(sys.executable)} -m host"
+    return f"{shlex.quote(sys.executable)} -m kickctl"
 
 
 def deploy_command() -> str:

@@ -36,7 +36,7 @@ def wanted():
 
 
 def test_the_wheel_has_all_files_of_the_packages(wheel):
-    assert {"robot", "sim_motor", "host"} <= set(PACKAGES)
+    assert set(PACKAGES) == {"kickctl", "host", "sim_motor", "robot"}
     content = files_of(wheel)
     assert wanted() - set(content) == set()
     assert {"robot/service/brick.sh", "robot/PROTOCOL.md", "host/py.typed"} <= set(content)

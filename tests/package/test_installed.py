@@ -27,7 +27,7 @@ def run(installed, tmp_path):
 
 
 def test_it_runs_from_the_wheel_and_not_from_the_checkout(run, installed):
-    for package in ("host", "robot", "sim_motor"):
+    for package in ("kickctl", "host", "robot", "sim_motor"):
         file = run("python", "-c", f"import {package}; print({package}.__file__)")
         assert file.startswith(str(installed.parent))
 
@@ -38,7 +38,6 @@ def test_a_kick_reverses_the_simulated_robot(run):
 
 
 def test_the_import_name_for_people_works(run, installed):
-    pytest.importorskip("kickctl", reason="the package kickctl does not exist yet")
     file = run("python", "-c", "import kickctl; print(kickctl.connect, kickctl.__file__)")
     assert str(installed.parent) in file
 

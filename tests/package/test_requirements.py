@@ -79,7 +79,7 @@ def test_installed_the_verb_and_pip_are_named(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "argv", ["/some where/kickctl"])
     assert installation.deploy_command() == "'/some where/kickctl' deploy"
     monkeypatch.setattr(sys, "argv", ["/some where/host/__main__.py"])
-    assert installation.deploy_command() == f"{sys.executable} -m host deploy"
+    assert installation.deploy_command() == f"{sys.executable} -m kickctl deploy"
     monkeypatch.setattr(installation.shutil, "which", lambda name: f"/usr/bin/{name}")
     assert installation.deploy_command() == "kickctl deploy"
     assert installation.install_command("gym") == f"{sys.executable} -m pip install 'kickctl[gym]'"
