@@ -1,6 +1,6 @@
 """Whether the robot's program on this machine is well: python3 -m robot.health.
 
-Deploy.sh has the brick ask before it trusts a release.
+`kickctl deploy` has the brick ask this before it trusts a release.
 """
 
 import argparse
@@ -10,7 +10,7 @@ import socket
 import sys
 import time
 
-from robot import __version__, token, wire
+from robot import __version__, sources, token, wire
 from robot.program import PORT
 
 HOST = "127.0.0.1"
@@ -66,9 +66,16 @@ class Questioner(object):
         self._link.close()
 
 
-def examine(port, secret):
-    """The status of the robot at a port, which has shown its release, that it has the token, and that it ticks.
+def _compare(what, its, ours):
+    """Raise Unwell if the program that answers is not the one in this folder."""
+    if its != ours:
+        raise Unwell("it runs {} {}, not {}: another program answers".format(what, its, ours))
 
+
+def examine(port, secret):
+    """The status of the robot at a port.
+
+    It has shown that it runs the release and the sources of this folder, has the token, and ticks.
     Raises OSError, BadMessage and Unwell.
     """
     robot = Questioner(port)
@@ -78,12 +85,8 @@ def examine(port, secret):
         hello = robot.ask(
             wire.HELLO, protocol=wire.PROTOCOL, name="health", client="health", nonce=text
         )
-        if hello["software"] != __version__:
-            raise Unwell(
-                "it is of release {}, not {}: another program answers".format(
-                    hello["software"], __version__
-                )
-            )
+        _compare("release", hello["software"], __version__)
+        _compare("sources", hello.get("sources"), sources.of_robot())
         shake = wire.Handshake(secret, nonce, binascii.unhexlify(hello["nonce"]))
         answer = robot.ask(wire.AUTH, proof=binascii.hexlify(shake.host_proof).decode("ascii"))
         if not wire.same(binascii.unhexlify(answer["proof"]), shake.robot_proof):

@@ -10,8 +10,11 @@ import platform
 from robot import __version__, commands, wire
 from robot.errors import Refused
 from robot.record import STATES, STRUCT
+from robot.sources import of_robot
 
 _BATCH = wire.MAX_SAMPLES // STRUCT.size
+# Computed before the loop runs: reading files would delay a tick.
+_SOURCES = of_robot()
 
 
 def new_id():
@@ -158,6 +161,7 @@ class Session(object):
         answer = {
             "protocol": wire.PROTOCOL,
             "software": __version__,
+            "sources": _SOURCES,
             "boot": self._boot,
             "nonce": own_nonce,
             "seed": loop.seed,

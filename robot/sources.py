@@ -1,4 +1,4 @@
-"""A fingerprint of source files, so that what was computed or installed is known by the code that did it."""
+"""A fingerprint of source files: it says which code computed a result, or is installed."""
 
 import hashlib
 import os
@@ -30,8 +30,23 @@ def fingerprint(*folders):
     return digest.hexdigest()[:16]
 
 
+def of_robot():
+    """The fingerprint of the robot's program, which is the folder of this file.
+
+    Returns:
+        16 hexadecimal digits, the same on the robot and on a host that has the same release.
+
+    Raises:
+        OSError: A file cannot be read.
+    """
+    return fingerprint(os.path.dirname(os.path.abspath(__file__)))
+
+
 def _sources(folder):
-    """(name, path) of every source file below a folder, in order; the name begins with the folder's own."""
+    """(name, path) of every source file below a folder, in order.
+
+    The name begins with the folder's own.
+    """
     parent = os.path.dirname(os.path.abspath(folder))
     if os.path.isfile(folder):
         return [(os.path.basename(folder), folder)]

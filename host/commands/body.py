@@ -144,12 +144,13 @@ def _simulate(
     from host.bodies.kicks import run_with_kicks
     from host.runs.folder import digest
     from host.util.progress import progress
-    from host.util.provenance import commit
+    from host.util.provenance import commit, sources
 
     info = {
         **request._asdict(),
         "kicks": options.kick,
         "time_s": options.time,
+        "sources": sources(),
         "commit": commit(),
     }
     folder = options.out / f"body-{digest(info)}"

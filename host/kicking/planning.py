@@ -1,6 +1,6 @@
-"""Which quenched kick reverses a wheel, and at which moment.
+"""Plans: which quenched kick reverses a wheel, and at which moment.
 
-The choice from the kick map of its parameters.
+A plan is chosen from the kick map of the robot's parameters.
 """
 
 from __future__ import annotations
@@ -27,16 +27,18 @@ from host.kicking.kick_map import (
     shift_of,
     tally,
 )
-from robot import __version__
+from host.util.provenance import sources
 from robot.params import Params
 
 SURE = 0.99
-# Of a plan's own map: enough to tell 99 % from 97 % in one direction. Small pieces, between which a
-# link is kept alive.
-_WHEELS, _WINDOW_WHEELS, _PIECE = 300, 4800, 300
+# The wheels of a plan's own map: enough to tell 99 % from 97 % in one direction. They are computed in
+# small batches, between which the link to the robot is kept alive.
+_WHEELS, _WINDOW_WHEELS, _BATCH = 300, 4800, 300
 _WINDOW_CANDIDATES = 3
 _MAP_SEED = 1
 _TURNS, _LEAST_STEP_RAD = 4, 0.01
+# How many plans are kept.
+_KEPT = 200
 # The parameters that the map depends on.
 _MAPPED = ("a", "tau_s", "k", "rods", "max_duty_pct", "tick_s")
 
@@ -45,12 +47,16 @@ KickName = tuple[str, int, int]
 
 @dataclass(frozen=True)
 class Plan:
-    """A kick for one wheel. shift_rad: of a phase kick; window_rad.
+    """A kick for one wheel.
 
-    At phases (mod 2 pi) from, and up to; None for any.
-
-    tried, reversed: simulated kicks of this kind, in that window, and how many of them reversed; 0
-    if it comes from no map.
+    Attributes:
+        mode: The kick's mode.
+        ticks: Its length, control periods.
+        shift_rad: The shift of a phase kick; None for other modes.
+        window_rad: The kick begins at a phase from the first to the second angle (mod 2 pi); None
+            for any phase.
+        tried: How many simulated kicks of this kind began in the window; 0 without a map.
+        reversed: How many of these reversed their wheel.
     """
 
     mode: str
@@ -69,16 +75,21 @@ class Plan:
         return None if self.window_rad is None else [degrees(edge) for edge in self.window_rad]
 
     def meets(self, phi_rad: float) -> bool:
-        """Whether the wheel's angle at the kick's begin lies in the window."""
+        """Whether a kick that begins at this angle (rad) of the wheel is in the window."""
         if self.window_rad is None:
             return True
         first, last = self.window_rad
         return (phi_rad - first) % tau <= (last - first) % tau
 
     def wait_ticks(self, phi_rad: float, step_rad: float) -> int | None:
-        """How many ticks from now a wheel at phi that turns by a step each tick meets the window.
+        """When to kick: how many ticks from now the wheel is in the window.
 
-        None if not within some turns.
+        Args:
+            phi_rad: The wheel's angle.
+            step_rad: How far it turns in a tick.
+
+        Returns:
+            Ticks; None if the wheel does not meet the window within some turns.
         """
         most = 1 + int(_TURNS * tau / max(abs(step_rad), _LEAST_STEP_RAD))
         return next(
@@ -94,11 +105,16 @@ def _is_sure(rows: Iterable[Row]) -> bool:
 def choose(rows: Iterable[Row], before: int) -> Plan | None:
     """The kick that reverses a wheel of this direction most safely.
 
-    At any phase if there is one, else at the right moment.
+    If some kicks are sure at any phase, it is the one whose length is farthest from lengths that are
+    not sure, because no robot is exactly its model; of several the shortest. Otherwise it is the
+    kick with the widest window of sure phases.
 
-    Of the lengths that are sure at any phase, the one farthest from those that are not, as no robot
-    is quite its model; of several the shortest. Else the kick with the widest window of sure
-    phases. None if there is neither.
+    Args:
+        rows: The rows of a kick map.
+        before: The direction of the wheel, 1 or -1.
+
+    Returns:
+        The plan; None if no kick is sure.
     """
     kicks = _by_kick(rows, before)
     margins = _margins(kicks)
@@ -123,9 +139,9 @@ def _by_kick(rows: Iterable[Row], before: int) -> dict[KickName, list[Row]]:
 
 
 def _margins(kicks: dict[KickName, list[Row]]) -> dict[KickName, int]:
-    """How many steps of length each sure kick is away from the next that is not.
+    """How many steps of length lie between each sure kick and the next that is not sure.
 
-    What was not tried is not sure.
+    A kick that was not tried is not sure.
     """
     margins: dict[KickName, int] = {}
     for mode, sign in KINDS:
@@ -143,9 +159,9 @@ def _margins(kicks: dict[KickName, list[Row]]) -> dict[KickName, int]:
 
 
 def _window(mode: str, sign: int, ticks: int, rows: list[Row]) -> Plan | None:
-    """The kick in the longest run of sure bins, around the circle.
+    """The plan for the longest run of sure bins around the circle.
 
-    None if there is none of three bins or more.
+    None if no run has three bins or more.
     """
     bins: dict[int, list[Row]] = {}
     for row in rows:
@@ -176,19 +192,27 @@ def _width(plan: Plan) -> float:
 def reversal(
     before: int, values: dict[str, Any], say: Callable[[str], None] = lambda words: None
 ) -> Plan | None:
-    """The plan for a wheel that runs in this direction, at a robot's parameters by name.
+    """The plan for a wheel that runs in this direction.
 
-    None if no quenched kick is sure.
+    A map takes some seconds to compute. The plan is then kept in
+    ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json for these parameters and these sources.
 
-    The map takes some seconds, once for these parameters, of which `say` is told: its plan is kept
-    in ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json.
+    Args:
+        before: The direction, 1 or -1.
+        values: The robot's parameters by name.
+        say: Called with a message before a map is computed.
+
+    Returns:
+        The plan; None if no quenched kick is sure.
     """
     chosen = tuple(values[name] for name in _MAPPED)
-    key = json.dumps([__version__, before, *chosen])
+    key = json.dumps([sources(), before, *chosen])
     kept = _kept()
     if key not in kept:
-        say("computing which kicks reverse a wheel at these parameters: some seconds, this once")
-        plan = _planned(before, *chosen)
+        say(
+            "computing which kicks reverse a wheel at these parameters; this takes some seconds, once"
+        )
+        plan = _compute_plan(before, *chosen)
         _keep({**_kept(), key: plan and asdict(plan)})
         return plan
     return kept[key] and Plan(
@@ -201,10 +225,7 @@ def _file() -> Path:
 
 
 def _kept() -> dict[str, Any]:
-    """The plans that were kept, by what they are for.
-
-    None if there are none, or none that can be read.
-    """
+    """The kept plans by key; none if the file does not exist or cannot be read."""
     try:
         kept = json.loads(_file().read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -213,35 +234,36 @@ def _kept() -> dict[str, Any]:
 
 
 def _keep(plans: dict[str, Any]) -> None:
-    """Keep them, if there is room; without, the next plan takes its time again."""
+    """Keep the newest plans if the disk has room. If not, the next command computes its plan."""
     new = _file().with_suffix(f".{os.getpid()}")
     with suppress(OSError):
         new.parent.mkdir(parents=True, exist_ok=True)
-        new.write_text(json.dumps(plans), encoding="utf-8")
+        new.write_text(json.dumps(dict(list(plans.items())[-_KEPT:])), encoding="utf-8")
         new.replace(_file())
 
 
 @cache
-def _planned(before: int, *values: float) -> Plan | None:
-    rows = _chart(*values)
+def _compute_plan(before: int, *values: float) -> Plan | None:
+    rows = _kick_map(*values)
     plan = choose(rows, before)
     if plan is not None and plan.window_rad is None:
         return plan
     kicks = _by_kick(rows, before)
     best = sorted(kicks, key=lambda kick: -count(kicks[kick])[0])[:_WINDOW_CANDIDATES]
     return choose(
-        [row for kick in best for row in _mapped(*kick, _params(values), _WINDOW_WHEELS)], before
+        [row for kick in best for row in _kick_wheels(*kick, _params(values), _WINDOW_WHEELS)],
+        before,
     )
 
 
 @cache
-def _chart(*values: float) -> list[Row]:
+def _kick_map(*values: float) -> list[Row]:
     params = _params(values)
     return [
         row
         for mode, sign in KINDS
         for ticks in lengths(params.tick_s)
-        for row in _mapped(mode, sign, ticks, params, _WHEELS)
+        for row in _kick_wheels(mode, sign, ticks, params, _WHEELS)
     ]
 
 
@@ -251,11 +273,11 @@ def _params(values: tuple[float, ...]) -> Params:
     return params
 
 
-def _mapped(mode: str, sign: int, ticks: int, params: Params, wheels: int) -> list[Row]:
+def _kick_wheels(mode: str, sign: int, ticks: int, params: Params, wheels: int) -> list[Row]:
     kick: KickCell = {"mode": mode, "sign": sign, "ticks": ticks}
-    pieces = range(wheels // _PIECE)
+    batches = range(wheels // _BATCH)
     return [
         {**kick, **row}
-        for piece in pieces
-        for row in tally(mode, sign, ticks, _PIECE, _MAP_SEED + piece, params=params)
+        for batch in batches
+        for row in tally(mode, sign, ticks, _BATCH, _MAP_SEED + batch, params=params)
     ]

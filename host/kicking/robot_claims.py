@@ -11,7 +11,7 @@ import numpy as np
 
 from host.logs.log import Log
 from host.runs.claims import Claim, too_few
-from host.util.intervals import fraction, spread, wilson
+from host.util.intervals import bootstrap_interval, fraction, wilson
 from robot.kicks import WHEELS
 
 # The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
@@ -86,7 +86,7 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
 def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
     """R2 to R4: frequency, speed and duty cycle, and steadiness of the torque."""
     hertz = [abs(wheel.hz) for wheel in wheels]
-    mean, interval = float(np.mean(hertz)), spread(hertz)
+    mean, interval = float(np.mean(hertz)), bootstrap_interval(hertz)
     duty, ripple = (
         float(np.mean([wheel.duty_pct for wheel in wheels])),
         max(wheel.ripple for wheel in wheels),

@@ -19,8 +19,15 @@ if TYPE_CHECKING:
 class Log:
     """Records and events of one subscription; a Tap.
 
+<<<<<<< HEAD
     Args:
         info: What was run; see below.
+=======
+    `info` says what was run, in plain JSON data; what is unknown is left out:
+    host_software, robot_software, sources (their fingerprint here), robot_sources, commit, brick (URI), host_machine, robot_machine (as the robot's hello names it), seed, boot,
+    params, polarity, battery_v, clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601); and
+    truncated (True) if the log was read from a file that breaks off or is damaged.
+>>>>>>> e30c87f (Keep results, plans and logs under a fingerprint of the sources)
 
     Attributes:
         records: One Record for each tick, oldest first.

@@ -1,6 +1,6 @@
-"""Runs an experiment or a study of the model, or the rest of one that was cut short.
+"""Runs an experiment or a study of the model, or resumes an interrupted run.
 
-Then its table, its figure and its claims.
+Then it writes the table, the figure and the claims.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from host.link.addresses import SIM, make_link, sim_options
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.robots import robots
 from host.runs.contract import Setting
-from host.runs.registry import checked
-from host.runs.runner import begun, do, finish, simulate
+from host.runs.registry import complete_options
+from host.runs.runner import do_cells, finish, open_study, simulate
 from host.util.extras import need
-from host.util.provenance import commit
+from host.util.provenance import commit, sources
 from robot import __version__
 from sim_motor.motor import load as constants
 
 RESULTS = Path("results")
 DEFAULT_SEED = 1
-# What of sim:// an experiment leaves to its user.
+# The options of sim:// that an experiment leaves to its user.
 OWN_OPTIONS = ("motor", "battery", "seed", "idle")
 
 
@@ -40,6 +40,7 @@ def perform(
     say: Callable[[str], None] = lambda words: None,
     **arguments: Any,
 ) -> dict[str, Any]:
+<<<<<<< HEAD
     """Run an experiment or a study of the model, or resume one that was cut short.
 
     Args:
@@ -57,14 +58,34 @@ def perform(
 
     Raises:
         KickctlError: It cannot go on; what was measured until then is kept.
+=======
+    """Run an experiment or a study, or resume it if it was interrupted.
+
+    Args:
+        name: Which one.
+        uri: The robot's address, as `connect` takes it. A study has no robot.
+        seed: The random seed, also of a simulated robot; by default 1.
+        token: The path of the robot's token file.
+        out: The folder for results. Each combination of arguments and sources has its own folder
+            there.
+        scheduler: The address of a Dask scheduler that computes the cells.
+        say: Called with messages for people.
+        arguments: The run's own options.
+
+    Returns:
+        The summary, which is also in summary.json in the run's folder.
+
+    Raises:
+        KickctlError: The run ended early. The cells that are complete are kept.
+>>>>>>> e30c87f (Keep results, plans and logs under a fingerprint of the sources)
     """
     found = find(name)
-    options = checked(name, found.entry, arguments)
+    options = complete_options(name, found.entry, arguments)
     settings: dict[str, Any] = {
         "experiment": name,
         "options": options,
         "version": __version__,
-        "commit": commit(),
+        "sources": sources(),
     }
     simulated: dict[str, str] | None = {}
     out = Path(out)
@@ -77,18 +98,17 @@ def perform(
         setting = _setting(options, simulated, seed)
         settings["brick"] = uri
         if simulated is not None:
-            settings["motor"] = asdict(
-                constants(setting.motor)
-            )  # an own motor of the same name may be another one tomorrow
+            # By value: your own motor of this name may have other constants tomorrow.
+            settings["motor"] = asdict(constants(setting.motor))
     settings["seed"] = setting.seed
     batch = simulated is not None and found.work.simulate is not None
     if scheduler and not batch:
         raise WrongUse(
-            "--scheduler spreads simulations, and this experiment runs on a robot's loop",
+            "--scheduler is for simulations, and this experiment runs on a robot",
             "leave it out",
         )
     cells = found.work.cells(options, batch=batch)
-    with begun(out, settings, cells, say) as study:
+    with open_study(out, settings, cells, say) as study:
         if batch and found.work.simulate is not None:
             simulate(
                 name,
@@ -101,9 +121,12 @@ def perform(
             )
         elif uri is not None and any(cell not in study for cell in cells):
             with robots(found.work, uri, setting, token, study.folder / "logs", say) as work:
-                do(name, cells, study, work)
+                do_cells(name, cells, study, work)
         rows = study.rows(cells)
-        return finish(name, rows, found.work.report(rows, setting), found.draw, study, settings)
+        # The commit says where results come from. It is no part of their key: it also changes with
+        # files that compute nothing.
+        about = {**settings, "commit": commit()}
+        return finish(name, rows, found.work.report(rows, setting), found.draw, study, about)
 
 
 def address(uri: str | None) -> str:
@@ -112,24 +135,24 @@ def address(uri: str | None) -> str:
 
 
 def _simulated(name: str, kind: str, uri: str) -> dict[str, str] | None:
-    """The options of a simulated robot's address, None for a real one's.
+    """The options in the address of a simulated robot; None for a real one.
 
     Raises WrongUse if the experiment cannot use it.
     """
-    make_link(uri)  # raises, in words, if that is no robot's address
+    make_link(uri)  # raises WrongUse if that is not the address of a robot
     simulated = sim_options(uri)
     if kind == BODY:
         need("mujoco", "bodies")
         if simulated is None:
             raise WrongUse(
                 f"{name} is about simulated cars, and '{uri}' is a robot's address",
-                f"leave it out, or say {SIM}",
+                f"leave the address out, or write {SIM}",
             )
     for option in simulated or ():
         if option not in OWN_OPTIONS:
             raise WrongUse(
                 f"an experiment places its robots itself, and '{uri}' says {option}",
-                "leave that out",
+                f"leave {option} out",
             )
     return simulated
 

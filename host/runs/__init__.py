@@ -1,1 +1,1 @@
-"""Long work in pieces: options, cells, folders with results, processes and clusters, claims, reports."""
+"""Runs: options, cells, folders with results, processes and clusters, claims, reports."""

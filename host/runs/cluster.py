@@ -1,6 +1,6 @@
-"""Spreads an experiment's simulations over a Dask cluster.
+"""Computes the cells of a run on a Dask cluster.
 
-A cell's result does not depend on where it is done, or how often.
+The result of a cell does not depend on where it is computed, or how often.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from host.util.installation import install_command
 CONNECT_S = 10.0
 
 
-def spread(
+def compute_on_cluster(
     address: str,
     simulate: Callable[[Cell, Setting], list[Row]],
     cells: list[Cell],
     setting: Setting,
 ) -> Generator[tuple[Cell, list[Row]]]:
-    """(cell, rows) as they are done, on the workers of the Dask scheduler at `address`.
+    """Yields (cell, rows) as workers of the Dask scheduler at `address` complete them.
 
     Raises WrongUse and NoLink.
     """
@@ -53,6 +53,6 @@ def spread(
             except (CancelledError, KilledWorker) as error:
                 raise NoLink(
                     f"the Dask cluster at {address} was lost: {error}",
-                    "mend it, and run the same command again",
+                    "mend it, and run the same command again: it resumes the run",
                 ) from error
             yield futures[future], rows

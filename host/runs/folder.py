@@ -1,4 +1,4 @@
-"""An experiment's results in a folder, kept cell by cell, so that a run that was cut short goes on where it was."""
+"""The results of a run in a folder, kept cell by cell, so that an interrupted run can be resumed."""
 
 from __future__ import annotations
 
@@ -20,18 +20,24 @@ _CELLS = "cells.jsonl"
 
 
 class Done(NamedTuple):
-    """What came of a cell: its rows, and why earlier tries of it did not count."""
+    """The result of a cell: its rows, and why earlier tries of it did not count."""
 
     rows: list[Row]
     spoiled: list[str]
 
 
 class Study:
-    """A run's folder below `results`, made if it is not there.
+    """The folder of a run below `results`, created if it does not exist.
 
-    Its name has a digest of all settings, which are plain data.
+    Its name is the experiment's with a digest of all settings. These are plain data, and the
+    fingerprint of the sources is one of them: a run of other code has a folder of its own.
 
-    Raises WrongUse if the folder cannot be used.
+    Args:
+        results: The folder below which the run's folder lies.
+        settings: All that the results depend on; "experiment" is the name.
+
+    Raises:
+        WrongUse: The folder cannot be used.
     """
 
     def __init__(self, results: Path, settings: dict[str, Any]) -> None:
@@ -52,15 +58,15 @@ class Study:
         except BlockingIOError:
             self.close()
             raise WrongUse(
-                f"another run works in {folder} at this moment",
-                "wait for it, or name another folder with --out",
+                f"another run works in {folder} now",
+                "wait until it ends, or name another folder with --out",
             ) from None
         except WrongUse:
             self.close()
             raise
 
     def _read(self) -> None:
-        """Take in what was kept; a last line that was cut short was not."""
+        """Read the cells that are complete. A last line that was cut short does not count."""
         self._journal.seek(0)
         whole = 0
         for line in self._journal:
@@ -84,7 +90,7 @@ class Study:
         return len(self._done)
 
     def keep(self, cell: Cell, rows: list[Row], spoiled: list[str]) -> None:
-        """Keep what came of a cell, on disk before this returns."""
+        """Keep the result of a cell. It is on disk before this returns."""
         line = json.dumps({"cell": cell, "rows": rows, "spoiled": spoiled}, allow_nan=False)
         self._journal.write(line.encode() + b"\n")
         self._journal.flush()
@@ -92,19 +98,19 @@ class Study:
         self._done[_key(cell)] = Done(json.loads(line)["rows"], spoiled)
 
     def close(self) -> None:
-        """Keep no more."""
+        """Close the folder for others to use."""
         self._journal.close()
 
     def rows(self, cells: list[Cell]) -> list[Row]:
-        """The rows of these cells in their order, each with its cell's fields."""
+        """The rows of these cells, in this order, each with the fields of its cell."""
         return [{**cell, **row} for cell in cells for row in self._done[_key(cell)].rows]
 
     def spoiled(self) -> list[str]:
-        """Why tries did not count."""
+        """The reasons why some tries did not count."""
         return [reason for done in self._done.values() for reason in done.spoiled]
 
     def write_table(self, name: str, rows: list[Row]) -> Path:
-        """The rows as CSV, one line each."""
+        """Write the rows as CSV, one line each."""
         path = self.folder / f"{name}.csv"
         columns = list(dict.fromkeys(column for row in rows for column in row))
         with path.open("w", encoding="utf-8", newline="") as out:
@@ -114,21 +120,21 @@ class Study:
         return path
 
     def write_figure(self, name: str, figure: Figure) -> list[Path]:
-        """A figure as PNG and SVG."""
+        """Write a figure as PNG and SVG."""
         paths = [self.folder / f"{name}.{kind}" for kind in ("png", "svg")]
         for path in paths:
             figure.savefig(path)
         return paths
 
     def write(self, name: str, text: str) -> Path:
-        """A text as a file."""
+        """Write a text to a file of this name."""
         path = self.folder / name
         path.write_text(text, encoding="utf-8")
         return path
 
 
 def digest(data: dict[str, Any]) -> str:
-    """A short name for plain data: eight letters, other ones for other data."""
+    """Eight hexadecimal digits that stand for plain data."""
     return hashlib.sha256(_key(data).encode()).hexdigest()[:8]
 
 

@@ -1,6 +1,6 @@
-"""Simulates cells side by side on this machine's cores, each in a process of its own.
+"""Computes the cells of a run in processes, one for each core of this machine.
 
-For what runs on one thread, as MuJoCo does.
+This is for work that runs on one thread, as MuJoCo does.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from host.errors import NotDone
 from host.runs.contract import Cell, Row, Setting
 
 
-def side_by_side(
+def compute_in_processes(
     simulate: Callable[[Cell, Setting], list[Row]], cells: list[Cell], setting: Setting
 ) -> Generator[tuple[Cell, list[Row]]]:
-    """(cell, rows) as they are done. What is under way when the generator is closed is given up.
+    """Yields (cell, rows) as they are complete. Closing the generator ends all that still runs.
 
     Raises NotDone.
     """
@@ -28,8 +28,8 @@ def side_by_side(
         yield from ((cell, simulate(cell, setting)) for cell in cells)
         return
     others = set(active_children())
-    # Spawned, for a copy of this process would have threads' locks and no threads. ^C, which a
-    # terminal sends to all, is for this one.
+    # Spawned, because a fork would copy locks that other threads hold, but not the threads. A
+    # terminal sends ^C to all processes; only this one obeys it.
     pool = ProcessPoolExecutor(
         processes, get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_IGN)
     )
@@ -39,8 +39,8 @@ def side_by_side(
             yield futures[future], future.result()
     except BrokenProcessPool as error:
         raise NotDone(
-            "a process that simulated was ended from outside",
-            "run the same command again; it may need more memory",
+            "something ended a process of the simulation",
+            "run the same command again, which resumes the run; it may need more memory",
         ) from error
     finally:
         for process in set(active_children()) - others:

@@ -1,4 +1,7 @@
-"""What can be run by a name, an experiment or a study of the model, and what each can be asked for. Light enough for `kickctl --help`."""
+"""Experiments and studies of the model by name, and the options of each.
+
+This imports little, so that `kickctl --help` answers at once.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ from host.errors import WrongUse
 
 
 class Option(NamedTuple):
-    """A number that a run can be asked for, from `least` to `most`; or a word, one of `choices`.
+    """An option of a run: a number from `least` to `most`, or a word, one of `choices`.
 
-    default: its type is the number's; None, of a float that need not be given.
+    The default has the number's type. None is the default of a float that may be left out.
     """
 
     name: str
@@ -24,10 +27,7 @@ class Option(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """What can be run, for people. claims.
-
-    Ids of the paper's claims that are settled here (others may be touched).
-    """
+    """An experiment or study: a help text, its options, and the ids of the claims that it decides."""
 
     help: str
     options: tuple[Option, ...]
@@ -41,8 +41,11 @@ def entry_of(kind: str, table: Mapping[str, Entry], name: str) -> Entry:
     return table[name]
 
 
-def checked(name: str, entry: Entry, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """All options of an entry, those that are not given at their defaults. Raises WrongUse."""
+def complete_options(name: str, entry: Entry, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """All options of an entry, by name; those that are not given have their defaults.
+
+    Raises WrongUse.
+    """
     options = {option.name: option for option in entry.options}
     for given in arguments:
         if given not in options:
@@ -84,7 +87,7 @@ def _value(option: Option, value: Any) -> Any:
 
 
 def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
-    """A flag for each option, and those that all runs have."""
+    """Add a flag for each option of an entry, and the flags that all runs have."""
     for option in entry.options:
         own: dict[str, Any] = (
             {"choices": option.choices}
@@ -104,17 +107,17 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
         default="results",
         metavar="FOLDER",
         help=(
-            "where results go; the same command goes on where it was cut short (default"
+            "folder for the results; the same command resumes an interrupted run (default"
             " %(default)s)"
         ),
     )
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help="spread the computing over this Dask cluster, as tcp://host:8786",
+        help="compute on the Dask cluster of this scheduler, such as tcp://host:8786",
     )
 
 
 def options_given(options: argparse.Namespace, entry: Entry) -> dict[str, Any]:
-    """The values of an entry's own options."""
+    """The values that were given for an entry's own options."""
     return {option.name: getattr(options, option.name) for option in entry.options}

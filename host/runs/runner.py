@@ -1,4 +1,4 @@
-"""Does the cells of a run one by one, keeps what comes of each, and puts it all together in the end."""
+"""Does the cells of a run, keeps the result of each, and writes table, figure and summary."""
 
 from __future__ import annotations
 
@@ -16,37 +16,38 @@ from host.util.progress import progress
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Outcome = tuple[list[Row], list[str]]  # and why earlier tries did not count
+# The rows of a cell, and why earlier tries of it did not count.
+Outcome = tuple[list[Row], list[str]]
 Result = tuple[Cell, list[Row], list[str]]
 Work = Callable[[Cell], Outcome]
 Draw = Callable[[list[Row], Findings], "Figure"]
 
 
 @contextmanager
-def begun(
+def open_study(
     results: Path, settings: dict[str, Any], cells: list[Cell], say: Callable[[str], None]
 ) -> Iterator[Study]:
-    """Yields the study of a run, begun or gone on with, and says what is kept of it if it ends early."""
+    """Yields the study of a run. Says how many cells are complete, now and if the run ends early."""
     study = Study(results, settings)
     name = settings["experiment"]
     say(
-        f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} pieces are done in"
+        f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} cells complete in"
         f" {study.folder}"
     )
     try:
         yield study
     except (KickctlError, KeyboardInterrupt, OSError):
         say(
-            f"{len(study)} of {len(cells)} pieces are kept in {study.folder}; the same command goes"
-            " on from there"
+            f"{sum(cell in study for cell in cells)} of {len(cells)} cells complete in"
+            f" {study.folder}; the same command resumes the run"
         )
         raise
     finally:
         study.close()
 
 
-def do(name: str, cells: list[Cell], study: Study, work: Work) -> None:
-    """Do those cells that the study does not have yet."""
+def do_cells(name: str, cells: list[Cell], study: Study, work: Work) -> None:
+    """Do the cells that are not complete yet, one after the other."""
     missing = [cell for cell in cells if cell not in study]
     _keep(
         ((cell, *work(cell)) for cell in missing),
@@ -67,19 +68,26 @@ def simulate(
     *,
     processes: bool = False,
 ) -> None:
-    """Do them by computing, here or on the Dask cluster of the scheduler at this address.
+    """Compute the cells that are not complete yet.
 
-    Processes: one for each core, if here.
+    Args:
+        name: The name of the run, for its progress bar.
+        function: Computes a cell.
+        cells: All cells of the run.
+        setting: What they share.
+        study: Where their results are kept.
+        scheduler: The address of a Dask scheduler; None to compute on this machine.
+        processes: Whether to use a process for each core of this machine.
     """
     missing = [cell for cell in cells if cell not in study]
     if scheduler is not None:
-        from host.runs.cluster import spread
+        from host.runs.cluster import compute_on_cluster
 
-        done = spread(scheduler, function, missing, setting)
+        done = compute_on_cluster(scheduler, function, missing, setting)
     elif processes:
-        from host.runs.processes import side_by_side
+        from host.runs.processes import compute_in_processes
 
-        done = side_by_side(function, missing, setting)
+        done = compute_in_processes(function, missing, setting)
     else:
         done = ((cell, function(cell, setting)) for cell in missing)
     with closing(done):
@@ -107,13 +115,13 @@ def finish(
     findings: Findings,
     draw: Draw,
     study: Study,
-    settings: dict[str, Any],
+    about: dict[str, Any],
 ) -> dict[str, Any]:
-    """Write the table, the figure that `draw` makes, and the summary, which is returned."""
+    """Write the table, the figure that `draw` makes, and the summary. Returns the summary."""
     figures = study.write_figure(name, draw(rows, findings))
     logs = study.folder / "logs"
     summary = {
-        **settings,
+        **about,
         "claims": [claim.as_dict() for claim in findings.claims],
         "numbers": findings.numbers,
         "trials": len(rows),

@@ -1,1 +1,1 @@
-"""Small tools without a room of their own: angles, intervals, progress, interrupts, provenance."""
+"""Small tools for all packages: angles, intervals, progress, interrupts, provenance."""

@@ -10,11 +10,11 @@ _FORM = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?(?:\*?(pi))?(?:/(\d+(?:\.\d*)?
 
 
 def parse_angle(text: str) -> float:
-    """The angle in rad. Raises argparse.ArgumentTypeError, which argparse turns into words."""
+    """The angle in rad. Raises argparse.ArgumentTypeError, which argparse shows as a message."""
     match = _FORM.fullmatch(text.replace(" ", ""))
     if match is None or not (match[2] or match[3]) or (match[4] and not float(match[4])):
         raise argparse.ArgumentTypeError(
-            f"'{text}' is no angle; write it in rad, as in 2.36 or -3pi/4"
+            f"'{text}' is not an angle; write it in rad, such as 2.36 or -3pi/4"
         )
     value = float(match[2] or 1.0) * (pi if match[3] else 1.0) / float(match[4] or 1.0)
     return -value if match[1] == "-" else value

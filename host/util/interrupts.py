@@ -1,4 +1,4 @@
-"""^C at a moment when it can be borne."""
+"""^C, held back while it could do harm."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Keep ^C until the end of the block.
+    """Hold back ^C until the end of the block.
 
-    Compiled code that is being loaded would take the interpreter down with it.
+    An interrupt while compiled code is loaded would crash the interpreter.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,4 +1,4 @@
-"""Intervals for what was counted and measured."""
+"""Confidence intervals of rates and of measured values."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _QUANTILE = 1.959963984540054
 
 
 def fraction(successes: float, trials: float) -> float:
-    """The rate; 0 if nothing was tried."""
+    """The part of the trials that succeeded; 0 without trials."""
     return float(successes / trials) if trials else 0.0
 
 
 def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """The Wilson score interval (95 %) of a rate; (0, 1) if nothing was tried."""
+    """The Wilson score interval (95 %) of a rate; (0, 1) without trials."""
     if trials == 0:
         return 0.0, 1.0
     rate = successes / trials
@@ -31,12 +31,13 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
     return low, 1.0 if successes == trials else centre + half
 
 
-def spread(
+def bootstrap_interval(
     values: Sequence[float], of: Callable[..., NDArray[np.float64]] = np.mean
 ) -> tuple[float, float] | None:
-    """A bootstrap interval (95 %, percentiles, fixed chance) of a statistic of values.
+    """The bootstrap interval (95 %, percentiles, fixed seed) of a statistic of values.
 
-    None of fewer than two.
+    Returns:
+        (low, high); None for fewer than two values.
     """
     if len(values) < 2:
         return None

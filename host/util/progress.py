@@ -1,6 +1,6 @@
-"""How far a long work is, on standard error.
+"""The progress of long work, on standard error.
 
-A bar with the time left on a terminal, a line now and then where there is none.
+On a terminal this is a bar with the time left; elsewhere a line now and then.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-# How often a log gets a line, s.
+# The time between two lines, s.
 _LINE_S = 30.0
 
 
 @contextmanager
 def progress(what: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Yields a function that is told how much of `total` is done."""
+    """Yields a function to call with how much of `total` is done."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -36,27 +36,27 @@ def progress(what: str, total: float) -> Iterator[Callable[[float], None]]:
 
 
 def _lines(what: str, total: float, clock: Callable[[], float]) -> Callable[[float], None]:
-    """Writes a line, if the last is long ago.
+    """Returns a function that writes a line if the last one is long ago.
 
-    What was done at first, from an earlier run, says nothing about the pace.
+    The work that an earlier run did says nothing about the pace of this one.
     """
-    began_s = told_s = clock()
-    at_first: float | None = None
+    start_s = last_s = clock()
+    at_start: float | None = None
 
-    def tell(done: float) -> None:
-        nonlocal told_s, at_first
-        at_first = done if at_first is None else at_first
+    def show(done: float) -> None:
+        nonlocal last_s, at_start
+        at_start = done if at_start is None else at_start
         now_s = clock()
-        if now_s - told_s >= _LINE_S and at_first < done < total:
-            told_s = now_s
-            left_s = (now_s - began_s) / (done - at_first) * (total - done)
+        if now_s - last_s >= _LINE_S and at_start < done < total:
+            last_s = now_s
+            left_s = (now_s - start_s) / (done - at_start) * (total - done)
             print(
                 f"{what}: {done:.0f} of {total:.0f}, about {_words(left_s)} left",
                 file=sys.stderr,
                 flush=True,
             )
 
-    return tell
+    return show
 
 
 def _words(seconds: float) -> str:

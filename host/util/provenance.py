@@ -1,4 +1,4 @@
-"""What a log must say of where it comes from."""
+"""Where a log or a result comes from: robot, host, commit, and a fingerprint of the sources."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import host as host_package
+import robot as robot_package
+import sim_motor
 from robot import __version__
+from robot.sources import fingerprint
 
 
 def origin(
@@ -19,17 +23,30 @@ def origin(
     clock_zero_s: float,
     started_utc: datetime,
 ) -> dict[str, Any]:
-    """A log's `info`, from the robot's hello and status, the Unix time of its clock's zero, and when this host met it."""
+    """A log's `info`.
+
+    Args:
+        uri: The robot's address.
+        hello: What the robot said when this host connected.
+        status: Its status.
+        clock_zero_s: The Unix time at which the robot's clock showed 0, s.
+        started_utc: When this host connected.
+
+    Returns:
+        Plain data. A robot of an older release does not say its sources: they are empty then.
+    """
     return {
         "brick": uri,
         "seed": hello["seed"],
         "boot": hello["boot"],
         "robot_software": hello["software"],
+        "robot_sources": hello.get("sources", ""),
         "robot_machine": hello["machine"],
         "host_software": __version__,
         "host_machine": (
             f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
         ),
+        "sources": sources(),
         "commit": commit(),
         "params": status["params"],
         "polarity": {side: status["params"]["polarity_" + side] for side in ("left", "right")},
@@ -39,11 +56,34 @@ def origin(
     }
 
 
+# Of host/ only these cannot change a result: they speak to people, draw, film, or show a page. All
+# else counts, and so does a new package until it is named here.
+SHOWS_ONLY = ("__main__.py", "cli.py", "commands", "figures", "films", "lab")
+
+
+@cache
+def sources() -> str:
+    """The fingerprint of all sources that can change a result, 16 hexadecimal digits.
+
+    These are robot/, sim_motor/, and host/ without SHOWS_ONLY. A kept result, plan or map belongs
+    to the sources that computed it, and is never taken for that of others.
+    """
+    host, robot, motors = (
+        Path(package.__path__[0]).resolve() for package in (host_package, robot_package, sim_motor)
+    )
+    computing = sorted(
+        path
+        for path in host.iterdir()
+        if path.name not in SHOWS_ONLY and (path.is_dir() or path.suffix == ".py")
+    )
+    return str(fingerprint(*map(str, (robot, motors, *computing))))
+
+
 @cache
 def commit() -> str:
-    """The commit of the checkout that this runs from, with a '+' if it was changed.
+    """The commit of the checkout that this runs from, with a '+' if files have changed since.
 
-    Empty outside of one.
+    Empty if this does not run from a checkout.
     """
     root = Path(__file__).resolve().parents[2]
     if not (root / ".git").exists():

@@ -102,7 +102,8 @@ def test_a_run_that_was_interrupted_anywhere_comes_to_the_same(toy, tmp_path, cu
     said = []
     with pytest.raises(KeyboardInterrupt):
         perform("toy", "sim://", out=tmp_path / "cut", say=said.append)
-    assert f"{cut} of {COUNT} pieces are kept" in said[-1]
+    assert f"{cut} of {COUNT} cells complete in" in said[-1]
+    assert "resumes the run" in said[-1]
     toy.done.clear()
     resumed = perform("toy", "sim://", out=tmp_path / "cut")
     assert toy.done == list(range(cut, COUNT))
@@ -156,7 +157,7 @@ def test_reliability_ends_with_its_claims_and_files(kickctl):
     assert all(Path(figure).stat().st_size > 10000 for figure in summary["figures"])
     assert json.loads((Path(summary["folder"]) / "summary.json").read_text()) == summary
     status, out, err = kickctl("experiment", "reliability", "--trials", "25")
-    assert "31 of 31 pieces are done" in err
+    assert "31 of 31 cells complete" in err
     assert "R9 holds" in out
 
 
@@ -223,7 +224,7 @@ def test_a_robot_that_stays_in_fault_ends_the_run_and_keeps_what_was_measured(to
     said = []
     with pytest.raises(RobotFault):
         perform("toy", desk[0], out=tmp_path, say=said.append)
-    assert f"2 of {COUNT} pieces are kept" in said[-1]
+    assert f"2 of {COUNT} cells complete" in said[-1]
     assert perform("toy", desk[0], out=tmp_path)["trials"] == COUNT
 
 
@@ -244,7 +245,7 @@ def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(
     said = []
     with pytest.raises(NoLink, match="did not come back"):
         perform("toy", uri, out=tmp_path, say=said.append)
-    assert f"3 of {COUNT} pieces are kept" in said[-1]
+    assert f"3 of {COUNT} cells complete" in said[-1]
 
 
 def test_a_try_in_which_the_robots_program_began_anew_does_not_count(

@@ -78,10 +78,10 @@ def only_a_kick_that_dips(monkeypatch):
     """Nothing to choose but 12 ticks of a negative shift, of which half fail to reverse a wheel that runs forward."""
     monkeypatch.setattr(planning, "KINDS", ((PHASE, -1),))
     monkeypatch.setattr(planning, "lengths", lambda tick_s: [12])
-    for kept in (planning._chart, planning._planned):
+    for kept in (planning._kick_map, planning._compute_plan):
         kept.cache_clear()
     yield
-    for kept in (planning._chart, planning._planned):
+    for kept in (planning._kick_map, planning._compute_plan):
         kept.cache_clear()
 
 

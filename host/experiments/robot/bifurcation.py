@@ -55,7 +55,7 @@ from host.kicking.robot_claims import break_away
 from host.logs.log import Log
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
-from host.util.intervals import spread
+from host.util.intervals import bootstrap_interval
 from robot.record import STATES
 
 simulate = None
@@ -184,7 +184,7 @@ def report(rows: list[BifurcationRow], setting: Setting) -> Findings:
     numbers: Numbers = {
         "k_c": {
             "by descent": _mean(critical),
-            "interval": spread(critical),
+            "interval": bootstrap_interval(critical),
             "step": 1 - STEP,
             "by continuation": node["k"] if node else None,
         },
@@ -224,7 +224,7 @@ def _stall(ramps: list[RampRow]) -> Claim:
         "no motion from rest below, motion above",
         _mean(torques),
         "1",
-        spread(torques),
+        bootstrap_interval(torques),
         bool(ramps) and not failed,
         "; ".join(failed)
         or f"slow ramps from rest: {len(ramps)}, in all of which both wheels rest below 0.1 and"
@@ -235,10 +235,10 @@ def _stall(ramps: list[RampRow]) -> Claim:
 def _jump(folds: list[FoldRow], critical: list[float], again: list[float]) -> Claim:
     before = [abs(row["torque"]) for row in folds]
     after = max((abs(row["torque_after"]) for row in folds), default=1.0)
-    interval = spread(before)
+    interval = bootstrap_interval(before)
     jumps = interval is not None and interval[0] > LEAST_JUMP and after < STALL_TORQUE
     hysteresis = bool(again and critical) and float(np.median(again)) > max(critical)
-    low, high = spread(critical) or (0.0, 0.0)
+    low, high = bootstrap_interval(critical) or (0.0, 0.0)
     return Claim(
         "R6",
         "lowering k, M falls discontinuously to zero at k_c, with a stopped state coexisting",

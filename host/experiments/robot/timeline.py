@@ -33,7 +33,7 @@ from host.logs.log import Log
 from host.logs.motion import settling_s
 from host.runs.claims import Claim, too_few
 from host.runs.contract import Findings, Options, Setting
-from host.util.intervals import spread, wilson
+from host.util.intervals import bootstrap_interval, wilson
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION
 
 simulate = None
@@ -207,7 +207,7 @@ def _settling(done: list[SettledKick]) -> Claim:
         "distribution of settling times",
         median,
         "s",
-        spread(times, np.median),
+        bootstrap_interval(times, np.median),
         slow > 0 and all(kick.settling_s > kick.kick_s for kick in done),
         f"median of {len(times)} reversals, the slower wheel; 5 to 95 %: {low:.2f} to {high:.2f} s;"
         f" {slow} took half a second or more",
@@ -225,7 +225,7 @@ def _slips(done: list[SettledKick]) -> Claim:
         "relative phase shown before and after",
         median,
         "rad",
-        spread(slips, np.median),
+        bootstrap_interval(slips, np.median),
         wilson(beyond, len(slips))[0] > 1 - USUAL,
         f"median |slip| of {len(slips)} reversals; 5 to 95 %: {low:.3f} to {high:.3f} rad, at most"
         f" {max(slips, default=0.0):.2f}; without a kick {USUAL:.0%} stay below {usual:.3f} in that"

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from host.util.intervals import spread
+from host.util.intervals import bootstrap_interval
 
 Array = NDArray[np.float64]
 
@@ -123,10 +123,10 @@ def from_series(
         float(np.polyfit(time_s, divergence(block, embedded, apart, last)[first:], 1)[0])
         for block in blocks
     ]
-    return Exponent(float(np.mean(rates)), spread(rates)), embedded
+    return Exponent(float(np.mean(rates)), bootstrap_interval(rates)), embedded
 
 
 def from_twins(first: Array, last: Array, span_s: float) -> Exponent:
     """The mean rate at which twins' distances went from `first` to `last` (one each) within span_s."""
     rates = (np.log(last / first) / span_s).tolist()
-    return Exponent(float(np.mean(rates)), spread(rates))
+    return Exponent(float(np.mean(rates)), bootstrap_interval(rates))

@@ -6,13 +6,13 @@ import pytest
 
 from host.figures.theory.branch import draw
 from host.runs.contract import Setting
-from host.runs.registry import checked
+from host.runs.registry import complete_options
 from host.theory.studies import branch
 from host.theory.studies.registry import TABLE
 
 
 def setting(**options):
-    return Setting(1, checked("branch", TABLE["branch"], options))
+    return Setting(1, complete_options("branch", TABLE["branch"], options))
 
 
 def rows_of(own, parts=None):

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from host.errors import NoLink, WrongUse
 from host.experiments.robot import kick_map
 from host.perform.run import perform
-from host.runs.cluster import spread
+from host.runs.cluster import compute_on_cluster
 from host.runs.contract import Setting
 
 KICKS = 36 * 30
@@ -75,7 +75,7 @@ SETTING = Setting(5, {})
 
 
 def test_nothing_is_lost_with_a_worker_that_is_killed(cluster, scramble):
-    results = spread(cluster.scheduler_address, scramble, CELLS, SETTING)
+    results = compute_on_cluster(cluster.scheduler_address, scramble, CELLS, SETTING)
     done = [next(results)]
     victim = next(iter(cluster.workers.values())).pid
     os.kill(victim, signal.SIGKILL)
@@ -89,7 +89,7 @@ def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
     with LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
     ) as brief:
-        results = spread(brief.scheduler_address, scramble, CELLS, SETTING)
+        results = compute_on_cluster(brief.scheduler_address, scramble, CELLS, SETTING)
         next(results)
     with pytest.raises(NoLink, match="was lost"):
         list(results)
@@ -98,7 +98,7 @@ def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
 def test_no_scheduler_is_told_in_words(monkeypatch):
     monkeypatch.setattr("host.runs.cluster.CONNECT_S", 0.5)
     with pytest.raises(NoLink, match="no Dask scheduler answers"):
-        next(spread("tcp://127.0.0.1:1", kick_map.simulate, [], Setting(1, {})))
+        next(compute_on_cluster("tcp://127.0.0.1:1", kick_map.simulate, [], Setting(1, {})))
 
 
 def test_a_robot_is_not_spread(tmp_path):

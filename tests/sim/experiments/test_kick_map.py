@@ -178,13 +178,33 @@ def test_the_planned_kick_reverses_from_any_phase_where_a_blind_one_dips(
 
 def test_a_plan_is_computed_once_for_a_robots_parameters(monkeypatch):
     planned = reversal(1, DEFAULTS)
-    monkeypatch.setattr(planning, "_planned", None)
+    monkeypatch.setattr(planning, "_compute_plan", None)
     assert reversal(1, {**DEFAULTS, "link_loss": "hold"}) == planned
+
+
+def test_a_plan_of_other_sources_is_not_taken(monkeypatch):
+    made = iter([Plan(PHASE, 4), Plan(PHASE, 5)])
+    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(made))
+    monkeypatch.setattr(planning, "sources", lambda: "1111")
+    first = reversal(1, DEFAULTS)
+    monkeypatch.setattr(planning, "sources", lambda: "2222")
+    assert reversal(1, DEFAULTS) == Plan(PHASE, 5)
+    monkeypatch.setattr(planning, "sources", lambda: "1111")
+    assert reversal(1, DEFAULTS) == first
+
+
+def test_only_the_newest_plans_are_kept(monkeypatch):
+    monkeypatch.setattr(planning, "_KEPT", 2)
+    asked = []
+    monkeypatch.setattr(planning, "_compute_plan", lambda before, *chosen: asked.append(chosen[2]))
+    for k in (5.0, 6.0, 7.0, 7.0, 6.0, 5.0):
+        reversal(1, {**DEFAULTS, "k": k})
+    assert asked == [5.0, 6.0, 7.0, 5.0]
 
 
 def test_plans_with_a_window_and_none_at_all_are_kept_as_they_are(monkeypatch):
     made = iter([Plan(PHASE, 12, -1.0, (6.0, 0.5), 30, 30), None])
-    monkeypatch.setattr(planning, "_planned", lambda *_: next(made))
+    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(made))
     fresh = [reversal(before, DEFAULTS) for before in (1, -1)]
     assert [reversal(before, DEFAULTS) for before in (1, -1)] == fresh
     assert fresh[0].window_rad == (6.0, 0.5)
@@ -193,7 +213,7 @@ def test_plans_with_a_window_and_none_at_all_are_kept_as_they_are(monkeypatch):
 
 @pytest.mark.parametrize("damage", ["", "no json", "[]"])
 def test_kept_plans_that_cannot_be_read_are_made_anew(monkeypatch, damage):
-    monkeypatch.setattr(planning, "_planned", lambda *_: Plan(PHASE, 4))
+    monkeypatch.setattr(planning, "_compute_plan", lambda *_: Plan(PHASE, 4))
     reversal(1, DEFAULTS)
     planning._file().write_text(damage)
     assert reversal(1, DEFAULTS) == Plan(PHASE, 4)

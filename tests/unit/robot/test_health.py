@@ -14,6 +14,7 @@ from robot.health import Unwell, examine, main
 from robot.loop import Loop
 from robot.motors import MonotonicClock
 from robot.server import Server
+from robot.sources import of_robot
 from tests.rig import TOKEN, Motor
 
 
@@ -64,7 +65,12 @@ def program(answers):
 
 
 def hello(**changes):
-    answer = {"software": health.__version__, "nonce": "00" * wire.NONCE_BYTES, "boot": "1"}
+    answer = {
+        "software": health.__version__,
+        "sources": of_robot(),
+        "nonce": "00" * wire.NONCE_BYTES,
+        "boot": "1",
+    }
     return wire.encode_json(wire.HELLO, {**answer, **changes})
 
 
@@ -111,7 +117,9 @@ def test_one_with_another_token_is_not():
     [
         (b"", "hangs up"),
         (b"HTTP/1.1 400 Bad Request\r\n\r\n", "hangs up"),
-        (hello(software="9.9.9"), "of release 9.9.9"),
+        (hello(software="9.9.9"), "release 9.9.9"),
+        (hello(sources="0123456789abcdef"), "sources 0123456789abcdef"),
+        (hello(sources=None), "sources None"),
         (hello() + wire.encode_json(wire.AUTH, {"proof": "00" * 32}), "does not have the token"),
     ],
 )

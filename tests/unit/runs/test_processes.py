@@ -17,14 +17,14 @@ def _two_cores(monkeypatch):
 
 
 def test_cells_side_by_side_come_to_the_same_as_one_by_one():
-    found = dict(processes.side_by_side(operator.call, [abs, float, str], -3))
+    found = dict(processes.compute_in_processes(operator.call, [abs, float, str], -3))
     assert found == {abs: 3, float: -3.0, str: "-3"}
-    assert dict(processes.side_by_side(operator.call, [abs], -3)) == {abs: 3}
+    assert dict(processes.compute_in_processes(operator.call, [abs], -3)) == {abs: 3}
 
 
 def test_work_that_is_broken_off_leaves_no_process_behind():
     """What sleeps for an hour is not waited for."""
-    work = processes.side_by_side(operator.call, [float, time.sleep], 3600.0)
+    work = processes.compute_in_processes(operator.call, [float, time.sleep], 3600.0)
     assert next(work) == (float, 3600.0)
     left = active_children()
     work.close()
@@ -34,10 +34,10 @@ def test_work_that_is_broken_off_leaves_no_process_behind():
 
 
 def test_a_process_that_dies_is_an_error_in_words():
-    with pytest.raises(NotDone, match="ended from outside"):
-        list(processes.side_by_side(operator.call, [os._exit, float], 3))
+    with pytest.raises(NotDone, match="ended a process"):
+        list(processes.compute_in_processes(operator.call, [os._exit, float], 3))
 
 
 def test_an_error_in_a_cell_is_that_error_here():
     with pytest.raises(ZeroDivisionError):
-        list(processes.side_by_side(operator.truediv, [1, 2], 0))
+        list(processes.compute_in_processes(operator.truediv, [1, 2], 0))
