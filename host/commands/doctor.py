@@ -20,6 +20,7 @@ from host.errors import KickctlError
 from host.util import requirements
 from host.util.installation import deploy_command, install_command
 from robot import __version__
+from robot.sources import of_robot
 from robot.token import TokenError, default_path, load
 
 HELP = "check this machine, the link and the robot, and say what to mend"
@@ -137,6 +138,7 @@ def _robot(robot: Robot) -> Iterator[Finding]:
         f"host {__version__}, robot {hello['software']}",
         "" if same else "run the same release on both",
     )
+    yield _sources(hello.get("sources", ""))
     yield Finding(
         "access",
         "token accepted" if robot.trusted else "no token: you may look, and stop the robot",
@@ -166,6 +168,17 @@ def _robot(robot: Robot) -> Iterator[Finding]:
     )
     yield _battery(status["battery_v"])
     yield _punctuality(status)
+
+
+def _sources(robots: str) -> Finding:
+    """Whether robot and host run the same code: two checkouts can have one version."""
+    if robots == of_robot():
+        return Finding("sources", "robot and host run the same")
+    return Finding(
+        "sources",
+        "robot and host run different ones" if robots else "the robot's release does not say them",
+        f"bring this release to the robot: {deploy_command()}",
+    )
 
 
 def _battery(volts: float | None) -> Finding:

@@ -19,26 +19,19 @@ if TYPE_CHECKING:
 class Log:
     """Records and events of one subscription; a Tap.
 
-<<<<<<< HEAD
     Args:
         info: What was run; see below.
-=======
-    `info` says what was run, in plain JSON data; what is unknown is left out:
-    host_software, robot_software, sources (their fingerprint here), robot_sources, commit, brick (URI), host_machine, robot_machine (as the robot's hello names it), seed, boot,
-    params, polarity, battery_v, clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601); and
-    truncated (True) if the log was read from a file that breaks off or is damaged.
->>>>>>> e30c87f (Keep results, plans and logs under a fingerprint of the sources)
 
     Attributes:
         records: One Record for each tick, oldest first.
         events: What changed the robot's course, as dictionaries, oldest first.
         places: `places[i]` is the number of records that came before `events[i]`, so
             `records[places[i]]` is the first record that this event concerns.
-        info: What was run, in plain JSON data: host_software, robot_software, commit, brick (its
-            address), host_machine, robot_machine, seed, boot, params, polarity, battery_v,
-            clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601),
-            and truncated (True) if the log was read from a file that breaks off or is damaged.
-            What is unknown is left out.
+        info: What was run, in plain JSON data: host_software, robot_software, sources and
+            robot_sources (fingerprints of their code), commit, brick (its address), host_machine,
+            robot_machine, seed, boot, params, polarity, battery_v, clock_zero_s (Unix time at which
+            the robot's clock showed 0), started_utc (ISO 8601), and truncated (True) if the log was
+            read from a file that breaks off or is damaged. What is unknown is left out.
     """
 
     def __init__(self, info: dict[str, Any] | None = None) -> None:

@@ -1,12 +1,13 @@
-"""Does the cells of an experiment on robots.
+"""Does the cells of an experiment on a robot.
 
-A simulated one for each cell, or the one that there is, tried again when it is disturbed.
+This is a new simulated robot for each cell, or a real one, which tries a cell again if something
+disturbs it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -21,12 +22,12 @@ from host.runs.folder import digest
 from host.runs.runner import Outcome, Work
 from host.util.installation import deploy_command
 from robot.params import TABLE
+from robot.sources import of_robot
 
-# A robot's cell is tried again when something else came between, a fault or a link that broke.
+# How often a real robot tries a cell if a fault or a stop disturbs it, and how long it waits between.
 TRIES = 3
 PAUSE_S = 1.0
-# The paper's parameters, with which every trial begins, whatever a robot was set to; it gets its
-# own back in the end.
+# The paper's parameters. Every trial begins with them; a real robot gets its own back in the end.
 PAPER = {
     name: TABLE[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")
 }
@@ -41,27 +42,55 @@ def robots(
     logs: Path,
     say: Callable[[str], None],
 ) -> Iterator[Work]:
-    """Yields what does a cell on a robot.
+    """Yields a function that does a cell on a robot, and stops a real robot in the end.
 
-    A simulated one of its own for each, or the one that there is, which is stopped in the end.
+    Raises:
+        NoLink: The robot cannot be reached.
+        NotDone: The robot runs other code than this host.
     """
     logs.mkdir(exist_ok=True)
     if sim_options(uri) is None:
         with connect(uri, token=token) as robot:
             robot.on_trouble = say
+            _require_same_sources(robot)
             own = {name: robot.status()["params"][name] for name in PAPER}
             try:
-                yield lambda cell: _patient(experiment, cell, robot, setting, logs, say)
-            finally:
-                robot.stop()
-                _set(robot, own)
+                yield lambda cell: _try_often(experiment, cell, robot, setting, logs, say)
+            except NoLink:
+                # The error that ended the run says more than one of a stop that nobody hears.
+                with suppress(NoLink):
+                    robot.stop()
+                raise
+            except BaseException:
+                _leave(robot, own)
+                raise
+            _leave(robot, own)
         return
 
-    def alone(cell: Cell) -> Outcome:
+    def simulate(cell: Cell) -> Outcome:
         with connect(_in_world(uri, experiment.world(cell)), setting.seed_of(cell)) as robot:
             return _trial(experiment, cell, robot, setting, logs), []
 
-    yield alone
+    yield simulate
+
+
+def _require_same_sources(robot: Robot) -> None:
+    """Raise NotDone if a real robot runs other code than this host.
+
+    Its results would be kept as if the code of this host had measured them. Robots of an older
+    release do not say what they run.
+    """
+    if robot.hello.get("sources", ours := of_robot()) != ours:
+        raise NotDone(
+            "the robot runs other sources than this host, so its results would not be this code's",
+            f"bring this release to the robot: {deploy_command()}",
+        )
+
+
+def _leave(robot: Robot, own: dict[str, Any]) -> None:
+    """Stop a real robot, and give its own parameters back to it."""
+    robot.stop()
+    _set(robot, own)
 
 
 def _in_world(uri: str, world: dict[str, str]) -> str:
@@ -72,7 +101,7 @@ def _in_world(uri: str, world: dict[str, str]) -> str:
 def _trial(
     experiment: Experiment, cell: Cell, robot: Robot, setting: Setting, logs: Path
 ) -> list[Row]:
-    """One try of a cell, with its raw log, which a cell's next try replaces."""
+    """Try a cell once. The log of the try replaces that of an earlier one."""
     path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
     _set(robot, PAPER)
@@ -90,21 +119,21 @@ def _trial(
             robot.remove_tap(file)
     if log.restarts() or log.missing():
         raise NotDone(
-            "the robot's program began anew meanwhile, or records were lost",
+            "the robot's program restarted meanwhile, or records were lost",
             f"look at its log: {deploy_command()} --logs",
         )
     return rows
 
 
 def _set(robot: Robot, wanted: dict[str, Any]) -> None:
-    """Set those parameters that are not as wanted."""
+    """Set those parameters that are not as wanted yet."""
     params = robot.status()["params"]
     changes = {name: value for name, value in wanted.items() if params[name] != value}
     if changes:
         robot.set(**changes)
 
 
-def _patient(
+def _try_often(
     experiment: Experiment,
     cell: Cell,
     robot: Robot,
@@ -112,7 +141,10 @@ def _patient(
     logs: Path,
     say: Callable[[str], None],
 ) -> Outcome:
-    """A cell on a real robot. A try into which a fault, a stop or a broken link came does not count; its reason is kept."""
+    """Do a cell on a real robot.
+
+    A try that a fault or a stop disturbs does not count. The reasons are kept.
+    """
     spoiled: list[str] = []
     while True:
         try:
@@ -127,5 +159,6 @@ def _patient(
                 robot.clear()
         except NoLink as error:
             raise NoLink(
-                error.message, error.hint or "mend the link, and run the same command again"
+                error.message,
+                error.hint or "mend the link, and run the same command again: it resumes the run",
             ) from error

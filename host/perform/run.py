@@ -40,29 +40,10 @@ def perform(
     say: Callable[[str], None] = lambda words: None,
     **arguments: Any,
 ) -> dict[str, Any]:
-<<<<<<< HEAD
-    """Run an experiment or a study of the model, or resume one that was cut short.
+    """Run an experiment or a study of the model, or resume it if it was interrupted.
 
     Args:
         name: Its name, as in `kickctl experiment NAME` or `kickctl theory NAME`.
-        uri: The robot's address, as `connect` takes it; a study has no robot.
-        seed: Fixes all chances, also those of a simulated robot.
-        token: The path of the token file, as `connect` takes it.
-        out: The folder for results; each set of arguments has a folder of its own there.
-        scheduler: The address of a Dask scheduler that spreads simulations.
-        say: Called with words for people.
-        arguments: The run's own options.
-
-    Returns:
-        The summary, which is also a file in the run's folder: claims, numbers, files.
-
-    Raises:
-        KickctlError: It cannot go on; what was measured until then is kept.
-=======
-    """Run an experiment or a study, or resume it if it was interrupted.
-
-    Args:
-        name: Which one.
         uri: The robot's address, as `connect` takes it. A study has no robot.
         seed: The random seed, also of a simulated robot; by default 1.
         token: The path of the robot's token file.
@@ -77,7 +58,6 @@ def perform(
 
     Raises:
         KickctlError: The run ended early. The cells that are complete are kept.
->>>>>>> e30c87f (Keep results, plans and logs under a fingerprint of the sources)
     """
     found = find(name)
     options = complete_options(name, found.entry, arguments)

@@ -248,6 +248,20 @@ def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(
     assert f"3 of {COUNT} cells complete" in said[-1]
 
 
+def test_a_robot_that_runs_other_code_is_refused_before_anything_moves(
+    toy, desk, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(run, "of_robot", lambda: "0123456789abcdef")
+    with pytest.raises(NotDone, match="other sources than this host") as refused:
+        perform("toy", desk[0], out=tmp_path)
+    assert "deploy" in refused.value.hint
+    assert toy.done == []
+
+
+def test_a_robot_that_does_not_say_its_sources_is_taken_as_it_is():
+    run._require_same_sources(types.SimpleNamespace(hello={"software": "0.1.0"}))
+
+
 def test_a_try_in_which_the_robots_program_began_anew_does_not_count(
     toy, desk, tmp_path, monkeypatch
 ):
@@ -264,7 +278,7 @@ def test_a_try_in_which_the_robots_program_began_anew_does_not_count(
     toy.trial = trial
     summary = perform("toy", desk[0], out=tmp_path)
     assert len(summary["spoiled"]) == 1
-    assert "began anew" in summary["spoiled"][0]
+    assert "restarted" in summary["spoiled"][0]
     assert toy.done == [0, 1, 1, 2, 3, 4, 5]
 
 

@@ -208,6 +208,22 @@ def test_doctor_finds_the_simulated_robot_well(kickctl):
     assert (status, json.loads(out)["well"]) == (0, True)
 
 
+@pytest.mark.parametrize(
+    ("own", "words"),
+    [("0123456789abcdef", "different ones"), ("", "does not say them")],
+)
+def test_doctor_says_whether_robot_and_host_run_the_same_sources(kickctl, monkeypatch, own, words):
+    findings = json.loads(kickctl("doctor", "--json")[1])["findings"]
+    (same,) = [finding for finding in findings if finding["what"] == "sources"]
+    assert (same["found"], same["remedy"]) == ("robot and host run the same", "")
+    monkeypatch.setattr("robot.session._SOURCES", own)
+    status, out, _ = kickctl("doctor", "--json")
+    (other,) = [one for one in json.loads(out)["findings"] if one["what"] == "sources"]
+    assert status == 1
+    assert words in other["found"]
+    assert "deploy" in other["remedy"]
+
+
 def test_doctor_points_at_an_open_token_file(kickctl):
     token = kickctl.folder / "token"
     token.write_text("00" * 32)
