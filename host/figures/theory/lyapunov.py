@@ -1,4 +1,4 @@
-"""Chaos: the force's time series, the largest exponent along k and over the plane, and how long chaotic transients live."""
+"""Chaos: a time series, the largest exponent along k and over the plane, and chaotic transients."""
 
 from __future__ import annotations
 
@@ -12,18 +12,31 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
-from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL
+from host.runs.contract import Findings
+from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL, Kind
 from host.theory.analysis.transients import ENTRY_S, FEWEST
+from host.theory.studies.lyapunov_rows import (
+    ANY,
+    ROLLS,
+    GridRow,
+    LifeRow,
+    LyapunovRow,
+    SeriesRow,
+    StartKind,
+    line_of,
+    lives_of,
+    plane_of,
+    series_of,
+)
 
 SHOWN_S = 40.0
-_COLOUR = {
+_COLOUR: dict[Kind, str] = {
     KINDS[REST]: COLOURS[6],
     KINDS[BACK]: COLOURS[4],
     KINDS[ROLL]: COLOURS[0],
     KINDS[CHAOS]: COLOURS[1],
 }
-_MARKER = {KINDS[REST]: "s", KINDS[BACK]: "^", KINDS[ROLL]: "o", KINDS[CHAOS]: "."}
+_MARKER: dict[Kind, str] = {KINDS[REST]: "s", KINDS[BACK]: "^", KINDS[ROLL]: "o", KINDS[CHAOS]: "."}
 _SMALL = 11
 _ABOVE: Any = {
     "loc": "lower left",
@@ -35,21 +48,18 @@ _ABOVE: Any = {
 }
 
 
-def draw(rows: list[Row], findings: Findings) -> Figure:
+def draw(rows: list[LyapunovRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     numbers = findings.numbers
-    parts: dict[str, list[Row]] = {}
-    for row in rows:
-        parts.setdefault(row["part"], []).append(row)
     constants = numbers["constants"]
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 14.5)})
         grid = figure.add_gridspec(4, 2, height_ratios=(2.0, 3.4, 3.6, 3.2))
-        _draw_series(figure.add_subplot(grid[0, :]), parts["series"], numbers)
-        _draw_line(figure.add_subplot(grid[1, :]), parts["line"], numbers)
+        _draw_series(figure.add_subplot(grid[0, :]), series_of(rows), numbers)
+        _draw_line(figure.add_subplot(grid[1, :]), line_of(rows), numbers)
         panels = [figure.add_subplot(grid[2, column]) for column in range(2)]
-        _draw_planes(figure, panels, parts["plane"], constants)
-        _draw_survival(figure.add_subplot(grid[3, 0]), parts.get("lives", []), numbers)
+        _draw_planes(figure, panels, plane_of(rows), constants)
+        _draw_survival(figure.add_subplot(grid[3, 0]), lives_of(rows), numbers)
         _draw_lives(figure.add_subplot(grid[3, 1]), numbers)
         figure.suptitle(_title(numbers), fontsize=16)
     return figure
@@ -70,7 +80,7 @@ def _rounded(value: float) -> str:
     return f"{round(value, 3) + 0.0:.3f}"
 
 
-def _draw_series(axes: Axes, series: list[Row], numbers: dict[str, Any]) -> None:
+def _draw_series(axes: Axes, series: list[SeriesRow], numbers: dict[str, Any]) -> None:
     shown = [row for row in series if row["t_s"] <= SHOWN_S]
     axes.plot(
         [row["t_s"] for row in shown], [row["force"] for row in shown], color="black", linewidth=1.3
@@ -86,7 +96,7 @@ def _draw_series(axes: Axes, series: list[Row], numbers: dict[str, Any]) -> None
     axes.set_title(f"spectrum: {spectrum} /s", fontsize=12, loc="left")
 
 
-def _draw_line(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None:
+def _draw_line(axes: Axes, rows: list[GridRow], numbers: dict[str, Any]) -> None:
     """Each wheel's largest exponent."""
     for kind in KINDS:
         own = [row for row in rows if row["kind"] == kind]
@@ -146,15 +156,18 @@ def _draw_line(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None:
 
 
 def _draw_planes(
-    figure: Figure, panels: list[Axes], rows: list[Row], constants: dict[str, Any]
+    figure: Figure, panels: list[Axes], rows: list[GridRow], constants: dict[str, Any]
 ) -> None:
     """The largest exponent over the plane, of either start."""
-    titles = {"any": "wheels that start anyhow", "rolls": "wheels that roll at first"}
+    titles: dict[StartKind, str] = {
+        ANY: "wheels that start anyhow",
+        ROLLS: "wheels that roll at first",
+    }
     most = max(0.2, *(row["exponent"] for row in rows))
     norm = TwoSlopeNorm(0.0, -1.0, most)
     for axes, start in zip(panels, titles, strict=True):
         own = [row for row in rows if row["start"] == start]
-        ks, taus = (sorted({row[name] for row in own}) for name in ("k", "tau"))
+        ks, taus = sorted({row["k"] for row in own}), sorted({row["tau"] for row in own})
         values = np.full((len(taus), len(ks)), np.nan)
         for row in own:
             values[taus.index(row["tau"]), ks.index(row["k"])] = row["exponent"]
@@ -177,8 +190,8 @@ def _draw_planes(
     bar.set_label(r"$\lambda_1$ (1/s); $\bigstar$: the point above")
 
 
-def _draw_survival(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None:
-    """What part of the wheels still switches, with the exponential of the same mean."""
+def _draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: dict[str, Any]) -> None:
+    """The share of wheels that still switch, with the exponential of the same mean."""
     shown = [entry for entry in numbers["lives"] if entry["ended"] >= FEWEST][-4:]
     if not shown:
         axes.set_title("chaotic transients", fontsize=13, loc="left")
@@ -186,7 +199,7 @@ def _draw_survival(axes: Axes, rows: list[Row], numbers: dict[str, Any]) -> None
         return
     longest = 0.0
     for entry, colour in zip(shown, COLOURS, strict=False):
-        own = [row for row in rows if row["k"] == entry["k"] and row["life_s"] > ENTRY_S]
+        own = [row for row in lives[entry["k"]] if row["life_s"] > ENTRY_S]
         ended = np.sort([row["life_s"] - ENTRY_S for row in own if row["ended"]])
         axes.step(
             np.append(0.0, ended),

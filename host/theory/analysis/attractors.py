@@ -8,7 +8,7 @@ periodic or quasi-periodic, and slowly if it is chaotic (Das, Sander, Yorke et a
 from __future__ import annotations
 
 from math import pi
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numba
 import numpy as np
@@ -18,8 +18,9 @@ from host.theory.engine.elementary import OPTIONS, sin
 from host.theory.engine.ensemble import FINE, advance, wheel_rates
 from host.theory.model.wheel import OMEGA, Array
 
+Kind = Literal["at rest", "forth-and-back", "rolling", "chaotic"]
+KINDS: tuple[Kind, ...] = ("at rest", "forth-and-back", "rolling", "chaotic")
 REST, BACK, ROLL, CHAOS = range(4)
-KINDS = ("at rest", "forth-and-back", "rolling", "chaotic")
 
 # Two windows agree if their averages differ by less than this part of the motion's size.
 AGREE = 3e-4
@@ -104,7 +105,7 @@ def watch(states: Array, parameters: Array, seconds: float, fineness: float = FI
     return Watched(last[0], np.sqrt(np.maximum(last[1] - last[0] ** 2, 0.0)), last[2], apart, ended)
 
 
-def settled(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:
+def settle(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:
     """The states of wheels after some time.
 
     As `advance`, with less to compile for those that watch them too.
@@ -112,7 +113,7 @@ def settled(states: Array, parameters: Array, seconds: float, fineness: float = 
     return window(states, parameters, seconds, fineness)[1]
 
 
-def starts(count: int, rng: np.random.Generator, fastest: float = 20.0) -> Array:
+def random_starts(count: int, rng: np.random.Generator, fastest: float = 20.0) -> Array:
     """Random states: any angle, any speed (rad/s) up to `fastest`, and potentials that remember another angle, (4, count)."""
     remembered, phi = rng.uniform(-pi, pi, (2, count))
     return np.array(

@@ -15,7 +15,7 @@ import numba
 import numpy as np
 import sympy
 
-from host.theory.analysis.attractors import settled
+from host.theory.analysis.attractors import settle
 from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
 from host.theory.engine.ensemble import FINE, advance, rate_per_s
 from host.theory.model.symbolic import CONSTANTS, STATE, field, jacobian_at
@@ -116,7 +116,7 @@ def pair_growth(states: Array, parameters: Array, seconds: float, fineness: floa
     rates = np.empty((rounds, wheels))
     for step in range(rounds):
         away *= PAIR_DISTANCE / np.linalg.norm(away, axis=0)
-        both = settled(np.hstack([states, states + away]), columns, seconds / rounds, fineness)
+        both = settle(np.hstack([states, states + away]), columns, seconds / rounds, fineness)
         states, away = both[:, :wheels], both[:, wheels:] - both[:, :wheels]
         rates[step] = np.log(np.linalg.norm(away, axis=0) / PAIR_DISTANCE) * (rounds / seconds)
     return rates

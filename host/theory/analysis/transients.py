@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import expon, goodness_of_fit
 
-from host.theory.analysis.attractors import CHAOS, settled, starts, watch
+from host.theory.analysis.attractors import CHAOS, random_starts, settle, watch
 from host.theory.model.wheel import OMEGA, Array, Wheel
 
 # A wheel that has not turned round for so long has stopped switching: near the edge of its basin,
@@ -41,7 +41,7 @@ def lives(states: Array, parameters: Array, most_s: float, fineness: float) -> L
     """Follow wheels until all have stopped switching, at most for most_s."""
     last, sign, now = np.zeros(states.shape[1]), np.sign(states[OMEGA]), 0.0
     while now < most_s and now - last.max() <= QUIET_S:
-        states = settled(states, parameters, LOOK_S, fineness)
+        states = settle(states, parameters, LOOK_S, fineness)
         now += LOOK_S
         turned = np.sign(states[OMEGA]) != sign
         last[turned], sign = now, np.sign(states[OMEGA])
@@ -58,9 +58,9 @@ def least_chaotic_k(wheel: Wheel, most_k: float, fineness: float) -> float | Non
     for _ in range(2):
         ks = np.linspace(low, high, SEARCH_STEPS + 1)[1:]
         parameters = wheel.columns(SEARCH_STEPS * SEARCH_WHEELS, k=np.repeat(ks, SEARCH_WHEELS))
-        begin = starts(parameters.shape[1], np.random.default_rng(0))
+        begin = random_starts(parameters.shape[1], np.random.default_rng(0))
         kinds = watch(
-            settled(begin, parameters, SEARCH_S, fineness), parameters, SEARCH_S / 2, fineness
+            settle(begin, parameters, SEARCH_S, fineness), parameters, SEARCH_S / 2, fineness
         ).kinds()
         found = np.flatnonzero(
             np.mean(kinds.reshape(SEARCH_STEPS, SEARCH_WHEELS) == CHAOS, axis=1) >= 0.5

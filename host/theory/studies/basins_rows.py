@@ -65,8 +65,8 @@ class Start(TypedDict):
         phi: angle at the start (rad).
         omega: angular velocity at the start (rad/s).
         outcome: what the wheel does in the end, one of OUTCOMES.
-        quarters: number of the well that the wheel ends in, in quarter turns from phi = 0, full turns
-            included; None if it ends in none, and without springs, which make the wells.
+        quarters: number of the well that the wheel ends in, in quarter turns from phi = 0, full
+            turns included; None if it ends in none, and without springs, which make the wells.
     """
 
     phi: float

@@ -1,19 +1,16 @@
-"""Exponents against eigenvalues, symmetries and a second algorithm; kinds of attractors.
-
-Transients against lives made up.
-"""
+"""Exponents against eigenvalues, symmetries and a second algorithm; attractors and transients."""
 
 import json
 
 import numpy as np
 import pytest
 
-import host.theory.studies.lyapunov as study
 from host.errors import WrongUse
 from host.perform.run import perform
 from host.runs.claims import Claim
 from host.runs.contract import Setting
-from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL, settled, starts, watch
+from host.theory.analysis import transients
+from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL, random_starts, settle, watch
 from host.theory.analysis.tangent import (
     divergence,
     growth,
@@ -26,6 +23,8 @@ from host.theory.analysis.transients import crisis, lives, sample
 from host.theory.model.symbolic import jacobian_at
 from host.theory.model.turning import begun_rolling
 from host.theory.model.wheel import PHI, Wheel, rates, resting
+from host.theory.studies import lyapunov as study
+from host.theory.studies import lyapunov_pieces as pieces
 from host.theory.studies.route_to_chaos import rolling_end
 
 RESTING, SWINGING, ROLLING, CHAOTIC = (
@@ -45,12 +44,12 @@ def _chance():
 def chaotic():
     """Chaotic wheels on their attractor."""
     parameters = CHAOTIC.columns(64)
-    return settled(starts(64, _chance()), parameters, 60.0), parameters
+    return settle(random_starts(64, _chance()), parameters, 60.0), parameters
 
 
 def test_a_vector_is_driven_as_a_small_difference_is():
     rng, step = _chance(), 1e-6
-    state, vector = starts(1, rng)[:, 0], rng.normal(size=4)
+    state, vector = random_starts(1, rng)[:, 0], rng.normal(size=4)
     out = np.empty((8, 1))
     tangent_rates(np.concatenate([state, vector])[:, None], CHAOTIC.columns(1), out)
     ahead, behind = (np.array(rates(*(state + sign * step * vector), *CHAOTIC)) for sign in (1, -1))
@@ -73,7 +72,7 @@ def test_a_wheel_that_balances_is_not_chaotic_though_what_is_near_it_parts():
 
 def test_along_a_cycle_one_exponent_is_0_and_the_others_are_negative():
     parameters = ROLLING.columns(1)
-    begin = settled(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
+    begin = settle(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
     found = growth(begin, parameters, 100.0, 4)
     exponents = smooth_mean(found.rates)[:, 0]
     assert exponents[0] == pytest.approx(0.0, abs=1e-3)
@@ -101,13 +100,13 @@ def test_both_algorithms_find_the_same_positive_exponent(chaotic):
 
 def test_neither_algorithm_finds_growth_on_a_cycle():
     parameters = ROLLING.columns(1)
-    begin = settled(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
+    begin = settle(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
     assert smooth_mean(pair_growth(begin, parameters, 100.0)) == pytest.approx(0.0, abs=1e-3)
 
 
 def test_vectors_in_the_mirror_grow_alike():
     mirror = np.array([1.0, -1.0, -1.0, -1.0])[:, None]
-    state, parameters = starts(1, _chance()), CHAOTIC.columns(1)
+    state, parameters = random_starts(1, _chance()), CHAOTIC.columns(1)
     vector = _chance().normal(size=(1, 4, 1))
     plain, other = (
         growth(sign * state, parameters, 4.0, vectors=vector * sign.reshape(1, 4, 1)).rates
@@ -135,7 +134,7 @@ def test_dimensions(exponents, dimension):
 )
 def test_kinds_at_the_papers_points(wheel, kind):
     parameters = wheel.columns(16)
-    seen = watch(settled(starts(16, _chance()), parameters, 150.0), parameters, 100.0)
+    seen = watch(settle(random_starts(16, _chance()), parameters, 150.0), parameters, 100.0)
     assert (seen.kinds() == kind).all()
     assert ((seen.apart > 1e-3) == (kind == CHAOS)).all()
 
@@ -144,20 +143,20 @@ def test_what_still_settles_is_not_called_chaos():
     """Just above the Hopf point a cycle takes very long to grow to its size."""
     parameters = RESTING._replace(k=1.55).columns(8)
     for seconds in (1.0, 5.0, 20.0):
-        seen = watch(settled(resting(np.full(8, 0.02)), parameters, seconds), parameters, 20.0)
+        seen = watch(settle(resting(np.full(8, 0.02)), parameters, seconds), parameters, 20.0)
         assert np.isin(seen.kinds(), (REST, BACK)).all()
 
 
 def test_smooth_averages_are_the_plain_ones_of_long_times():
     parameters, seconds = ROLLING.columns(1), 1000.0
-    begin = settled(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
-    plain = (settled(begin, parameters, seconds)[PHI] - begin[PHI]) / seconds
+    begin = settle(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
+    plain = (settle(begin, parameters, seconds)[PHI] - begin[PHI]) / seconds
     assert watch(begin, parameters, 60.0).omega_mean == pytest.approx(plain, rel=1e-5)
 
 
 def test_lives_are_those_of_switching_only():
     wheel = Wheel(k=4.4, tau_s=1.0)
-    begin = np.hstack([starts(31, _chance()), begun_rolling(wheel.columns(1))])
+    begin = np.hstack([random_starts(31, _chance()), begun_rolling(wheel.columns(1))])
     found = lives(begin, wheel.columns(32), 1000.0, 0.6)
     assert found.ended.all()
     assert found.life_s[-1] == 0.0
@@ -229,24 +228,29 @@ def test_longer_runs_are_more_pieces_of_the_same_length():
 @pytest.fixture
 def small(monkeypatch):
     """A study that takes seconds."""
-    for name, value in {
-        "WHEELS": 8,
-        "LINE_KS": 8,
-        "LINE_WHEELS": 2,
-        "LINE_BAND": 8,
-        "PLANE": 4,
-        "ROLLING_KS": 8,
-        "LIVES_AT": (0.0,),
-        "LIVES_WHEELS": 8,
-        "LIVES_S": 70.0,
-        "CHECKED": 8,
-        "SERIES_S": 60.0,
-        "SETTLE_S": 60.0,
-        "MEASURE_S": 20.0,
-    }.items():
-        monkeypatch.setattr(study, name, value)
-    monkeypatch.setattr("host.theory.analysis.transients.SEARCH_STEPS", 4)
-    monkeypatch.setattr("host.theory.analysis.transients.SEARCH_S", 60.0)
+    sizes = {
+        study: {
+            "LINE_KS": 8,
+            "LINE_WHEELS": 2,
+            "LINE_BAND": 8,
+            "PLANE": 4,
+            "ROLLING_KS": 8,
+            "LIVES_AT": (0.0,),
+        },
+        pieces: {
+            "WHEELS": 8,
+            "LIVES_WHEELS": 8,
+            "LIVES_S": 70.0,
+            "CHECKED": 8,
+            "SERIES_S": 60.0,
+            "SETTLE_S": 60.0,
+            "MEASURE_S": 20.0,
+        },
+        transients: {"SEARCH_STEPS": 4, "SEARCH_S": 60.0},
+    }
+    for module, values in sizes.items():
+        for name, value in values.items():
+            monkeypatch.setattr(module, name, value)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,203 @@
+"""What each piece of the study `lyapunov` computes."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from host.theory.analysis.attractors import KINDS, ROLL, random_starts, settle, watch
+from host.theory.analysis.tangent import divergence, growth, pair_growth, smooth_mean
+from host.theory.analysis.transients import least_chaotic_k, lives
+from host.theory.model.turning import begun_rolling
+from host.theory.model.wheel import Array, Wheel, numpy_rates
+from host.theory.studies.lyapunov_rows import (
+    ANY,
+    ROLLS,
+    Attractor,
+    Block,
+    Damping,
+    GridPoint,
+    Life,
+    SeriesSample,
+    StartKind,
+    StepCheck,
+)
+
+# How long wheels settle (at least), are watched, and are measured, s.
+SETTLE_S, WATCH_S, MEASURE_S = 200.0, 100.0, 100.0
+# Steps where a kind and an exponent are enough (see host.theory.engine.ensemble); the part `check`
+# measures how good that is.
+FINENESS = 0.6
+# Wheels of the spectrum, how long their vectors turn into place, and the length of a block, s: much
+# longer than a chaotic wheel remembers.
+WHEELS, ALIGN_S, BLOCK_S = 64, 20.0, 100.0
+SERIES_S, SAMPLE_S = 300.0, 0.03
+# Wheels whose lives are measured, and how long they are followed, s.
+LIVES_WHEELS, LIVES_S = 256, 2000.0
+CHECKED = 256
+
+
+def _settle_s(tau_s: float) -> float:
+    """How long to wait for an attractor, s."""
+    return max(SETTLE_S, 20 * tau_s)
+
+
+def spectrum_in_blocks(wheel: Wheel, seconds: float, rng: np.random.Generator) -> list[Block]:
+    """The spectrum of WHEELS wheels, each followed for some seconds."""
+    parameters = wheel.columns(WHEELS)
+    settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau_s))
+    before = watch(settled, parameters, WATCH_S)
+    aligned = growth(before.states, parameters, ALIGN_S, 4)
+    spectrum = growth(aligned.states, parameters, seconds, 4, aligned.vectors)
+    pairs = pair_growth(aligned.states, parameters, seconds)
+    after = watch(spectrum.states, parameters, WATCH_S)
+    blocks = max(1, round(seconds / BLOCK_S))
+    means = np.array([block.mean(axis=0) for block in np.array_split(spectrum.rates, blocks)])
+    pair_means = np.array([block.mean(axis=0) for block in np.array_split(pairs, blocks)])
+    return [
+        {
+            "wheel": own,
+            "kind": KINDS[before.kinds()[own]],
+            "kind_after": KINDS[after.kinds()[own]],
+            "omega_mean": float(after.omega_mean[own]),
+            "omega_std": float(after.omega_std[own]),
+            "block": block,
+            "exponent_1": float(means[block, 0, own]),
+            "exponent_2": float(means[block, 1, own]),
+            "exponent_3": float(means[block, 2, own]),
+            "exponent_4": float(means[block, 3, own]),
+            "by_pairs": float(pair_means[block, own]),
+        }
+        for own in range(WHEELS)
+        for block in range(blocks)
+    ]
+
+
+def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
+    """One wheel, sampled every SAMPLE_S; a chaotic one if any is."""
+    parameters = wheel.columns(WHEELS)
+    settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau_s))
+    seen = watch(settled, parameters, WATCH_S)
+    start = seen.states[:, int(seen.kinds().argmax())]
+    times = SAMPLE_S * np.arange(round(SERIES_S / SAMPLE_S))
+    path = solve_ivp(
+        lambda _, state: numpy_rates(*state, *wheel),
+        (0.0, SERIES_S),
+        start,
+        "DOP853",
+        times,
+        rtol=1e-9,
+        atol=1e-9,
+    ).y
+    _, _, phi, omega = path
+    force = wheel.inertia * numpy_rates(*path, *wheel)[3] + wheel.friction * omega
+    columns = (times.tolist(), phi.tolist(), omega.tolist(), force.tolist())
+    return [
+        {"t_s": time_s, "phi_rad": angle, "omega": speed, "force": own}
+        for time_s, angle, speed, own in zip(*columns, strict=True)
+    ]
+
+
+def _attractors(parameters: Array, starts: Array, fineness: float = FINENESS) -> list[Attractor]:
+    """The attractor of each wheel, after it has settled."""
+    slowest = float(parameters[Wheel._fields.index("tau_s")].max())
+    settled = settle(starts, parameters, _settle_s(slowest), fineness)
+    seen = watch(settled, parameters, WATCH_S, fineness)
+    rates = growth(seen.states, parameters, MEASURE_S, fineness=fineness).rates
+    columns = (seen.kinds(), smooth_mean(rates)[0], seen.omega_mean, seen.omega_std)
+    return [
+        {"kind": KINDS[kind], "exponent": exponent, "omega_mean": mean, "omega_std": std}
+        for kind, exponent, mean, std in zip(*(own.tolist() for own in columns), strict=True)
+    ]
+
+
+def from_both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -> list[GridPoint]:
+    """The attractors of wheels with these constants, (6, points), `wheels` of either start each."""
+    columns = np.repeat(parameters, wheels, axis=1)
+    count = columns.shape[1]
+    anywhere = random_starts(count, rng)
+    rolling_ones = begun_rolling(columns) + 1e-3 * rng.normal(size=(4, count))
+    both = np.tile(columns, (1, 2))
+    found = _attractors(both, np.hstack([anywhere, rolling_ones]))
+    taus, ks = (both[Wheel._fields.index(name)].tolist() for name in ("tau_s", "k"))
+    starts: list[StartKind] = [ANY] * count + [ROLLS] * count
+    return [
+        {"tau": tau, "k": k, "start": start, **own}
+        for tau, k, start, own in zip(taus, ks, starts, found, strict=True)
+    ]
+
+
+def rolling(wheel: Wheel, ks: Array) -> list[Damping]:
+    """The damping along k, (points,), and again close to the last k at which rolling lasts."""
+    rows = _damping(wheel, ks)
+    last = next((row["k"] for row in reversed(rows) if row["kind"] == KINDS[ROLL]), None)
+    if last is None:
+        return rows
+    step = ks[1] - ks[0]
+    near = np.linspace(max(step / 2, last - 2 * step), last + step, len(ks))
+    return [*rows, *_damping(wheel, near)]
+
+
+def _damping(wheel: Wheel, ks: Array) -> list[Damping]:
+    """How fast disturbances of a rolling wheel die out.
+
+    Of a cycle's four exponents one is 0 and one is fast. The mean of the other two follows from the
+    fast one and the exact sum of all; if the two are a complex pair, it is far more accurate than
+    each of them.
+    """
+    parameters = wheel.columns(len(ks), k=ks)
+    settled = settle(begun_rolling(parameters), parameters, 2 * _settle_s(wheel.tau_s))
+    seen = watch(settled, parameters, WATCH_S)
+    exponents = smooth_mean(growth(seen.states, parameters, MEASURE_S, 4).rates)
+    pairs = (divergence(wheel) - exponents[3]) / 2
+    columns = (ks, seen.kinds(), seen.apart, pairs, exponents[1], exponents[2])
+    return [
+        {
+            "k": k,
+            "kind": KINDS[kind],
+            "apart": apart,
+            "pair": pair,
+            "exponent_2": second,
+            "exponent_3": third,
+        }
+        for k, kind, apart, pair, second, third in zip(
+            *(own.tolist() for own in columns), strict=True
+        )
+    ]
+
+
+def lives_near_chaos(
+    wheel: Wheel, offset: float, most_k: float, rng: np.random.Generator
+) -> list[Life]:
+    """How long wheels switch at the least k with chaos, times 1 + offset; none without chaos."""
+    least = least_chaotic_k(wheel, most_k, FINENESS)
+    if least is None:
+        return []
+    k = least * (1 + offset)
+    parameters = wheel._replace(k=k).columns(LIVES_WHEELS)
+    found = lives(random_starts(LIVES_WHEELS, rng), parameters, LIVES_S, FINENESS)
+    columns = (found.life_s.tolist(), found.ended.tolist())
+    return [
+        {"k": k, "life_s": life_s, "ended": ended} for life_s, ended in zip(*columns, strict=True)
+    ]
+
+
+def step_check(wheel: Wheel, ks: Array, taus_s: Array, rng: np.random.Generator) -> list[StepCheck]:
+    """Random points of the plane with these axes, with ordinary steps and with half of these."""
+    own_ks, own_taus = rng.choice(ks, CHECKED), rng.choice(taus_s, CHECKED)
+    parameters = wheel.columns(CHECKED, k=own_ks, tau_s=own_taus)
+    starts = random_starts(CHECKED, rng)
+    plain = _attractors(parameters, starts)
+    finer = _attractors(parameters, starts, 2 * FINENESS)
+    columns = (own_taus.tolist(), own_ks.tolist(), plain, finer)
+    return [
+        {
+            "tau": tau,
+            "k": k,
+            **own,
+            "kind_finer": other["kind"],
+            "exponent_finer": other["exponent"],
+            "speed_off_by": abs(abs(own["omega_mean"]) - abs(other["omega_mean"])),
+        }
+        for tau, k, own, other in zip(*columns, strict=True)
+    ]
