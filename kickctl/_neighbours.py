@@ -1,4 +1,4 @@
-"""Notice other programs' packages that have the names of ours, before they are imported in their place.
+"""Notice foreign packages that have the names of ours, before Python takes them for ours.
 
 kickctl's parts are the packages robot, host and sim_motor beside this one. These names are common:
 Robot Framework is a package `robot`, and a notebook's folder may hold a file robot.py.
@@ -39,7 +39,7 @@ def check() -> None:
 
 
 def complaint(name: str) -> str:
-    """What is wrong with the place where Python finds a part, and what to do; empty if it is ours."""
+    """What is wrong with the part that Python finds, and what to do; empty if it is ours."""
     place = _place(name)
     if place is None:
         return (
@@ -65,7 +65,7 @@ def _place(name: str) -> Path | None:
     """The file or the folder that `import name` leads to, or has led to; None if there is none."""
     try:
         spec = find_spec(name)
-    except ValueError:  # a module without a spec, made by hand
+    except ValueError:  # a module that a program has built by hand
         return Path(getattr(sys.modules[name], "__file__", None) or "no file")
     return None if spec is None else _place_of(spec)
 

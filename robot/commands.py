@@ -1,4 +1,4 @@
-"""The robot's tables of what it can be asked (by anyone) and told (by the host that holds the lease)."""
+"""The table of the robot's commands: what anyone may ask, and what the host with the lease may."""
 
 from collections import OrderedDict, namedtuple
 
@@ -133,7 +133,7 @@ _ROWS = (
     Command("lease", True, (), "take control; refused while another host has it", _lease),
     Command("release", True, (), "give control back; the robot goes on as it is", _release),
     Command(
-        "heartbeat", True, (), "tell the robot that the host that controls it is alive", _heartbeat
+        "heartbeat", True, (), "show the robot that the host that controls it is alive", _heartbeat
     ),
     Command("start", True, (), "run, from random membrane potentials", _controlled(_start)),
     Command(
@@ -159,14 +159,28 @@ TABLE = OrderedDict((row.name, row) for row in _ROWS)
 
 
 def describe():
-    """The commands as a list of plain dictionaries, as the robot serves them."""
+    """The table as it goes over the wire.
+
+    Returns:
+        A list of dictionaries: name, sealed, arguments, doc.
+    """
     return [OrderedDict(zip(Command._fields[:-1], row)) for row in _ROWS]
 
 
 def execute(loop, session, message, sealed):
-    """Carry out a message that names a command; `sealed` tells whether it came with a valid MAC.
+    """Carry out a command.
 
-    Returns the result, or raises Refused.
+    Args:
+        loop: The robot, a robot.loop.Loop.
+        session: The peer's conversation.
+        message: The request: `do` names the command, its arguments stand beside it.
+        sealed: Whether the request came with a valid MAC.
+
+    Returns:
+        The result, a dictionary.
+
+    Raises:
+        Refused: Nothing was done, and nothing has changed.
     """
     name = message.get("do")
     row = TABLE.get(name) if isinstance(name, str) else None

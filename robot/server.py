@@ -1,4 +1,4 @@
-"""Non-blocking links: TCP connections and serial lines, served in the time that a tick leaves, never longer."""
+"""Non-blocking links, TCP and serial, served in the time between two ticks and no longer."""
 
 import errno
 import os
@@ -10,21 +10,27 @@ from robot.session import Session, new_id
 
 MAX_PEERS = 8
 READ_BYTES = 2048
-# A peer that does not read is not read from either beyond this; its records wait in the black box.
+# Beyond this a peer that does not read is not read from either; its records wait in the black box.
 FULL_BYTES = 65536
 STREAM_BYTES = 16384
-# The kernel's part of what waits for a peer, which would grow to megabytes by itself.
+# The kernel's buffer for a peer, which would grow to megabytes by itself.
 SEND_BUFFER_BYTES = 65536
 GREETING_S = 5.0
 LINE_RETRY_S = 1.0
-# Nobody pauses for so long within a frame: what a line that is silent seems to have begun was
-# noise.
+# Nobody pauses for this long within a frame: what looks like the beginning of one was noise.
 LINE_SILENCE_S = 0.2
 _LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
 
 
 class Peer(object):
-    """One open link: its bytes in and out, and the conversation over it."""
+    """One open link: its bytes in and out, and the conversation over it.
+
+    Args:
+        link: Has fileno() and close(), and does not block.
+        session: The conversation, a robot.session.Session.
+        since: When the link was opened, by the robot's clock (s).
+        lasting: Whether it is a serial line, which stays open through noise and silence.
+    """
 
     def __init__(self, link, session, since, lasting):
         self.link = link
@@ -36,7 +42,14 @@ class Peer(object):
         self.out = bytearray()
 
     def read(self, now):
-        """Take in what has arrived. False if the link is at its end."""
+        """Take in what has arrived.
+
+        Args:
+            now: The robot's clock (s).
+
+        Returns:
+            Whether the link is still open.
+        """
         if self.lasting and not select.select((self.fd,), (), (), 0.0)[0]:
             # Without anything to read a serial line answers with nothing, as it does at its end; a
             # connection says "later".
@@ -53,12 +66,16 @@ class Peer(object):
         return bool(data)
 
     def answer(self):
-        """Answer one frame if one is whole. Returns whether there was one."""
+        """Answer one frame if a whole one has arrived.
+
+        Returns:
+            Whether there was one.
+        """
         if self.session.closing or len(self.out) >= FULL_BYTES:
             return False
         frame = self.decoder.next()
         if self.decoder.discarded and not self.lasting:
-            # TCP delivers what was sent, so this peer sends something else than frames.
+            # TCP delivers what was sent, so this peer does not send frames.
             self.out += self.session.refuse(
                 "broken", "that was no frame", "see PROTOCOL.md for what the robot understands"
             )
@@ -68,7 +85,11 @@ class Peer(object):
         return False
 
     def write(self):
-        """Send what the link takes now. False if it is at its end."""
+        """Send what the link takes now.
+
+        Returns:
+            Whether the link is still open.
+        """
         while not self.session.closing and len(self.out) < STREAM_BYTES:
             frame = self.session.stream()
             if frame is None:
@@ -96,7 +117,12 @@ class _Line(object):
 
 
 class Server(object):
-    """All links of a robot. `serve` is what the loop's clock calls while it waits for the next tick."""
+    """All links of a robot. The loop's clock calls `serve` while it waits for the next tick.
+
+    Args:
+        loop: The robot, a robot.loop.Loop.
+        token: The robot's token, 32 bytes.
+    """
 
     def __init__(self, loop, token):
         self.boot = new_id()
@@ -107,9 +133,17 @@ class Server(object):
         self._lines = []
 
     def listen(self, host, port):
-        """Accept TCP connections. Returns the port, which the system chooses if `port` is 0.
+        """Accept TCP connections.
 
-        Raises OSError.
+        Args:
+            host: The address to listen on.
+            port: The port; 0 lets the system choose one.
+
+        Returns:
+            The port.
+
+        Raises:
+            OSError: The system does not give that port.
         """
         self._listener = socket.socket()
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -119,9 +153,14 @@ class Server(object):
         return self._listener.getsockname()[1]
 
     def adopt(self, link, lasting=False):
-        """The Peer at an open, non-blocking link with fileno() and close().
+        """Serve a link that is open already.
 
-        A lasting one, a serial line, survives noise.
+        Args:
+            link: Has fileno() and close(), and does not block.
+            lasting: Whether it is a serial line, which survives noise.
+
+        Returns:
+            The Peer at its other end.
         """
         session = Session(self._loop, self._token, self.boot)
         peer = Peer(link, session, self._loop.clock.now(), lasting)
@@ -129,9 +168,10 @@ class Server(object):
         return peer
 
     def attach(self, open_line):
-        """Talk over the serial line that open_line() opens, and open it again whenever it breaks.
+        """Serve a serial line, and open it again whenever it breaks.
 
-        open_line may raise OSError.
+        Args:
+            open_line: Returns the open line, a link as for `adopt`, or raises OSError.
         """
         self._lines.append(_Line(open_line))
 
@@ -144,9 +184,12 @@ class Server(object):
             self._listener = None
 
     def serve(self, timeout_s):
-        """Answer and send what is due, for about timeout_s.
+        """Answer and send what is due.
 
-        At the least one frame of each peer, so that a stop is always heard.
+        At least one frame of each peer is answered, so that a stop is always heard.
+
+        Args:
+            timeout_s: How long to wait for more (s).
         """
         clock = self._loop.clock
         until = clock.now() + timeout_s
@@ -164,7 +207,7 @@ class Server(object):
         select.select(readers, writers, (), timeout_s)
 
     def _talk(self):
-        """One round over all links. Returns whether another round would find peers or frames that have arrived already."""
+        """One round over all links. Returns whether more has arrived already."""
         now = self._loop.clock.now()
         more = self._listener is not None and self._accept()
         for line in self._lines:
@@ -211,7 +254,7 @@ class Server(object):
             line.peer = None
 
     def _make_room(self):
-        """The peer that has been here longest gives way, those without the token first, whoever holds the lease last."""
+        """Drop the oldest peer: first those without the token, last the one that has the lease."""
         holder = self._loop.lease.holder
         candidates = [peer for peer in self._peers if not peer.lasting]
         candidates.sort(
@@ -232,7 +275,7 @@ class Server(object):
 
 
 def _detect_half_open(link):
-    """Have the kernel notice within a minute that the other end has vanished without a word."""
+    """Have the kernel notice within a minute that the other end is gone."""
     link.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 20)
     link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 10)

@@ -18,7 +18,7 @@ _SOURCES = of_robot()
 
 
 def new_id():
-    """Sixteen random bytes as text: a nonce, or the name of a boot."""
+    """Sixteen random bytes as hexadecimal text: a nonce, or the name of a boot."""
     return binascii.hexlify(os.urandom(wire.NONCE_BYTES)).decode("ascii")
 
 
@@ -47,7 +47,16 @@ def _identity(message):
 class Session(object):
     """What the robot knows of one peer.
 
-    `closing` is set when the conversation is over and only the last frames are to be sent.
+    Args:
+        loop: The robot, a robot.loop.Loop.
+        token: The robot's token, 32 bytes.
+        boot: The name of this run of the robot's program.
+
+    Attributes:
+        client: The peer's own id, None before its hello.
+        name: The peer's name for people.
+        trusted: Whether the peer has proved that it has the token.
+        closing: Whether the conversation is over, so that only the last frames are to be sent.
     """
 
     def __init__(self, loop, token, boot):
@@ -70,7 +79,15 @@ class Session(object):
         return self._handshake is not None
 
     def receive(self, kind, payload):
-        """The frames (bytes, maybe none) that answer a frame."""
+        """Take in a frame.
+
+        Args:
+            kind: The frame's type.
+            payload: What it carries, bytes.
+
+        Returns:
+            The frames that answer it, as bytes.
+        """
         identity = None
         try:
             if kind == wire.HELLO:
@@ -108,7 +125,16 @@ class Session(object):
         return wire.encode_json(wire.REPLY, dict(answer, id=identity))
 
     def refuse(self, code, message, hint):
-        """The last frame of a conversation that cannot go on."""
+        """End the conversation.
+
+        Args:
+            code: The kind of refusal, for programs.
+            message: What is refused, and why.
+            hint: What to do.
+
+        Returns:
+            The last frame, as bytes.
+        """
         self.closing = True
         self.trusted = False
         self._handshake = None
@@ -200,9 +226,13 @@ class Session(object):
         return payload
 
     def subscribe(self, tick):
-        """Send records from `tick` on, or from the oldest that is left.
+        """Send records from now on.
 
-        Returns the first tick that will be sent.
+        Args:
+            tick: The first tick to send, if it is still there.
+
+        Returns:
+            The first tick that will be sent.
         """
         self._cursor = tick
         self._introduced = False
@@ -213,9 +243,10 @@ class Session(object):
         self._cursor = None
 
     def stream(self):
-        """The next frame of the subscription, or None if the peer has everything.
+        """The next frame of the subscription. Events stand before the record that they concern.
 
-        Events stand before the record they concern.
+        Returns:
+            The frame as bytes, None if the peer has everything.
         """
         if self._cursor is None:
             return None

@@ -1,6 +1,6 @@
-"""The secret that robot and host share.
+"""The secret that robot and host share: 32 random bytes.
 
-32 random bytes, as hexadecimal text in a file that only its owner can read.
+It is hexadecimal text in a file that only its owner can read.
 """
 
 import binascii
@@ -15,7 +15,11 @@ class TokenError(Exception):
 
 
 def default_path():
-    """Where the token is kept: $KICK_TOKEN, or a file under the user's configuration folder."""
+    """Where the token is kept.
+
+    Returns:
+        The path in $KICK_TOKEN, or that of a file in the user's configuration folder.
+    """
     named = os.environ.get("KICK_TOKEN")
     if named:
         return named
@@ -24,7 +28,17 @@ def default_path():
 
 
 def load(path):
-    """The token's bytes. Raises TokenError if the file is missing, open to others, or holds no token."""
+    """Read a token.
+
+    Args:
+        path: The token file.
+
+    Returns:
+        The token, 32 bytes.
+
+    Raises:
+        TokenError: The file is missing, others may read it, or it holds no token.
+    """
     try:
         with open(path, "r") as file:
             mode = os.fstat(file.fileno()).st_mode
@@ -33,7 +47,7 @@ def load(path):
         raise TokenError("the token file {} cannot be read: {}".format(path, error)) from error
     if mode & (stat.S_IRWXG | stat.S_IRWXO):
         raise TokenError(
-            "the token file {} is open to others; close it: chmod 600 {}".format(path, path)
+            "others may read the token file {}; close it: chmod 600 {}".format(path, path)
         )
     try:
         token = binascii.unhexlify(text.strip())
@@ -41,7 +55,7 @@ def load(path):
         token = b""
     if len(token) != TOKEN_BYTES:
         raise TokenError(
-            "{} holds no token of {} hexadecimal digits; delete it to have a new one made".format(
+            "{} holds no token of {} hexadecimal digits; delete it, and a new one is made".format(
                 path, 2 * TOKEN_BYTES
             )
         )
@@ -49,9 +63,16 @@ def load(path):
 
 
 def load_or_make(path):
-    """(token, whether it is new): the token in the file, made first if there is no such file.
+    """Read a token, and make one first if there is no file.
 
-    Raises TokenError.
+    Args:
+        path: The token file.
+
+    Returns:
+        (token, whether it is new).
+
+    Raises:
+        TokenError: The file cannot be made or used.
     """
     try:
         os.makedirs(os.path.dirname(path) or ".", mode=0o700, exist_ok=True)

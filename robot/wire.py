@@ -16,11 +16,11 @@ _SEAL = struct.Struct(">Q16s")
 MAX_PAYLOAD = 4096
 MAX_SAMPLES = MAX_PAYLOAD - _SAMPLES.size
 OVERHEAD = _HEADER.size + _CHECK.size
-# Noise can look like the beginning of a frame. A peer that makes it do so on purpose costs a
-# checksum each time, hence the bound.
+# Noise can look like the beginning of a frame. Each time costs a checksum, and a peer may make
+# noise on purpose, so the number of tries has a bound.
 MAX_FALSE_STARTS = 16
 
-# Frame types. Numbers are never used anew for something else.
+# Frame types. A number is never given to another type.
 HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP = range(1, 9)
 TYPES = (HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP)
 
@@ -33,9 +33,17 @@ class BadMessage(Exception):
 
 
 def encode(kind, payload):
-    """The frame of type `kind` around `payload` bytes.
+    """Make a frame.
 
-    Raises ValueError if the payload is too long for a frame.
+    Args:
+        kind: The frame's type.
+        payload: What it carries, bytes.
+
+    Returns:
+        The frame, bytes.
+
+    Raises:
+        ValueError: The payload is too long for a frame.
     """
     if len(payload) > MAX_PAYLOAD:
         raise ValueError(
@@ -48,25 +56,61 @@ def encode(kind, payload):
 
 
 def encode_json(kind, message):
-    """The frame of type `kind` around a dictionary."""
+    """Make a frame that carries JSON.
+
+    Args:
+        kind: The frame's type.
+        message: A dictionary.
+
+    Returns:
+        The frame, bytes.
+
+    Raises:
+        ValueError: The message is too long, or holds NaN or an infinity.
+    """
     return encode(kind, dump(message))
 
 
 def dump(message):
-    """A dictionary as compact JSON bytes.
+    """Write compact JSON.
 
-    Raises ValueError for NaN and infinities, which JSON has no words for.
+    Args:
+        message: A dictionary.
+
+    Returns:
+        Bytes.
+
+    Raises:
+        ValueError: It holds NaN or an infinity, which JSON has no words for.
     """
     return json.dumps(message, allow_nan=False, separators=(",", ":")).encode("utf-8")
 
 
 def encode_samples(number, records):
-    """The frame of whole records (bytes, up to MAX_SAMPLES) that stand before the event of this number."""
+    """Make a frame of records.
+
+    Args:
+        number: The number of the first event behind these records.
+        records: Whole packed records, at most MAX_SAMPLES bytes.
+
+    Returns:
+        The frame, bytes.
+    """
     return encode(SAMPLES, _SAMPLES.pack(number) + records)
 
 
 def open_samples(payload):
-    """(number, records) of a frame of samples. Raises BadMessage."""
+    """Take a frame of records apart.
+
+    Args:
+        payload: What the frame carries, bytes.
+
+    Returns:
+        (number of the first event behind the records, packed records).
+
+    Raises:
+        BadMessage: It is too short.
+    """
     if len(payload) < _SAMPLES.size:
         raise BadMessage("too short for samples")
     return _SAMPLES.unpack_from(payload)[0], payload[_SAMPLES.size :]
@@ -77,7 +121,17 @@ def _no_constant(name):
 
 
 def load(payload):
-    """The dictionary in JSON bytes. Raises BadMessage for anything else."""
+    """Read JSON.
+
+    Args:
+        payload: Bytes.
+
+    Returns:
+        The dictionary that they hold.
+
+    Raises:
+        BadMessage: They hold anything else.
+    """
     try:
         message = json.loads(payload.decode("utf-8"), parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
@@ -88,9 +142,10 @@ def load(payload):
 
 
 class Decoder(object):
-    """Bytes in, frames out, one at a time. Whatever arrives, it never raises.
+    """Bytes in, frames out, one at a time. It never raises, no matter what arrives.
 
-    It holds what was fed and not yet taken.
+    Attributes:
+        discarded: How many bytes belonged to no sound frame.
     """
 
     def __init__(self):
@@ -98,17 +153,22 @@ class Decoder(object):
         self.discarded = 0
 
     def feed(self, data):
-        """Take in bytes as they came, in pieces of any size."""
+        """Take in bytes.
+
+        Args:
+            data: Bytes as they came, in pieces of any size.
+        """
         self._buffer += data
 
     def skip(self):
-        """What seems to be the beginning of a frame is none: look for the next behind it."""
+        """Take what looks like the beginning of a frame for noise, and look behind it."""
         self._discard(min(1, len(self._buffer)))
 
     def next(self):
-        """The next whole frame as (type, payload), or None until more is fed.
+        """The next frame. Bytes that belong to no sound frame are skipped and counted.
 
-        Bytes of no sound frame are skipped and counted.
+        Returns:
+            (type, payload), or None until more is fed.
         """
         for _ in range(MAX_FALSE_STARTS):
             self._discard_to_sync()
@@ -141,9 +201,14 @@ class Decoder(object):
 
 
 def digest(key, *parts):
-    """HMAC-SHA256 of the parts under a key.
+    """HMAC-SHA256 of parts, each behind its length, so that no two lists of parts look alike.
 
-    Each part is preceded by its length, so that no two lists of parts look alike.
+    Args:
+        key: Bytes.
+        parts: Bytes, any number of them.
+
+    Returns:
+        32 bytes.
     """
     code = hmac.new(key, digestmod=hashlib.sha256)
     for part in parts:
@@ -153,9 +218,17 @@ def digest(key, *parts):
 
 
 class Handshake(object):
-    """What both ends derive from the token and the two nonces.
+    """What both ends compute from the token and the two nonces.
 
-    The two proofs, and the key that seals a session's commands.
+    Args:
+        token: 32 bytes.
+        host_nonce: 16 random bytes of the host.
+        robot_nonce: 16 random bytes of the robot.
+
+    Attributes:
+        host_proof: Shows that the host has the token.
+        robot_proof: Shows that the robot has it.
+        key: Seals the commands of this session.
     """
 
     def __init__(self, token, host_nonce, robot_nonce):
@@ -165,19 +238,45 @@ class Handshake(object):
 
 
 def same(one, other):
-    """Whether two secrets are equal, in a time that does not tell where they differ."""
+    """Whether two secrets are equal, in a time that does not depend on where they differ.
+
+    Args:
+        one: Bytes.
+        other: Bytes.
+
+    Returns:
+        True if they are equal.
+    """
     return hmac.compare_digest(one, other)
 
 
 def seal(key, counter, payload):
-    """A command's payload behind its counter and its MAC."""
+    """Seal a command.
+
+    Args:
+        key: The session's key.
+        counter: A number above that of the command before.
+        payload: The command's JSON, bytes.
+
+    Returns:
+        The payload behind its counter and its MAC, bytes.
+    """
     return _SEAL.pack(counter, _mac(key, counter, payload)) + payload
 
 
 def unseal(key, counter, payload):
-    """(counter, payload) of a sealed command.
+    """Open a sealed command.
 
-    Raises BadMessage if the MAC is wrong or the counter is not above `counter`.
+    Args:
+        key: The session's key.
+        counter: The counter of the command before.
+        payload: What `seal` has made, bytes.
+
+    Returns:
+        (counter, the command's JSON).
+
+    Raises:
+        BadMessage: The MAC is wrong, or the counter has not risen.
     """
     if len(payload) < _SEAL.size:
         raise BadMessage("too short to be sealed")

@@ -14,6 +14,7 @@ from math import cos, exp, sin, tanh
 from pathlib import Path
 
 from tests.bench_io import reads_and_writes
+from tests.bench_stop import stop_beside_a_blocked_request
 
 REAL_TIME_S = 30.0
 KICKS = 40
@@ -22,7 +23,15 @@ KICKS = 40
 def main() -> None:
     """Print everything."""
     print(f"Python {sys.version.split()[0]}, {os.cpu_count()} cores", flush=True)
-    for measure in (reads_and_writes, controller_tick, virtual_time, batch, bodies, real_time):
+    for measure in (
+        reads_and_writes,
+        controller_tick,
+        virtual_time,
+        batch,
+        bodies,
+        real_time,
+        stop_beside_a_blocked_request,
+    ):
         measure()
 
 

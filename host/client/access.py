@@ -65,7 +65,7 @@ def greet(link: Link, talk: Conversation, send: Callable[[bytes], None], patienc
 def hear(link: Link, talk: Conversation, arrived: Callable[[], bool], patience_s: float) -> None:
     """Read from a link until what is awaited has arrived.
 
-    A link of which more patience is known, as of ssh that waits for a password, gets more.
+    A link may ask for more patience: ssh waits for a person who types a password.
 
     Raises:
         KickctlError: Nothing has come in time, or the robot refuses.

@@ -128,7 +128,7 @@ class Connection:
             self.request("release", sealed=True)
 
     def command(self, command: str, **arguments: Any) -> int:
-        """Tell the robot to do something, taking control first if need be.
+        """Command the robot, taking control first if need be.
 
         Args:
             command: One of the robot's commands that need control.
@@ -205,7 +205,7 @@ class Connection:
         return stop_robot(self.link.another(), self.name)
 
     def _stop_through(self) -> Stopped:
-        """Stop over the open link, read by whoever reads it now, or else from here."""
+        """Stop over the open link, which another thread may be reading."""
         self._talk.stopped = None
         until = self.link.now() + THROUGH_S
         repeat = self.link.now()

@@ -174,7 +174,7 @@ class Conversation:
                 self.stopped = answered(reply["result"])
             elif number is None:
                 self._refusal = reply["error"]
-            elif self.hello:  # before it come the answers to whoever used this line before
+            elif self.hello:  # before it, answers to an earlier user of the line may come
                 self._answers[number] = reply
                 while len(self._answers) > _MAX_UNCLAIMED:
                     del self._answers[next(iter(self._answers))]

@@ -1,6 +1,6 @@
 """How far a client has followed a robot's stream.
 
-Every record and event passes once and in order, whatever the link repeats or loses.
+Every record and event passes once and in order, also when the link repeats or loses some.
 """
 
 from __future__ import annotations
@@ -17,10 +17,8 @@ Event = dict[str, Any]
 class Subscription:
     """The place in the stream up to which everything has been taken.
 
-    `next_tick`, None before the first subscription.
-
-    `following` is whether what arrives now continues it; if it is not, only a new subscription from
-    `next_tick` helps.
+    next_tick: the tick that is due, None before the first subscription. following: whether what
+    arrives now continues the stream; if not, only a new subscription from `next_tick` helps.
     """
 
     def __init__(self) -> None:
@@ -40,10 +38,7 @@ class Subscription:
         self.following = False
 
     def snapshot(self) -> Event | None:
-        """What is in force at this place, as an event of the stream.
-
-        None if that is still to come.
-        """
+        """What is in force at this place, as an event; None if that is still to come."""
         return (
             None
             if self._state is None or self.next_tick is None

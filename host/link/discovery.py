@@ -30,7 +30,7 @@ _ASK_MS = 1500
 
 @dataclass(frozen=True)
 class Found:
-    """A robot, or a brick without one that is known. `uri` is how to reach it."""
+    """A robot, or a brick that runs none as far as anybody knows. `uri` is its address."""
 
     name: str
     kind: str
@@ -46,12 +46,20 @@ class Found:
 def look_around(
     seconds: float, interfaces: InterfaceChoice | list[str] = InterfaceChoice.All
 ) -> list[Found]:
-    """What announces itself within so many seconds, robots first.
+    """Listen to the network.
 
-    A robot is not told a second time as a brick. Raises KickctlError.
+    Args:
+        seconds: How long.
+        interfaces: Where, by default on all interfaces.
+
+    Returns:
+        Robots first, then bricks that do not run the robot's program, as far as anybody knows.
+
+    Raises:
+        KickctlError: This machine cannot listen.
     """
     if not 0 < seconds < math.inf:
-        raise WrongUse(f"{seconds} is no time to listen", "give some seconds, such as 4")
+        raise WrongUse(f"{seconds} is no time to listen", "give a number of seconds, for example 4")
     listener = _Listener()
     try:
         with Zeroconf(interfaces=interfaces, ip_version=IPVersion.V4Only) as network:
@@ -103,7 +111,7 @@ class _Listener(ServiceListener):
 
 
 def _found(info: ServiceInfo) -> Found | None:
-    """What a record tells; None if it is no brick's. Records come from anyone."""
+    """What a record says; None if it is no brick's. Anyone may send records."""
     addresses = tuple(info.parsed_addresses(IPVersion.V4Only))
     name = printable(info.name.removesuffix("." + info.type))
     host = printable((info.server or "").rstrip("."))

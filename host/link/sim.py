@@ -31,8 +31,8 @@ _THEY_ARE = f"its options are {', '.join(_OPTIONS)}, and the robot's parameters:
 class SimLink:
     """A simulated brick in virtual time behind a pair of connected sockets.
 
-    It has a token of its own. Several threads may use links to the same robot: whoever waits lets
-    one tick pass at a time.
+    It has a token of its own. Several threads may use links to the same robot: each one that
+    waits lets one tick pass at a time.
     """
 
     virtual = True

@@ -30,8 +30,7 @@ _BATCH = ["-o", "BatchMode=yes"]
 _BATCH_ANSWER_S = 15.0
 # ssh may say much; what it gives up for comes last.
 _LAST_WORDS = 280
-# ^C reaches ssh too, but is kickctl's to answer: it still has the motors to stop, over this very
-# link.
+# ^C reaches ssh too, and must not end it: kickctl still has to stop the motors over this link.
 _RUN = ("sh", "-c", 'trap "" INT; exec ssh "$@"', "sh")
 # What ssh says, and what to do about it; the first that fits.
 _REMEDIES = {
@@ -40,7 +39,7 @@ _REMEDIES = {
         "`ssh-keygen -R {host}`, then try again"
     ),
     "Host key verification failed": (
-        "make its acquaintance: `ssh robot@{host}` once, and say yes to its key"
+        "this machine does not know the brick yet: `ssh robot@{host}` once, and say yes to its key"
     ),
     "Permission denied": (
         "an ev3dev brick's user is robot, with the password maker unless it was changed:"
@@ -114,7 +113,7 @@ class SshLink(TcpLink):
         return other
 
     def open(self) -> None:
-        """Start ssh. Whether it gets through shows when the robot is heard, or not."""
+        """Start ssh. It has got through when the robot answers."""
         self.close()
         if self._heard and "BatchMode=yes" not in self._options:
             # Nobody waits at the terminal to type a password a second time.

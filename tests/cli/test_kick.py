@@ -213,7 +213,7 @@ def test_the_general_pulse_and_jump_reach_the_robot(kickctl):
 
 
 def test_a_row_of_the_table_is_one_tick_as_it_happened(kickctl):
-    """Angle and delta t of a row give its potentials, its potentials its force, torque and duty, by the paper's equations."""
+    """By the paper's equations, angle and delta t give potentials, force, torque and duty."""
     from math import cos, exp, sin, tanh
 
     result = json.loads(kickctl("kick", "--mode", "phase", "--json", "--seed", "3")[1])

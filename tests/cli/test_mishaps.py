@@ -1,6 +1,6 @@
 """What goes wrong around kickctl: no room, no token, a robot that goes away, damaged logs.
 
-It is told in words, and nothing is lost.
+kickctl says so in words, and nothing is lost.
 """
 
 import json

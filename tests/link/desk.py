@@ -1,4 +1,4 @@
-"""A robot that listens on loopback in virtual time, and hosts that act only when told."""
+"""A robot that listens on loopback in virtual time, and hosts that act only when a test says so."""
 
 import socket
 import time
@@ -14,7 +14,7 @@ FRAME = wire.MAX_PAYLOAD + wire.OVERHEAD
 
 
 class Desk(Rig):
-    """A robot that listens on loopback, ticking only when told."""
+    """A robot that listens on loopback, which ticks only in `run`."""
 
     def __init__(self, clock=None, **parts):
         super().__init__(**parts)
@@ -41,7 +41,7 @@ class Desk(Rig):
 
 
 class Peer:
-    """A host's end of a connection, which sends and reads only when told."""
+    """A host's end of a connection, which sends and reads only when a test says so."""
 
     def __init__(self, desk, token=TOKEN, name="peer", receive_buffer=None):
         self.desk = desk

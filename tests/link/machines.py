@@ -24,7 +24,7 @@ TICK_S = 0.01
 
 
 class RigLink(SimLink):
-    """An embedded robot on the rig whose link can be cut anywhere, and which can go away and begin anew."""
+    """An embedded robot on the rig. Its link can be cut anywhere; it can go away and restart."""
 
     def __init__(self, capacity=20000):
         clock = Clock()
@@ -126,7 +126,7 @@ class Cable:
         self._masters = masters
 
     def unplug(self):
-        """Take the ports away from whoever has them open."""
+        """Take the ports away, also from programs that have them open."""
         masters, self._masters = self._masters, {}
         time.sleep(0.02)
         for path in self.paths.values():

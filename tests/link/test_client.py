@@ -1,4 +1,4 @@
-"""The host's client: links that break, robots that begin anew or stay away, and what a log must not miss or hear twice."""
+"""The host's client when links break, and robots restart or stay away: logs are complete."""
 
 import gc
 import json
@@ -42,11 +42,11 @@ def test_a_log_misses_nothing_and_hears_nothing_twice_wherever_the_link_is_cut(c
         robot.remove_tap(log)
     assert [record.tick for record in log.records] == list(range(first, first + len(log.records)))
     assert packed(log.records) == packed(link.records()[first : first + len(log.records)])
-    told = [event for event in log.events if event["event"] not in ("snapshot", "lost")]
+    received = [event for event in log.events if event["event"] not in ("snapshot", "lost")]
     noted = json.loads(json.dumps([event for event in link.events() if event["tick"] >= first]))
-    assert told == noted[: len(told)]
-    assert all(event["tick"] > log.records[-1].tick for event in noted[len(told) :])
-    assert len([event for event in told if event["event"] == "kick"]) == sum(
+    assert received == noted[: len(received)]
+    assert all(event["tick"] > log.records[-1].tick for event in noted[len(received) :])
+    assert len([event for event in received if event["event"] == "kick"]) == sum(
         what == "kick" for _, what in cuts
     )
     assert [event["event"] for event in log.events if event["event"] in ("snapshot", "lost")] == [
@@ -57,7 +57,7 @@ def test_a_log_misses_nothing_and_hears_nothing_twice_wherever_the_link_is_cut(c
 def test_a_command_that_the_link_swallowed_is_done_once(robot, link):
     """Cut before the robot has read it, and cut before its answer is back.
 
-    The kick happens, once, in the tick that is told.
+    The kick happens once, in the tick of the answer.
     """
     robot.set(link_loss="continue")
     for cut_the_answer in (False, True):

@@ -108,9 +108,9 @@ def test_a_host_that_is_away_for_longer_than_the_black_box_is_told_exactly_what_
     assert link.breaks == 15
     assert (len(lost) >= 10) == (capacity == 40)
     assert log.missing() == lost
-    told = [tick for begin, end in lost for tick in range(begin, end)]
+    gone = [tick for begin, end in lost for tick in range(begin, end)]
     ticks = ticks_of(log)
-    assert sorted(ticks + told) == list(range(first, ticks[-1] + 1))
+    assert sorted(ticks + gone) == list(range(first, ticks[-1] + 1))
     written = bytes(link.written)
     assert packed(log.records) == b"".join(
         written[tick * STRUCT.size : (tick + 1) * STRUCT.size] for tick in ticks

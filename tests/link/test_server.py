@@ -1,6 +1,6 @@
 """The robot's links over real sockets, in virtual time.
 
-Whatever peers do, ticks go on, memory is bounded, and a stop is heard.
+Peers that say nothing, send rubbish, or are too many change nothing for the others.
 """
 
 import socket

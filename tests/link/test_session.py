@@ -1,4 +1,4 @@
-"""One peer's conversation: who may do what, and that whatever is refused has changed nothing."""
+"""One peer's conversation: who may do what, and that a refused request changes nothing."""
 
 import pytest
 

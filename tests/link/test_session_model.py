@@ -66,7 +66,7 @@ class SessionMachine(RuleBasedStateMachine):
 
     @contextmanager
     def _nothing_changes(self):
-        """Nothing but the time at which the holder was heard, which even a refused command of its own renews."""
+        """Nothing changes but the time of the holder's latest command, refused or not."""
         before = self.rig.fingerprint()
         yield
         then = self.rig.fingerprint()
@@ -183,7 +183,7 @@ class SessionMachine(RuleBasedStateMachine):
 
     @rule(name=names)
     def cut(self, name):
-        """The link breaks; nobody tells the robot."""
+        """The link breaks, and the robot does not know."""
         with self._nothing_changes():
             self.clients.pop(name, None)
 
@@ -212,7 +212,7 @@ class SessionMachine(RuleBasedStateMachine):
             client.flow(frames)
         for item in client.stream:
             if not isinstance(item, dict):
-                assert item.tick == self.due[name], "a gap that was not told"
+                assert item.tick == self.due[name], "a gap without a word"
                 self.due[name] += 1
             elif item["event"] == "lost":
                 assert item["from"] == self.due[name]

@@ -86,7 +86,7 @@ def test_a_kick_while_one_acts_is_refused(rig, client):
     "identity", [None, "1", 1.0, True, [], pytest.param(10**3900, id="huge"), -1, 2**70]
 )
 def test_a_request_without_a_number_is_not_carried_out(rig, client, identity):
-    """Its answer could not be told from others."""
+    """Nobody would know which request it answers."""
     client.tell("heartbeat")
     before = rig.fingerprint()
     body = wire.dump({"id": identity, "do": "set", "set": {"k": 1.0}})

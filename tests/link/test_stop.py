@@ -65,7 +65,7 @@ class Blocked:
 
 
 def test_motors_are_off_before_the_next_tick_while_another_thread_has_the_lock(link):
-    """In virtual time: nobody else lets it pass, so whatever waited here would wait for ever."""
+    """In virtual time: nobody else lets it pass, so a stop that waited would wait for ever."""
     with Robot(link, link.token) as robot:
         taken, done = threading.Event(), threading.Event()
 

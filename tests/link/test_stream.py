@@ -73,7 +73,7 @@ def test_who_reads_too_slowly_is_told_exactly_what_is_lost(rig, client):
 
 
 def test_a_loss_that_was_not_told_yet_is_not_forgotten_when_more_is_lost(rig, client):
-    """The peer reads nothing between two losses: what it must be told is all that it has not."""
+    """The peer reads nothing between two losses, and must learn of both."""
     client.ask("subscribe", **{"from": 0})
     rig.run(250)
     client.ask("subscribe", **{"from": 3})
@@ -189,7 +189,7 @@ def _frame(data):
 @settings(max_examples=60)
 @given(st.data())
 def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
-    """Any frame may get lost. The client notices from numbers alone, asks again, and everything passes once and in order."""
+    """Any frame may get lost: the client notices, asks again, and all passes once and in order."""
     rig = Rig()
     rig.loop.blackbox = BlackBox(rig.loop.params.values(), 40)
     rig.loop.start()
@@ -223,14 +223,14 @@ def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
         while (frame := client.session.stream()) is not None:
             arrive(frame)
     missing = [(event["from"], event["tick"]) for event in log.events if event["event"] == "lost"]
-    told = {tick for first, end in missing for tick in range(first, end)}
+    gone = {tick for first, end in missing for tick in range(first, end)}
     ticks = [record.tick for record in log.records]
-    assert sorted({*ticks, *told}) == list(range(rig.loop.blackbox.next_tick))
-    assert len(ticks) + len(told) == rig.loop.blackbox.next_tick
+    assert sorted({*ticks, *gone}) == list(range(rig.loop.blackbox.next_tick))
+    assert len(ticks) + len(gone) == rig.loop.blackbox.next_tick
     numbers = [
         event["number"] for event in log.events if event["event"] not in ("snapshot", "lost")
     ]
     assert numbers == sorted(set(numbers))
-    assert {number for number, tick in enumerate(ticks_of_events) if tick not in told} <= set(
+    assert {number for number, tick in enumerate(ticks_of_events) if tick not in gone} <= set(
         numbers
     )
