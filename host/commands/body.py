@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.commands._terminal import say, show
 from host.errors import KickctlError
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from host.bodies.build import BodyRequest
     from host.bodies.kicks import ScheduledKick
     from sim_motor.bodies.body import Body
+    from sim_motor.bodies.measures import Summary
 
 HELP = "simulate a car, or a train of cars, with one rod and one neuron for each wheel, in MuJoCo"
 
@@ -94,6 +95,8 @@ def run(options: argparse.Namespace) -> int:
     from host.bodies.build import CARS_OF_A_TRAIN, BodyRequest, build_body, build_scene
     from host.bodies.kicks import parse_kick
     from host.errors import WrongUse
+    from host.runs.folder import digest
+    from host.util.provenance import commit, sources
 
     if options.body == "car" and options.cars not in (None, 1):
         raise WrongUse(f"a car is one car, not {options.cars}", "kickctl body train --cars N")
@@ -126,34 +129,60 @@ def run(options: argparse.Namespace) -> int:
             f"a kick comes after the {options.time:g} s that are simulated",
             "kick earlier, or give a longer --time",
         )
-    summary = _simulate(options, request, body, kicks)
-    if options.json:
-        show(summary)
-    else:
-        _print_summary(summary)
-    return 0
-
-
-def _simulate(
-    options: argparse.Namespace,
-    request: BodyRequest,
-    body: Body,
-    kicks: list[ScheduledKick],
-) -> dict[str, Any]:
-    """Run it, and write everything, also if it is interrupted or becomes unstable."""
-    from host.bodies.kicks import run_with_kicks
-    from host.runs.folder import digest
-    from host.util.progress import progress
-    from host.util.provenance import commit, sources
-
-    info = {
+    settings = {
         **request._asdict(),
         "kicks": options.kick,
         "time_s": options.time,
         "sources": sources(),
         "commit": commit(),
     }
-    folder = options.out / f"body-{digest(info)}"
+    result = Result(options.out / f"body-{digest(settings)}", request, settings, body, kicks)
+    summary = _simulate(options, result)
+    if options.json:
+        show(result.as_dict(summary))
+    else:
+        _print_summary(summary, result.folder)
+    return 0
+
+
+class Result(NamedTuple):
+    """What there is to keep of a body, and where."""
+
+    folder: Path
+    request: BodyRequest
+    settings: dict[str, Any]
+    body: Body
+    kicks: list[ScheduledKick]
+
+    def as_dict(self, summary: Summary) -> dict[str, Any]:
+        """The settings and the summary as plain data."""
+        return {**self.settings, **summary, "folder": str(self.folder)}
+
+    def write(self) -> Summary:
+        """Write all files, and return the summary of the run so far."""
+        from host.bodies.files import write_csv, write_mcap
+        from host.figures.bodies.body import draw
+        from sim_motor.bodies.measures import summary as summarize
+
+        columns, rows = self.body.columns, self.body.rows
+        summary = summarize(columns, rows)
+        write_csv(self.folder / "state.csv", columns, rows)
+        write_mcap(self.folder / "state.mcap", columns, rows, self.settings)
+        kicks_s = [kick.t_s for kick in self.kicks]
+        figure = draw(columns, rows, self.request, summary, kicks_s)
+        for ending in ("png", "svg"):
+            figure.savefig(self.folder / f"body.{ending}")
+        text = json.dumps(self.as_dict(summary), indent=1, allow_nan=False) + "\n"
+        (self.folder / "summary.json").write_text(text, encoding="utf-8")
+        return summary
+
+
+def _simulate(options: argparse.Namespace, result: Result) -> Summary:
+    """Run the body, and write everything, also if it is interrupted or becomes unstable."""
+    from host.bodies.kicks import run_with_kicks
+    from host.util.progress import progress
+
+    body, folder = result.body, result.folder
     with ExitStack() as stack:
         watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
         folder.mkdir(parents=True, exist_ok=True)
@@ -167,12 +196,12 @@ def _simulate(
                 for watcher in watchers:
                     watcher(body.data)
 
-            run_with_kicks(body, options.time, kicks, watch)
+            run_with_kicks(body, options.time, result.kicks, watch)
         except (KickctlError, KeyboardInterrupt):
-            _write(folder, info, body, kicks)
+            result.write()
             say(f"the first {body.time_s:g} s are kept in {folder}")
             raise
-    return _write(folder, info, body, kicks)
+    return result.write()
 
 
 def _watchers(
@@ -191,28 +220,7 @@ def _watchers(
     return watchers
 
 
-def _write(
-    folder: Path, info: dict[str, Any], body: Body, kicks: list[ScheduledKick]
-) -> dict[str, Any]:
-    """Write all files, and return the summary."""
-    from host.bodies.files import write_csv, write_mcap
-    from host.figures.bodies.body import draw
-    from sim_motor.bodies.measures import summary as summarize
-
-    columns, rows = body.columns, body.rows
-    summary = {**info, **summarize(columns, rows), "folder": str(folder)}
-    write_csv(folder / "state.csv", columns, rows)
-    write_mcap(folder / "state.mcap", columns, rows, info)
-    figure = draw(columns, rows, summary, [kick.t_s for kick in kicks])
-    for ending in ("png", "svg"):
-        figure.savefig(folder / f"body.{ending}")
-    (folder / "summary.json").write_text(
-        json.dumps(summary, indent=1, allow_nan=False) + "\n", encoding="utf-8"
-    )
-    return summary
-
-
-def _print_summary(summary: dict[str, Any]) -> None:
+def _print_summary(summary: Summary, folder: Path) -> None:
     times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
     print(
         f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter"
@@ -227,4 +235,4 @@ def _print_summary(summary: dict[str, Any]) -> None:
     if summary["flipped"]:
         print("a car fell over")
     for name in ("body.png", "state.csv", "state.mcap"):
-        print(Path(summary["folder"]) / name)
+        print(folder / name)

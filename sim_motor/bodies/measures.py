@@ -5,7 +5,7 @@ Direction, order, reversals, speed, and whether it got stuck or fell over.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,8 +93,31 @@ def started_s(moved: Course) -> float | None:
     return float(moved.t_s[np.argmax(speed >= STARTED * speed.max())])
 
 
-def summary(columns: tuple[str, ...], rows: Array) -> dict[str, Any]:
-    """A run in plain data: speeds in m/s and the order parameter are means over the time after start-up."""
+class Summary(TypedDict):
+    """A run in plain data; means are over the time after start-up.
+
+    time_s: how long it was (s). started_s: when start-up was over (s), or None. reversals: when it
+    reversed (s). mean_speed: of the centre (m/s). mean_abs_omega: of all wheels (rad/s).
+    peak_omega: the greatest that the mean |omega| of all wheels was (rad/s). order_parameter: its
+    mean. path_length: of the centre (m). end: where the centre is in the end (m). flipped: whether
+    a car fell over. stuck: whether it stayed where it was in the end.
+    """
+
+    time_s: float
+    started_s: float | None
+    reversals: list[float]
+    mean_speed: float
+    mean_abs_omega: float
+    peak_omega: float
+    order_parameter: float
+    path_length: float
+    end: list[float]
+    flipped: bool
+    stuck: bool
+
+
+def summary(columns: tuple[str, ...], rows: Array) -> Summary:
+    """Sum a run up, from the rows of a Body, (times, columns)."""
     moved = course(columns, rows)
     started = started_s(moved)
     after = moved.t_s >= (moved.t_s[-1] if started is None else started)

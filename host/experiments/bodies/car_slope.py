@@ -12,7 +12,7 @@ from typing import TypedDict, final
 
 import numpy as np
 
-from host.experiments.bodies.simulation import EDGE_M, build_body, run_body, set_heading
+from host.experiments.bodies.simulation import EDGE_M, Position, build_body, run_body, set_heading
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
@@ -64,14 +64,6 @@ class Drive(TypedDict):
     squares: int
 
 
-class Position(TypedDict):
-    """Where the car is at one time: t_s (s), x_m and y_m (m)."""
-
-    t_s: float
-    x_m: float
-    y_m: float
-
-
 @final
 class DriveRow(Cell, Drive):
     """A line of the table about a whole drive."""
@@ -79,7 +71,7 @@ class DriveRow(Cell, Drive):
 
 @final
 class PositionRow(Cell, Position):
-    """A line of the table about one moment of a drive."""
+    """A line of the table about where the car's middle is at one time."""
 
 
 Row = DriveRow | PositionRow
@@ -151,10 +143,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Drive | Position]:
             "squares": len(np.unique(np.floor(centre[:, :2] / SQUARE_M), axis=0)),
         }
     ]
-    rows += [
-        {"t_s": float(t[at]), "x_m": float(centre[at, 0]), "y_m": float(centre[at, 1])}
-        for at in run.every(EVERY_S)
-    ]
+    rows += run.positions(centre, EVERY_S)
     return rows
 
 

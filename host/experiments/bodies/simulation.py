@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, sin
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,14 @@ ORDERED = 0.9
 EDGE_M = 6.0
 
 
+class Position(TypedDict):
+    """Where a body, or a part of it, is at one time: t_s (s), x_m and y_m (m)."""
+
+    t_s: float
+    x_m: float
+    y_m: float
+
+
 class BodyRun(NamedTuple):
     """What a body did.
 
@@ -54,6 +62,25 @@ class BodyRun(NamedTuple):
     def every(self, seconds: float) -> range:
         """The numbers of the rows that are this far apart, from the first on."""
         return range(0, len(self.course.t_s), round(seconds / float(self.course.t_s[1])))
+
+    def positions(self, path: Array, seconds: float) -> list[Position]:
+        """Where a path goes, at times this far apart.
+
+        Args:
+            path: (times, 2 or more), with x and y (m) first; such as `head`.
+            seconds: time between positions (s).
+
+        Returns:
+            The positions, from the first row on.
+        """
+        return [
+            {
+                "t_s": float(self.course.t_s[at]),
+                "x_m": float(path[at, 0]),
+                "y_m": float(path[at, 1]),
+            }
+            for at in self.every(seconds)
+        ]
 
     def last(self, seconds: float) -> NDArray[np.bool_]:
         """Which rows belong to the last seconds, (times,)."""

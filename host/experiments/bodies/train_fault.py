@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Literal, TypedDict, final
 
 import numpy as np
 
-from host.experiments.bodies.simulation import Array, EditScene, build_pushed_train, run_body
+from host.experiments.bodies.simulation import (
+    Array,
+    EditScene,
+    Position,
+    build_pushed_train,
+    run_body,
+)
 from host.runs.contract import Findings, Options, Setting
 from sim_motor.bodies.presets import preset
 
@@ -66,14 +72,6 @@ class Run(TypedDict):
     own_rad_s: float | None
 
 
-class Position(TypedDict):
-    """Where the train's head is at one time: t_s (s), x_m and y_m (m)."""
-
-    t_s: float
-    x_m: float
-    y_m: float
-
-
 @final
 class RunRow(Cell, Run):
     """A line of the table about a whole run."""
@@ -81,7 +79,7 @@ class RunRow(Cell, Run):
 
 @final
 class PositionRow(Cell, Position):
-    """A line of the table about one moment of a run."""
+    """A line of the table about where the train's head is at one time."""
 
 
 Row = RunRow | PositionRow
@@ -144,10 +142,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Run | Position]:
         }
     ]
     if cell["number"] == 0:
-        rows += [
-            {"t_s": float(t[at]), "x_m": float(run.head[at, 0]), "y_m": float(run.head[at, 1])}
-            for at in run.every(EVERY_S)
-        ]
+        rows += run.positions(run.head, EVERY_S)
     return rows
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from host.experiments.bodies.simulation import (
     EDGE_M,
     ORDERED,
+    Position,
     build_body,
     run_body,
     set_heading,
@@ -64,14 +65,6 @@ class Run(TypedDict):
     flipped: bool
 
 
-class Position(TypedDict):
-    """Where the train's head is at one time: t_s (s), x_m and y_m (m)."""
-
-    t_s: float
-    x_m: float
-    y_m: float
-
-
 @final
 class RunRow(Cell, Run):
     """A line of the table about a whole run."""
@@ -79,7 +72,7 @@ class RunRow(Cell, Run):
 
 @final
 class PositionRow(Cell, Position):
-    """A line of the table about one moment of a run."""
+    """A line of the table about where the train's head is at one time."""
 
 
 Row = RunRow | PositionRow
@@ -156,14 +149,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Run | Position]:
         }
     ]
     if cell["number"] == 0 and any(kind.items() <= cell.items() for kind in SHOWN):
-        rows += [
-            {
-                "t_s": float(course.t_s[at]),
-                "x_m": float(run.head[at, 0]),
-                "y_m": float(run.head[at, 1]),
-            }
-            for at in run.every(EVERY_S)
-        ]
+        rows += run.positions(run.head, EVERY_S)
     return rows
 
 

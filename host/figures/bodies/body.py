@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,21 +11,29 @@ from matplotlib.lines import Line2D
 
 from host.figures.bodies.from_above import label_metres
 from host.figures.style import COLOURS, SIZE, styled
-from sim_motor.bodies.measures import Array, course, order
+from sim_motor.bodies.measures import Array, Summary, course, order
+
+if TYPE_CHECKING:
+    from host.bodies.build import BodyRequest
 
 _START: Any = {"marker": "o", "markersize": 9, "markerfacecolor": "white", "linestyle": "none"}
 _BODY = COLOURS[4]
 
 
 def draw(
-    columns: tuple[str, ...], rows: Array, summary: dict[str, Any], kicks_s: list[float]
+    columns: tuple[str, ...],
+    rows: Array,
+    request: BodyRequest,
+    summary: Summary,
+    kicks_s: list[float],
 ) -> Figure:
     """The figure of a body's run.
 
     Args:
         columns: names of the columns.
         rows: (times, columns), as a Body has them.
-        summary: of the run, with the request's fields.
+        request: what the body should be.
+        summary: of the run.
         kicks_s: when the body was kicked (s).
 
     Returns:
@@ -50,7 +58,7 @@ def draw(
             axes["speed"].axvline(time_s, color=COLOURS[3], linewidth=1.5)
         handles = _legend(bool(summary["reversals"]), bool(kicks_s))
         figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=11)
-        figure.suptitle(_title(summary), fontsize=15)
+        figure.suptitle(_title(request, summary), fontsize=15)
     return figure
 
 
@@ -83,16 +91,18 @@ def _legend(has_reversals: bool, has_kicks: bool) -> list[Line2D]:
     return handles
 
 
-def _title(summary: dict[str, Any]) -> str:
-    body = "A car" if summary["cars"] == 1 else f"A train of {summary['cars']} cars"
+def _title(request: BodyRequest, summary: Summary) -> str:
+    body = "A car" if request.cars == 1 else f"A train of {request.cars} cars"
     count = len(summary["reversals"])
     reversals = f"{count} reversal" if count == 1 else f"{count} reversals"
-    states = [state for state in ("stuck", "flipped") if summary[state]]
+    stuck = ["stuck"] if summary["stuck"] else []
+    flipped = ["flipped"] if summary["flipped"] else []
     return ", ".join(
         [
-            f"{body} ({summary['preset']}, {summary['scene']}): {summary['mean_speed']:.2f} m/s",
+            f"{body} ({request.preset}, {request.scene}): {summary['mean_speed']:.2f} m/s",
             f"{reversals} in {summary['time_s']:.0f} s",
             f"order {summary['order_parameter']:.2f}",
-            *states,
+            *stuck,
+            *flipped,
         ]
     )
