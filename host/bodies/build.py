@@ -81,7 +81,7 @@ def build_scene(request: BodyRequest) -> mujoco.MjSpec:
     """The scene with the cars in it, not yet compiled.
 
     Raises:
-        WrongUse: if MuJoCo is not installed, or there can be no such scene.
+        WrongUse: if MuJoCo is not installed, or the scene is impossible.
     """
     need("mujoco", "bodies")
     from sim_motor.bodies.model import compose
@@ -114,7 +114,7 @@ def build_body(request: BodyRequest, scene: mujoco.MjSpec | None = None) -> Body
         A body that can run and be kicked.
 
     Raises:
-        WrongUse: if there can be no such body.
+        WrongUse: if the body is impossible.
     """
     scene = build_scene(request) if scene is None else scene
     with value_errors_as_wrong_use():

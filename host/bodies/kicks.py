@@ -59,7 +59,7 @@ class ScheduledKick(NamedTuple):
             One kick for each of its wheels.
 
         Raises:
-            WrongUse: if there is no such kick.
+            WrongUse: if the kick is impossible.
         """
         ticks = {} if self.seconds is None else {"ticks": max(1, round(self.seconds / step_s))}
         kicks = []
@@ -68,7 +68,9 @@ class ScheduledKick(NamedTuple):
             try:
                 kick = parse(request, (int(np.sign(speed)),) * 2, Params(), step)
             except Refused as refusal:
-                raise WrongUse(f"no such kick: {refusal.message}", refusal.hint) from refusal
+                raise WrongUse(
+                    f"this kick is impossible: {refusal.message}", refusal.hint
+                ) from refusal
             kick.wheels = (name,)
             kicks.append(kick)
         return kicks
@@ -87,7 +89,7 @@ def parse_kick(text: str, wheels: Sequence[str]) -> ScheduledKick:
         The kick, checked as far as it can be before the body runs.
 
     Raises:
-        WrongUse: if there is no such kick, or no such wheel.
+        WrongUse: if the kick or the wheel does not exist.
     """
     fields = _parse_fields(text)
     time_s, wheel = fields.pop("t", None), fields.pop("wheel", ALL)

@@ -14,6 +14,8 @@ def draw_heat_map(
     values: ArrayLike,
     largest: float,
     label: Callable[[int, int, float], str] = lambda row, column, value: f"{value:.0f}",
+    *,
+    fontsize: float = 11,
 ) -> None:
     """Draw a heat map whose field (row, column) is centred on (column + 0.5, row + 0.5).
 
@@ -22,6 +24,7 @@ def draw_heat_map(
         values: (rows, columns), from 0 to `largest`; NaN where there is no number.
         largest: value of the brightest colour.
         label: the text in a field with a number, by row, column and value.
+        fontsize: of that text.
     """
     table = np.asarray(values, dtype=float)
     axes.pcolormesh(table, cmap="cividis", vmin=0, vmax=largest, edgecolors="white", linewidth=1)
@@ -34,5 +37,5 @@ def draw_heat_map(
                 ha="center",
                 va="center",
                 color="black" if value > 0.6 * largest else "white",
-                fontsize=11,
+                fontsize=fontsize,
             )

@@ -10,11 +10,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 STYLE: Any = {
@@ -43,19 +41,3 @@ def share_legend(place: Axes | Figure, panels: Iterable[Axes], **style: Any) -> 
         handles, labels = axes.get_legend_handles_labels()
         known |= dict(zip(labels, handles, strict=True))
     place.legend(list(known.values()), list(known), **style)
-
-
-def draw_shares(axes: Axes, shares: NDArray[np.float64], **text: Any) -> None:
-    """Draw a table of shares (%) as coloured fields with their numbers; NaN stays empty."""
-    axes.pcolormesh(shares, cmap="cividis", vmin=0, vmax=100, edgecolors="white", linewidth=1)
-    for (row, column), share in np.ndenumerate(shares):
-        if not np.isnan(share):
-            axes.text(
-                column + 0.5,
-                row + 0.5,
-                f"{share:.0f}",
-                ha="center",
-                va="center",
-                color="black" if share > 60 else "white",
-                **text,
-            )

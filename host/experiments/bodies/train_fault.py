@@ -1,4 +1,4 @@
-"""Trains with a faulty wheel: does such a train still go one way?
+"""Does a train with a faulty wheel still go one way?
 
 One wheel is weaker than the others, or dead; or the wheels have different sizes.
 """

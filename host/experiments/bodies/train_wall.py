@@ -25,7 +25,7 @@ from sim_motor.bodies.presets import Preset, preset
 CONSTANT = 0.162
 # The claim wants this many reversals.
 LEAST = 5
-# Trains of each kind for a median, and the time for so many reversals.
+# A median takes this many trains of each kind, and that many reversals this time (s).
 LEAST_TRAINS, LEAST_S = 3, 60.0
 # Positions are this far apart (s).
 EVERY_S = 0.05

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,7 +16,7 @@ from host.experiments.bodies.car_route import (
     car_preset,
     rolling_rad_s,
 )
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
 _SHADES = dict(zip(KINDS, ("#bbbbbb", COLOURS[4], COLOURS[5], COLOURS[0], COLOURS[1]), strict=True))
@@ -38,10 +36,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             _draw_speeds(speeds, route, a, tau)
         grid[0, 0].set_ylabel("starts (%)")
         grid[1, 0].set_ylabel(r"$|\omega|$ of the wheels (rad/s)")
-        handles, labels = grid[0, 0].get_legend_handles_labels()
-        more_handles, more_labels = grid[1, 0].get_legend_handles_labels()
-        style: Any = {"loc": "outside lower center", "ncols": 3, "fontsize": 11}
-        figure.legend([*handles, *more_handles], [*labels, *more_labels], **style)
+        share_legend(figure, grid[:, 0], loc="outside lower center", ncols=3, fontsize=11)
         figure.suptitle(
             "A car with one rod for each wheel: rest, forth and back, rolling", fontsize=16
         )

@@ -90,11 +90,11 @@ def _draw_braked(axes: Axes, rows: list[Row]) -> None:
         axes.text(wheels, 101, f"{count}", ha="center", fontsize=11)
     axes.set(
         xlabel="wheels kicked",
-        ylabel="of the trials that it brakes (%)",
+        ylabel="outcomes (%)",
         xticks=WHEELS,
         ylim=(0, 112),
     )
-    axes.set_title(f"braked below {BRAKED:.0%} of its speed: then", fontsize=13)
+    axes.set_title(f"once braked below {BRAKED:.0%} of its speed (top: trials)", fontsize=12)
 
 
 def _draw_speeds(axes: Axes, rows: list[Row]) -> None:

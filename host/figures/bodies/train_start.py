@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from host.experiments.bodies.simulation import ORDERED
 from host.experiments.bodies.train_start import Numbers, Row
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
 _FORWARD = ("forward", COLOURS[0], "-")
@@ -35,14 +35,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         for axes in grid[-1]:
             axes.set_xlabel("time (s)")
             axes.margins(x=0)
-        handles = {
-            label: handle
-            for axes in figure.axes
-            for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-        }
-        figure.legend(
-            handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=12
-        )
+        share_legend(figure, figure.axes, loc="outside lower center", ncols=4, fontsize=12)
         figure.suptitle("A train of five cars starts from random wheel phases", fontsize=16)
     return figure
 

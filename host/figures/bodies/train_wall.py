@@ -20,7 +20,7 @@ from host.experiments.bodies.train_wall import (
     moments,
     name_train,
 )
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
 _WALL_M = 4.35
@@ -44,13 +44,12 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
                 counts, [kind for kind in numbers["kinds"] if train.items() <= kind.items()]
             )
         grid[-1][0].set_xlabel("time (s)")
-        style: Any = {"loc": "outside lower center", "ncols": len(_LINES), "fontsize": 12}
         figure.suptitle(
             f"A train between two walls {2 * _WALL_M:g} m apart (grey): first run of each, and all"
             " runs' reversals",
             fontsize=15,
         )
-        figure.legend(*grid[0][0].get_legend_handles_labels(), **style)
+        share_legend(figure, grid[0], loc="outside lower center", ncols=4, fontsize=12)
     return figure
 
 
@@ -66,7 +65,7 @@ def _draw_way(axes: Axes, rows: list[Row], train: Train) -> None:
 
 
 def _draw_counts(axes: Axes, kinds: list[KindNumbers]) -> None:
-    axes.axhline(LEAST, color="black", linewidth=1, linestyle=":")
+    axes.axhline(LEAST, color="black", linewidth=1, linestyle=":", label="claim B3")
     for kind in kinds:
         place, count = int(kind["bouncy"]), len(kind["reversals"])
         offsets = [place + 0.35 * ((number + 0.5) / count - 0.5) for number in range(count)]

@@ -17,7 +17,7 @@ from host.experiments.bodies.train_wiggle import (
     TrainNumbers,
     joint_angles,
 )
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
 _MARKS = "os^"
@@ -39,8 +39,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             _draw_lags(lag, train, style)
         _finish_amplitudes(far)
         _finish_lags(lag)
-        where: Any = {"loc": "outside lower center", "ncols": 4, "fontsize": 11}
-        figure.legend(*far.get_legend_handles_labels(), **where)
+        share_legend(figure, [far], loc="outside lower center", ncols=4, fontsize=11)
         figure.suptitle(
             "A fast train wiggles: a wave that travels from its head to its tail (snake2019)",
             fontsize=15,

@@ -24,7 +24,8 @@ from host.experiments.robot.wall_rows import (
     hits_under,
     series_under,
 )
-from host.figures.style import COLOURS, SIZE, draw_shares, share_legend, styled
+from host.figures.heat_map import draw_heat_map
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 from host.util.intervals import wilson
 
@@ -123,7 +124,9 @@ def _draw_map(
     counts = [
         [count_bounces(hits_under(rows, condition(x, y))) for x in across.values] for y in up.values
     ]
-    draw_shares(axes, np.array([[_percent(count) for count in line] for line in counts]))
+    draw_heat_map(
+        axes, [[_percent(count) for count in line] for line in counts], 100.0, fontsize=13
+    )
     for axis, scale in ((axes.xaxis, across), (axes.yaxis, up)):
         labels = [f"{scale.factor * value:g}" for value in scale.values]
         axis.set_ticks(np.arange(len(labels)) + 0.5, labels)

@@ -95,16 +95,16 @@ def test_it_sees_what_the_wheels_and_joints_do_and_nothing_of_the_world():
 
 
 def test_the_same_seed_and_kicks_give_the_same_bits_and_other_seeds_or_kicks_do_not():
-    def ran(seed, mode):
+    def run_train(seed, mode):
         train = Train(cars=2, decision_s=0.5)
         train.reset(seed=seed)
         for _ in range(3):
             seen, *_ = train.step(kicks(train, car0_left=mode))
         return seen.tobytes()
 
-    first = ran(1, PHASE)
-    assert ran(1, PHASE) == first
-    assert len({first, ran(2, PHASE), ran(1, None)}) == 3
+    first = run_train(1, PHASE)
+    assert run_train(1, PHASE) == first
+    assert len({first, run_train(2, PHASE), run_train(1, None)}) == 3
 
 
 def test_reset_takes_a_scene_and_phases_and_refuses_what_it_does_not_know():

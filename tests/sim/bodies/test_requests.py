@@ -11,7 +11,7 @@ def test_what_cannot_be_is_refused_in_words(tmp_path):
     broken.write_text("<mujoco><worldbody><geom type='plane' size='1 1'/></worldbody></mujoco>")
     torn = tmp_path / "torn.xml"
     torn.write_text("<mujoco><worldbody>")
-    for asked, reason in (
+    for request, reason in (
         (BodyRequest(scene="moon"), "no scene"),
         (BodyRequest(scene=str(broken)), "size"),
         (BodyRequest(scene=str(torn)), "XML"),
@@ -25,4 +25,4 @@ def test_what_cannot_be_is_refused_in_words(tmp_path):
         (BodyRequest(preset="porsche"), "no preset"),
     ):
         with pytest.raises(WrongUse, match=reason):
-            build_body(asked)
+            build_body(request)

@@ -59,6 +59,6 @@ def test_every_choice_is_tried_after_every_other():
 
 def test_without_gymnasium_it_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
-    with pytest.raises(WrongUse) as told:
+    with pytest.raises(WrongUse) as refused:
         steering.build_environment("snake2019")
-    assert install_command("gym") in told.value.hint
+    assert install_command("gym") in refused.value.hint

@@ -20,7 +20,7 @@ def test_the_viewer_needs_a_display(monkeypatch):
 
 
 class Window:
-    """In place of MuJoCo's: is closed by its user after so many pictures."""
+    """Stands in for MuJoCo's window; its user closes it after some pictures."""
 
     def __init__(self, pictures):
         self.left, self.cam = pictures, SimpleNamespace()
