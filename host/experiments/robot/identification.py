@@ -1,19 +1,14 @@
-"""A motor's constants from what a log shows of it.
+"""Fits a motor to a log: to the duties that were written and the angles that were read.
 
-The duties that were written, and the angles that were read.
-
-The motor's own model is driven with the logged duties at their logged times, and its constants are
-varied until its angles are the logged ones. Duties and angles alone cannot tell all constants
-apart, for no torque is measured: a motor twice as strong in a robot twice as heavy moves the same.
-What they do tell is the Traits; what they do not is taken from a published motor.
+The motor's own model is driven with the logged duties at their logged times. Its traits are varied
+until its angles are the logged ones.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from math import degrees, radians
-from typing import NamedTuple
+from dataclasses import dataclass
+from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +16,7 @@ from scipy.optimize import least_squares
 from scipy.stats import t as student
 
 from host.errors import NotDone
+from host.experiments.robot.motor_traits import Traits, constants_of, traits
 from host.util.intervals import CONFIDENCE
 from sim_motor.compiled import jit
 from sim_motor.motor import (
@@ -35,84 +31,19 @@ from sim_motor.motor import (
 )
 
 Interval = tuple[float, float]
-# Kg m2; of a lighter motor, the wheel and its share of the robot would have been taken too heavy
-_LEAST_INERTIA = 1e-5
-
-
-class Traits(NamedTuple):
-    """What can be told of a motor with its wheel from duties and angles, at a known voltage of the battery.
-
-    speed_per_v: no-load speed in rad/s for each volt, without friction that does not grow with
-    speed. time_constant_s: in which speed settles while the motor is shorted; the coil's own, L/R,
-    makes it shorter by as much, to first order. viscous_part: of the damping, the rest is the
-    motor's as a generator. static_pct, kinetic_pct: friction of the gearing and on the floor
-    together, in % duty. sag: 2 source resistance / resistance. delay_ms: from the tick in which an
-    angle is read until the duty that follows from it acts, and then L/R, from which it cannot be
-    told apart. backlash_deg: as it shows by the wheel's part in the inertia, which is published.
-    """
-
-    speed_per_v: float
-    time_constant_s: float
-    viscous_part: float
-    static_pct: float
-    kinetic_pct: float
-    sag: float
-    delay_ms: float
-    backlash_deg: float
-
-
-def traits(constants: Constants, battery_v: float) -> Traits:
-    """The traits of a motor with these constants."""
-    c = constants
-    slope = c.torque_constant / c.resistance  # N m/V
-    damping = slope * c.emf_constant + c.viscous
-    pct = 100 / (slope * battery_v)
-    return Traits(
-        speed_per_v=slope / damping,
-        time_constant_s=(c.motor_inertia + c.wheel_inertia) / damping - c.inductance / c.resistance,
-        viscous_part=c.viscous / damping,
-        static_pct=(c.static + c.rolling) * pct,
-        kinetic_pct=(c.kinetic + c.rolling) * pct,
-        sag=2 * c.source_resistance / c.resistance,
-        delay_ms=1000 * (c.latency_s + c.inductance / c.resistance),
-        backlash_deg=degrees(c.backlash),
-    )
-
-
-def constants_of(found: Traits, published: Constants, battery_v: float) -> Constants:
-    """The motor of these traits; what they leave open is as published.
-
-    Torque constant, coil, and the robot's body.
-    """
-    p = published
-    slope = p.torque_constant / p.resistance
-    damping = slope / found.speed_per_v
-    newton_metre = slope * battery_v / 100
-    return replace(
-        p,
-        emf_constant=damping * (1 - found.viscous_part) / slope,
-        viscous=damping * found.viscous_part,
-        motor_inertia=max(
-            _LEAST_INERTIA,
-            (found.time_constant_s + p.inductance / p.resistance) * damping - p.wheel_inertia,
-        ),
-        static=max(0.0, found.static_pct * newton_metre - p.rolling),
-        kinetic=max(0.0, found.kinetic_pct * newton_metre - p.rolling),
-        source_resistance=found.sag * p.resistance / 2,
-        latency_s=max(0.0, found.delay_ms / 1000 - p.inductance / p.resistance),
-        backlash=radians(found.backlash_deg),
-        battery_v=battery_v,
-    )
 
 
 @dataclass(frozen=True)
 class Drive:
     """A wheel's log from rest on, one value a tick.
 
-    Time (s), angle (rad, see `middle`), duty (%), and the number of its stretch.
+    Only the motion within a stretch counts, not where the wheel stands.
 
-    A stretch begins and ends at rest. Only how the wheel moves within it counts, not where it
-    stands.
+    Attributes:
+        times: time (s), (ticks,).
+        angles: angle (rad), (ticks,); see `middle`.
+        duties: duty cycle (%), (ticks,).
+        stretches: number of the stretch, (ticks,). A stretch begins and ends at rest.
     """
 
     times: Array
@@ -122,9 +53,11 @@ class Drive:
 
 
 def middle(reading_rad: Array, polarity: int) -> Array:
-    """Where in the range that gives this reading the angle is to be expected (rad).
+    """The angles (rad) to expect where the encoder reads these: the middles of their ranges.
 
-    See sim_motor.motor.encoder.
+    Args:
+        reading_rad: readings (rad), (ticks,).
+        polarity: 1, or -1 for a motor that is mounted mirrored; see sim_motor.motor.encoder.
     """
     count = np.rint(polarity * np.degrees(reading_rad))
     return np.asarray(
@@ -153,8 +86,8 @@ def _follow(
     return angles
 
 
-# The traits that are fitted; the static friction is not, see `break_away`. How far each is moved to
-# see what it does, and its bounds.
+# The traits that are fitted; `break_away` finds the static friction. For each: how far it is moved
+# to see its effect, and its bounds.
 _FITTED = (
     "speed_per_v",
     "time_constant_s",
@@ -165,17 +98,21 @@ _FITTED = (
     "backlash_deg",
 )
 _STEPS = np.array([0.005, 0.002, 0.01, 0.2, 0.02, 0.5, 0.5])
-_LOWEST, _HIGHEST = (
-    np.array([0.2, 0.02, 0.0, 0.0, 0.0, 0.0, 0.0]),
-    np.array([20.0, 2.0, 0.9, 60.0, 2.0, 30.0, 20.0]),
-)
+_LOWEST = np.array([0.2, 0.02, 0.0, 0.0, 0.0, 0.0, 0.0])
+_HIGHEST = np.array([20.0, 2.0, 0.9, 60.0, 2.0, 30.0, 20.0])
 _COUNT = radians(1)
 LEAST_STRETCHES = 2 * len(_FITTED)
 
 
 @dataclass(frozen=True)
 class Found:
-    """Traits, where each lies with a confidence of 95 %, and how far (rms, degrees) the fitted model is from the readings."""
+    """What was found of one wheel.
+
+    Attributes:
+        traits: the motor's traits.
+        intervals: where each trait lies with a confidence of 95 %.
+        rms_deg: rms difference between the fitted model and the readings (degrees).
+    """
 
     traits: Traits
     intervals: dict[str, Interval]
@@ -183,7 +120,10 @@ class Found:
 
 
 def follow(drive: Drive, constants: Constants) -> Array:
-    """The angles (rad) of a motor with these constants that is driven so, level with the logged ones in the mean of each stretch."""
+    """The angles (rad), (ticks,), of a motor with these constants that gets the logged duties.
+
+    In each stretch their mean is that of the logged angles.
+    """
     c = constants
     angles = _follow(drive.times, c.latency_s, drive.duties, c.battery_v, c.tables(), c.scalars())
     return np.asarray(angles + _stretch_means(drive.angles - angles, drive.stretches))
@@ -196,12 +136,17 @@ def _stretch_means(values: Array, stretches: NDArray[np.int64]) -> Array:
 
 
 def break_away(drive: Drive, ramps: Sequence[int]) -> Interval:
-    """Between which duties (%) a wheel that rests begins to move.
+    """Find between which duties (%) a wheel that rests begins to move.
 
-    In these stretches the duty rises slowly from nothing.
+    The lowest duty that no longer held the wheel is at most one step above the highest that did.
+    Where the stretches differ, the interval covers them all.
 
-    The lowest duty that no longer held the wheel is at most one step above the highest that did;
-    where the stretches differ, all that they found. Raises NotDone.
+    Args:
+        drive: the wheel's drive.
+        ramps: numbers of the stretches in which the duty rises slowly from 0.
+
+    Raises:
+        NotDone: There are no such stretches, or the wheel did not move in one of them.
     """
     if not ramps:
         raise NotDone(
@@ -226,12 +171,20 @@ def break_away(drive: Drive, ramps: Sequence[int]) -> Interval:
 def identify(
     drive: Drive, steps: NDArray[np.bool_], static: Interval, published: Constants, battery_v: float
 ) -> Found:
-    """Fit a wheel's traits to the ticks marked in `steps`.
+    """Fit a wheel's traits.
 
-    The static friction is known from `break_away`.
+    The intervals are those of the linearized fit. Each stretch counts as one observation in it, as
+    what disturbs a wheel disturbs its neighbouring ticks too.
 
-    Intervals are those of the linearized fit, in which each stretch of the log counts as one
-    observation, as what disturbs a wheel disturbs its neighbouring ticks too. Raises NotDone.
+    Args:
+        drive: the wheel's drive.
+        steps: marks the ticks to fit, (ticks,).
+        static: the static friction (% duty), from `break_away`.
+        published: the motor that gives what the traits leave open, and the first guess.
+        battery_v: voltage of the battery (V).
+
+    Raises:
+        NotDone: There are too few stretches.
     """
     stretches = drive.stretches[steps]
     numbers = np.unique(stretches)
@@ -244,15 +197,14 @@ def identify(
 
     def errors(x: Array) -> Array:
         moved = start._replace(**dict(zip(_FITTED, x.tolist(), strict=True)))
-        return np.degrees(follow(drive, constants_of(moved, published, battery_v)) - drive.angles)[
-            steps
-        ]
+        angles = follow(drive, constants_of(moved, published, battery_v))
+        return np.degrees(angles - drive.angles)[steps]
 
     def slopes(x: Array) -> Array:
-        return np.stack(
-            [(errors(x + step) - errors(x - step)) / (2 * step.sum()) for step in np.diag(_STEPS)],
-            axis=1,
-        )
+        columns = [
+            (errors(x + step) - errors(x - step)) / (2 * step.sum()) for step in np.diag(_STEPS)
+        ]
+        return np.stack(columns, axis=1)
 
     guess = np.array([getattr(start, name) for name in _FITTED])
     fit = least_squares(errors, guess, slopes, bounds=(_LOWEST, _HIGHEST), x_scale=_STEPS)
@@ -263,17 +215,12 @@ def identify(
     spare = len(numbers) - len(_FITTED)
     variance = inverse @ (scores.T @ scores) @ inverse * len(numbers) / spare
     half = student.ppf((1 + CONFIDENCE) / 2, spare) * np.sqrt(np.diag(variance))
-    low, high = (
-        np.maximum(fit.x - half, _LOWEST).tolist(),
-        np.minimum(fit.x + half, _HIGHEST).tolist(),
-    )
-    intervals = {
-        "static_pct": static,
-        **dict(zip(_FITTED, zip(low, high, strict=True), strict=True)),
-    }
-    found = start._replace(**dict(zip(_FITTED, fit.x.tolist(), strict=True)))
+    low = np.maximum(fit.x - half, _LOWEST).tolist()
+    high = np.minimum(fit.x + half, _HIGHEST).tolist()
+    intervals = dict(zip(_FITTED, zip(low, high, strict=True), strict=True))
+    intervals["static_pct"] = static
     return Found(
-        found,
+        start._replace(**dict(zip(_FITTED, fit.x.tolist(), strict=True))),
         {name: intervals[name] for name in Traits._fields},
         float(np.sqrt(np.mean(fit.fun**2))),
     )

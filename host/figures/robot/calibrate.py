@@ -1,7 +1,4 @@
-"""The robot that was measured against the model that was fitted to it.
-
-Speeds, angles that are left over, and the table of constants.
-"""
+"""The measured robot beside the model that was fitted to it: speeds, errors, and the traits."""
 
 from __future__ import annotations
 
@@ -14,16 +11,18 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from host.experiments.robot.calibrate import BASE, CHECK, STEPS, drive_of, kinds
-from host.experiments.robot.identification import Drive, Traits, constants_of, follow
+from host.experiments.robot.calibrate import Numbers
+from host.experiments.robot.calibrate_rows import BASE, CHECK, STEPS, Row, drive_of, kinds
+from host.experiments.robot.identification import Drive, follow
+from host.experiments.robot.motor_traits import Traits, constants_of
 from host.figures.style import COLOURS, SIZE, styled
-from host.runs.contract import Findings, Row
+from host.runs.contract import Findings
 from robot.kicks import WHEELS
-from sim_motor.motor import Array, load
+from sim_motor.motor import Array, Constants, load
 
 _STRETCHES = 4
 _SIZES = (6.0, 3.0)  # of marks, so that both wheels show where they agree
-_REACH = 2  # a speed is measured over so many ticks before and after
+_REACH = 2  # a speed is measured from this many ticks before to as many after
 _LABELS = {
     "speed_per_v": ("no-load speed for each volt", "rad/s/V", 1.0),
     "time_constant_s": ("mechanical time constant", "ms", 1000.0),
@@ -37,14 +36,15 @@ _LABELS = {
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
-    """The figure of the experiment's rows."""
+    """Draw the rows."""
+    numbers: Numbers = findings.numbers
     kind = kinds(rows)
     drives = {side: drive_of(rows, side) for side in WHEELS}
-    models = {side: follow(drive, _constants(findings, side)) for side, drive in drives.items()}
-    numbers = drives[WHEELS[0]].stretches
-    last_steps = np.unique(numbers[kind == STEPS])[-_STRETCHES:]
+    models = {side: follow(drive, _constants(numbers, side)) for side, drive in drives.items()}
+    stretches = drives[WHEELS[0]].stretches
+    last_steps = np.unique(stretches[kind == STEPS])[-_STRETCHES:]
     columns = (
-        ("fitted: pushes forth and back", np.isin(numbers, last_steps)),
+        ("fitted: pushes forth and back", np.isin(stretches, last_steps)),
         ("predicted: as in the paper, with a kick", kind == CHECK),
     )
     with styled():
@@ -66,26 +66,23 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             errors.sharex(speeds)
             speeds.tick_params(labelbottom=False)
         places["speeds 1"].legend(loc="center right", fontsize=11)
-        _draw_table(places["table"], findings)
+        _draw_table(places["table"], numbers)
         figure.suptitle("This robot and the model that was fitted to it", fontsize=16)
     return figure
 
 
-def _constants(findings: Findings, side: str) -> Any:
-    return constants_of(
-        Traits(**findings.numbers["traits"][side]), load(BASE), findings.numbers["battery_v"]
-    )
+def _constants(numbers: Numbers, side: str) -> Constants:
+    return constants_of(Traits(**numbers["traits"][side]), load(BASE), numbers["battery_v"])
 
 
 def _speed(angles: Array, times: Array) -> Array:
-    return np.asarray(
-        (angles[2 * _REACH :] - angles[: -2 * _REACH])
-        / (times[2 * _REACH :] - times[: -2 * _REACH])
-    )
+    """Speeds (rad/s) from angles (rad) at times (s), _REACH ticks shorter at either end."""
+    travel = angles[2 * _REACH :] - angles[: -2 * _REACH]
+    return np.asarray(travel / (times[2 * _REACH :] - times[: -2 * _REACH]))
 
 
 def _pieces(drive: Drive, chosen: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
-    """The rows of each run of chosen ticks."""
+    """The rows of each run of successive chosen ticks."""
     rows = np.flatnonzero(chosen)
     return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
 
@@ -93,52 +90,34 @@ def _pieces(drive: Drive, chosen: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
 def _draw_speeds(
     axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]
 ) -> None:
-    for index, side in enumerate(WHEELS):
+    for side, colour, size in zip(WHEELS, COLOURS, _SIZES, strict=False):
         drive = drives[side]
+        dots: Any = {"color": colour, "markersize": size, "alpha": 0.6, "markeredgewidth": 0}
         for number, piece in enumerate(_pieces(drive, chosen)):
-            when = drive.times[piece][_REACH:-_REACH]
-            label: Any = {} if number else {"label": f"{side}: robot"}
-            measured = _speed(drive.angles[piece], drive.times[piece])
-            axes.plot(
-                when,
-                measured,
-                "o",
-                color=COLOURS[index],
-                markersize=_SIZES[index],
-                alpha=0.6,
-                markeredgewidth=0,
-                **label,
-            )
-            label = {} if number else {"label": f"{side}: model"}
-            axes.plot(
-                when,
-                _speed(models[side][piece], drive.times[piece]),
-                color=COLOURS[index],
-                linewidth=1.3,
-                **label,
-            )
+            times = drive.times[piece]
+            when = times[_REACH:-_REACH]
+            robot, model = (f"{side}: robot", f"{side}: model") if number == 0 else (None, None)
+            axes.plot(when, _speed(drive.angles[piece], times), "o", label=robot, **dots)
+            speeds = _speed(models[side][piece], times)
+            axes.plot(when, speeds, color=colour, linewidth=1.3, label=model)
 
 
 def _draw_errors(
     axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]
 ) -> None:
     axes.axhspan(-0.5, 0.5, color="lightgrey", alpha=0.7, linewidth=0)
-    for index, side in enumerate(WHEELS):
+    for side, colour in zip(WHEELS, COLOURS, strict=False):
         drive = drives[side]
+        errors = np.degrees(models[side] - drive.angles)
         for piece in _pieces(drive, chosen):
-            axes.plot(
-                drive.times[piece],
-                np.degrees(models[side] - drive.angles)[piece],
-                color=COLOURS[index],
-                linewidth=1.0,
-            )
+            axes.plot(drive.times[piece], errors[piece], color=colour, linewidth=1.0)
 
 
-def _draw_table(axes: Axes, findings: Findings) -> None:
+def _draw_table(axes: Axes, numbers: Numbers) -> None:
     axes.set_axis_off()
     cells = []
     for name, (label, unit, factor) in _LABELS.items():
-        cells.append([label, unit, *(_value(findings, side, name, factor) for side in WHEELS)])
+        cells.append([label, unit, *(_value(numbers, side, name, factor) for side in WHEELS)])
     titles = ["constant (95 % interval)", "unit", *WHEELS]
     table = axes.table(
         cells,
@@ -157,16 +136,10 @@ def _draw_table(axes: Axes, findings: Findings) -> None:
             cell.set_text_props(weight="bold")
 
 
-def _value(findings: Findings, side: str, name: str, factor: float) -> str:
-    """To as many decimals as the intervals are worth."""
-    value = findings.numbers["traits"][side][name] * factor
-    low, high = (bound * factor for bound in findings.numbers["intervals"][side][name])
-    widest = (
-        max(
-            end - begin
-            for begin, end in (each[name] for each in findings.numbers["intervals"].values())
-        )
-        * factor
-    )
+def _value(numbers: Numbers, side: str, name: str, factor: float) -> str:
+    """A trait and its interval, with as many decimals as the wider interval supports."""
+    value = numbers["traits"][side][name] * factor
+    low, high = (bound * factor for bound in numbers["intervals"][side][name])
+    widest = max(own[name][1] - own[name][0] for own in numbers["intervals"].values()) * factor
     decimals = max(0, 1 - floor(log10(widest)))
     return f"{value:.{decimals}f}  ({low:.{decimals}f} to {high:.{decimals}f})"

@@ -14,15 +14,9 @@ import pytest
 from host.client.robot import Robot, connect
 from host.errors import NotDone, WrongUse
 from host.experiments.robot import calibrate
-from host.experiments.robot.identification import (
-    Drive,
-    Traits,
-    break_away,
-    constants_of,
-    identify,
-    middle,
-    traits,
-)
+from host.experiments.robot.calibrate_rows import drive_of
+from host.experiments.robot.identification import Drive, break_away, identify, middle
+from host.experiments.robot.motor_traits import Traits, constants_of, traits
 from host.figures.robot.calibrate import draw
 from host.link.sim import SimLink
 from host.logs.log import Log
@@ -193,7 +187,7 @@ def test_the_same_seed_gives_the_same_rows_and_the_figure_is_drawn_from_them(odd
 
 def test_too_few_stretches_are_not_made_into_intervals(odd):
     _, rows, _ = odd[0]
-    few = calibrate.drive_of(rows, "left")
+    few = drive_of(rows, "left")
     with pytest.raises(NotDone, match="5 stretches of motion are too few"):
         identify(few, np.isin(few.stretches, [1, 2, 3, 5, 6]), (8.0, 9.0), load(), 8.1)
 
