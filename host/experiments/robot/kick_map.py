@@ -7,14 +7,14 @@ and at which phase to kick otherwise.
 from __future__ import annotations
 
 from math import ceil
-from typing import NotRequired, TypedDict
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from host.client.robot import Robot
+from host.experiments.robot.kick_map_rows import Cell, ChunkCell, Row, TrialCell, counts, of_kind
 from host.experiments.robot.reliability import kick_settled
-from host.kicking import kick_map
 from host.kicking.kick_map import (
     KINDS,
     LENGTHS,
@@ -39,39 +39,6 @@ from robot.params import Params
 # 28,000 for a length, and 390 for a direction and a phase: where all of these reverse, at least
 # 99 % do (95 % confidence); a rate of half is known to 5 %.
 CHUNK = 20000
-
-
-class ChunkCell(KickCell):
-    """Many simulated kicks of one kind and length.
-
-    Attributes:
-        chunk: number of the chunk, from 0.
-        kicks: how many kicks.
-    """
-
-    chunk: int
-    kicks: int
-
-
-class TrialCell(KickCell):
-    """One kick of a robot.
-
-    Attributes:
-        trial: number of the round, from 0.
-    """
-
-    trial: int
-
-
-Cell = ChunkCell | TrialCell
-
-
-class Row(kick_map.Row):
-    """A row of the map, with the columns of its cell, ChunkCell or TrialCell."""
-
-    chunk: NotRequired[int]
-    kicks: NotRequired[int]
-    trial: NotRequired[int]
 
 
 class Rate(TypedDict):
@@ -185,36 +152,13 @@ def trial(cell: TrialCell, robot: Robot, log: Log, setting: Setting) -> list[Cou
     ]
 
 
-def of_kind(rows: list[Row], mode: str, sign: int, before: int) -> list[Row]:
-    """The rows of a kind of kick on wheels of a direction."""
-    kicks = [row for row in rows if row["mode"] == mode and row["sign"] == sign]
-    return [row for row in kicks if row["before"] == before]
-
-
-def counts(rows: list[Row]) -> NDArray[np.float64]:
-    """Reversals and trials, (2, LENGTHS, PHASE_BINS)."""
-    totals = np.zeros((2, len(LENGTHS), PHASE_BINS))
-    for row in rows:
-        totals[:, LENGTHS.index(row["ticks"]), row["phase"]] += row["reversed"], row["tried"]
-    return totals
-
-
-def share(totals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rates of such counts; NaN where nothing was tried."""
-    done, tried = totals
-    rates: NDArray[np.float64] = np.divide(
-        done, tried, out=np.full_like(done, np.nan), where=tried > 0
-    )
-    return rates
-
-
 def report(rows: list[Row], setting: Setting) -> Findings:
     """R9 and R10 at the worst phase, and the best kick of each kind beside blind ones."""
     position = [of_kind(rows, POSITION, 0, before) for before in (1, -1)]
     named = [of_kind(rows, PHASE, before, before) for before in (1, -1)]
     claims = [
-        _whatever_the_phase("R9", "inverted positions", position),
-        _whatever_the_phase("R10", "a phase shift of the named sign", named),
+        _at_any_phase("R9", "inverted positions", position),
+        _at_any_phase("R10", "a phase shift of the named sign", named),
     ]
     numbers: Numbers = {
         "kicks": count(rows)[1],
@@ -263,14 +207,14 @@ def _rate(done: float, tried: float) -> Rate:
     }
 
 
-def _whatever_the_phase(number: str, what: str, directions: list[list[Row]]) -> Claim:
+def _at_any_phase(number: str, what: str, directions: list[list[Row]]) -> Claim:
     """Claim that a kick is reliable in each direction at each phase, and fails in both together."""
     totals = np.concatenate([counts(rows) for rows in directions], axis=2).transpose(1, 0, 2)
     by_length = dict(zip(LENGTHS, totals, strict=True))
     least_sure = {ticks: _least_sure(own) for ticks, own in by_length.items()}
     return quenched(
         number,
-        f"{what}: reliable for 3 to 5 ticks, whatever the phase",
+        f"{what}: reliable for 3 to 5 ticks at any phase",
         "in the direction and at the phase where it is least sure",
         least_sure,
         {ticks: fraction(*own.sum(axis=1)) for ticks, own in by_length.items()},

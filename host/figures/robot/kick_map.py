@@ -8,16 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
-from host.experiments.robot.kick_map import (
-    BestKick,
-    BlindKick,
-    KindNumbers,
-    Numbers,
-    Row,
-    counts,
-    of_kind,
-    share,
-)
+from host.experiments.robot.kick_map import BestKick, BlindKick, KindNumbers, Numbers
+from host.experiments.robot.kick_map_rows import Row, counts, of_kind, share
 from host.figures.style import SIZE, styled
 from host.kicking.kick_map import LENGTHS
 from host.kicking.outcome import DIRECTIONS

@@ -1,4 +1,4 @@
-"""The kick map: where it places a kick, what it counts, and the choice from it, which another simulation has to bear out."""
+"""The kick map: where it places a kick, what it counts, and the choice from it."""
 
 import json
 from math import pi
@@ -8,6 +8,7 @@ import pytest
 
 from host.client.robot import connect
 from host.experiments.robot import kick_map
+from host.experiments.robot.kick_map_rows import counts, share
 from host.kicking import planning
 from host.kicking.kick_map import (
     KINDS,
@@ -44,7 +45,7 @@ def rows(mode, sign, ticks, rates, before=1, tried=100):
 # Where a kick meets a wheel.
 
 
-def test_the_batch_tells_the_angle_that_the_kicks_first_tick_read():
+def test_the_batch_returns_the_angle_that_the_kicks_first_tick_read():
     result = batch.run(20, 200, 1, kick=Kick("m", MEMBRANE, WHEELS, 1, begin=150), record=20)
     assert np.array_equal(result.kick_phi_rad, result.records[:, 150, 0])
     assert np.isnan(batch.run(2, 50, 1).kick_phi_rad).all()
@@ -85,23 +86,18 @@ def test_success_has_the_quarter_turn_symmetry_of_two_rods_and_not_of_chance():
         for row in tally(POSITION, 0, 8, 8000, 4, params=Params())
         if row["before"] == 1
     ]
-    share = kick_map.share(kick_map.counts(found))[LENGTHS.index(8)]
-    assert share.max() > 0.9
-    assert share.min() < 0.02
-    assert np.abs(share - np.roll(share, QUARTER)).max() < 0.3
-    assert np.abs(share - np.roll(share, QUARTER // 2)).max() > 0.8
+    shares = share(counts(found))[LENGTHS.index(8)]
+    assert shares.max() > 0.9
+    assert shares.min() < 0.02
+    assert np.abs(shares - np.roll(shares, QUARTER)).max() < 0.3
+    assert np.abs(shares - np.roll(shares, QUARTER // 2)).max() > 0.8
 
 
 def test_the_two_directions_mirror_each_other():
-    made = (
-        tally(PHASE, 1, 9, 4000, 5, params=Params()),
-        tally(PHASE, -1, 9, 4000, 5, params=Params()),
-    )
-    rates = [
-        np.divide(*count(row for row in found if row["before"] == before))
-        for found, before in zip(made, (1, -1), strict=True)
-    ]
-    assert rates == pytest.approx([0.47, 0.47], abs=0.06)
+    for sign in (1, -1):
+        found = tally(PHASE, sign, 9, 4000, 5, params=Params())
+        done, tried = count(row for row in found if row["before"] == sign)
+        assert done / tried == pytest.approx(0.47, abs=0.06)
 
 
 # The choice.
@@ -203,8 +199,8 @@ def test_only_the_newest_plans_are_kept(monkeypatch):
 
 
 def test_plans_with_a_window_and_none_at_all_are_kept_as_they_are(monkeypatch):
-    made = iter([Plan(PHASE, 12, -1.0, (6.0, 0.5), 30, 30), None])
-    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(made))
+    plans = iter([Plan(PHASE, 12, -1.0, (6.0, 0.5), 30, 30), None])
+    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(plans))
     fresh = [reversal(before, DEFAULTS) for before in (1, -1)]
     assert [reversal(before, DEFAULTS) for before in (1, -1)] == fresh
     assert fresh[0].window_rad == (6.0, 0.5)
@@ -212,7 +208,7 @@ def test_plans_with_a_window_and_none_at_all_are_kept_as_they_are(monkeypatch):
 
 
 @pytest.mark.parametrize("damage", ["", "no json", "[]"])
-def test_kept_plans_that_cannot_be_read_are_made_anew(monkeypatch, damage):
+def test_kept_plans_that_cannot_be_read_are_computed_again(monkeypatch, damage):
     monkeypatch.setattr(planning, "_compute_plan", lambda *_: Plan(PHASE, 4))
     reversal(1, DEFAULTS)
     planning._file().write_text(damage)
