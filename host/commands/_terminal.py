@@ -96,7 +96,8 @@ def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
         The log and the file's path.
     """
     from host.logs.log import Log
-    from host.logs.mcap_files import McapTap, new_path
+    from host.logs.log_folder import new_path
+    from host.logs.mcap_files import McapTap
 
     path = new_path(kind)
     log = Log(robot.info())

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> int:
-    from host.logs.mcap_files import LOG_FOLDER, list_logs
+    from host.logs.log_folder import LOG_FOLDER, list_logs
 
     folder = options.folder or LOG_FOLDER
     if not folder.is_dir():
@@ -82,7 +82,7 @@ def _list(options: argparse.Namespace) -> int:
 
 def _pull(options: argparse.Namespace) -> int:
     from host.logs.log import Log
-    from host.logs.mcap_files import new_path
+    from host.logs.log_folder import new_path
 
     with robot_of(options) as robot:
         log = Log(robot.info())

@@ -48,7 +48,8 @@ def run(options: argparse.Namespace) -> int:
     Returns:
         The exit status: 5 if the robot fell into a fault meanwhile.
     """
-    from host.logs.mcap_files import McapTap, new_path
+    from host.logs.log_folder import new_path
+    from host.logs.mcap_files import McapTap
     from host.util.progress import progress
 
     if not 0.0 < options.seconds < 1e6:

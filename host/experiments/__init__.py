@@ -1,1 +1,1 @@
-"""Every experiment with the robot and with simulated bodies, one file each, listed in host.experiments.registry."""
+"""The experiments with the robot and with simulated bodies; `registry` lists them."""

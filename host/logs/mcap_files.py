@@ -1,10 +1,11 @@
-"""Logs on disk: MCAP files with JSON schemas, which Foxglove, Lichtblick and PlotJuggler open, and which read back bit for bit.
+"""Logs on disk: MCAP files with JSON schemas, which read back bit for bit.
 
-A file holds the metadata record `kickctl` (the log's info; text as it is, anything else as JSON), the channel /ticks with one
-message a tick and the channel /events. Messages stand in the order of the robot's stream; an event carries the log time of the
-record it precedes. A chunk is closed, and handed to the operating system, for every second of robot time: a process that is killed
-loses what came after the last whole chunk, and since chunks follow each other with nothing needed from the end of the file, the
-rest reads without it.
+Foxglove, Lichtblick and PlotJuggler open them. A file holds the metadata record `kickctl` (the
+log's info: text as it is, anything else as JSON), the channel /ticks with one message a tick, and
+the channel /events. Messages have the order of the robot's stream; an event has the log time of the
+record that follows it. A chunk is closed and given to the operating system for every second of
+robot time. A process that is killed loses what came after the last whole chunk; the rest reads
+without the end of the file.
 """
 
 from __future__ import annotations
@@ -13,14 +14,11 @@ import json
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
-from datetime import datetime
-from math import inf
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from mcap.exceptions import McapError
-from mcap.reader import SeekingReader
 from mcap.records import Channel, Message, Metadata
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
@@ -33,17 +31,17 @@ from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 METADATA = "kickctl"
 FORMAT = "1"
 TICKS, EVENTS = "/ticks", "/events"
-LOG_FOLDER = Path("logs")
 CHUNK_S = 1.0
 
 _GIVE_OURS = "give a log that kickctl recorded; 'kickctl log list' shows those in ./logs"
 _NAMED = {"state": STATES, "kick": KICK_NAMES}
-# What a file that breaks off or was damaged makes the reader stumble over; a wrong checksum and wrong UTF-8 are ValueErrors.
-_DAMAGE = (McapError, struct.error, ValueError, RuntimeError, KeyError, OverflowError, MemoryError)
+# What the reader raises for a file that breaks off or was damaged. A wrong checksum and wrong UTF-8
+# are ValueErrors.
+DAMAGE = (McapError, struct.error, ValueError, RuntimeError, KeyError, OverflowError, MemoryError)
 
 
 class LogError(WrongUse):
-    """A log cannot be made or read."""
+    """A log cannot be written or read."""
 
 
 def _ticks_schema() -> dict[str, Any]:
@@ -53,9 +51,8 @@ def _ticks_schema() -> dict[str, Any]:
             properties[channel.name] = {"type": "string", "enum": list(_NAMED[channel.name])}
         else:
             properties[channel.name] = {"type": "number" if channel.code in "df" else "integer"}
-        properties[channel.name]["description"] = (
-            f"[{channel.unit}] {channel.doc.split(':')[0] if channel.name in _NAMED else channel.doc}"
-        )
+        doc = channel.doc.split(":")[0] if channel.name in _NAMED else channel.doc
+        properties[channel.name]["description"] = f"[{channel.unit}] {doc}"
     return {
         "title": "tick",
         "description": "one tick of the robot",
@@ -97,11 +94,16 @@ def _from_text(text: str) -> Any:
 
 
 class McapTap:
-    """A Tap that writes a new file while the stream arrives; a context manager. `path` is where.
+    """A Tap, and context manager, that writes a new file while the stream arrives.
 
-    info: see Log; its clock_zero_s, or that of a `restart` event for what follows, turns the robot's clock into UTC.
-    Raises LogError if the file exists already or cannot be made: a log is never overwritten. OSError, with the
-    file's name, if the disk fails later.
+    Args:
+        path: the new file; also an attribute. A log is never overwritten.
+        info: see Log. Its clock_zero_s turns the robot's clock into UTC; after a `restart` event,
+            that of the event does.
+
+    Raises:
+        LogError: The file exists already or cannot be written.
+        OSError: The disk fails later; the error names the file.
     """
 
     def __init__(self, path: str | Path, info: dict[str, Any]) -> None:
@@ -115,7 +117,7 @@ class McapTap:
                     "choose another name",
                 ) from None
             raise LogError(
-                f"{self.path} cannot be made: {error.strerror}",
+                f"{self.path} cannot be written: {error.strerror}",
                 "choose a folder that is there, and that you may write to",
             ) from None
         self._zero_ns = _nanoseconds(info.get("clock_zero_s", 0.0))
@@ -151,7 +153,7 @@ class McapTap:
                     self._chunk_ns = self._now_ns
 
     def take_event(self, event: Event) -> None:
-        """Keep an event until the record it concerns tells the time."""
+        """Keep an event until the next record gives it its time."""
         if event["event"] == "restart" and "clock_zero_s" in event:
             self._zero_ns = _nanoseconds(event["clock_zero_s"])
         self._waiting.append(event)
@@ -187,7 +189,7 @@ class McapTap:
 
 @contextmanager
 def _named(path: Path) -> Iterator[None]:
-    """Have the OSError of a disk that is full or fails tell which file it was."""
+    """Add the file's name to the OSError of a disk that is full or fails."""
     try:
         yield
     except OSError as error:
@@ -200,10 +202,13 @@ def _nanoseconds(seconds: float) -> int:
 
 
 def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
-    """Feed a tap with the stream in a file. Returns the log's info, and whether the file is whole.
+    """Feed a tap with the stream in a file, as far as the file can be read.
 
-    One that breaks off or is damaged gives what can be read up to there. Raises LogError if the file cannot be opened, is no MCAP file,
-    or is none of ours.
+    Returns:
+        The log's info, and whether the file is whole.
+
+    Raises:
+        LogError: The file cannot be opened, or is not a log of kickctl.
     """
     path = Path(path)
     info: dict[str, Any] | None = None
@@ -224,7 +229,7 @@ def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
                         topics[item.id] = item.topic
                     elif isinstance(item, Message) and info is not None:
                         _take(tap, topics[item.channel_id], json.loads(item.data))
-            except _DAMAGE:
+            except DAMAGE:
                 whole = False
     except OSError as error:
         raise LogError(
@@ -251,99 +256,7 @@ def _take(tap: Tap, topic: str, message: dict[str, Any]) -> None:
             message[name] = words.index(message[name])
         values = [message[name] for name in NAMES]
         if not all(isinstance(value, (int, float)) for value in values):
-            raise ValueError("a value that is no number")
+            raise ValueError("a value that is not a number")
         tap.take_records([Record(*values)])
     elif topic == EVENTS:
         tap.take_event(message)
-
-
-def new_path(kind: str) -> Path:
-    """A name in ./logs for a new log that begins now (local time), as logs/kick-20261122-153012.mcap; one that is not taken.
-
-    Makes the folder if need be. Raises LogError if that cannot be done.
-    """
-    stem = f"{kind}-{datetime.now().astimezone():%Y%m%d-%H%M%S}"
-    path = LOG_FOLDER / f"{stem}.mcap"
-    number = 1
-    while path.exists():
-        number += 1
-        path = LOG_FOLDER / f"{stem}-{number}.mcap"
-    try:
-        LOG_FOLDER.mkdir(exist_ok=True)
-    except OSError as error:
-        raise LogError(
-            f"the folder {LOG_FOLDER} cannot be made here: {error.strerror}",
-            "go to a folder that you may write to",
-        ) from None
-    return path
-
-
-class Summary(NamedTuple):
-    """One line of a list of logs. `note` is empty, or says what is wrong with the file."""
-
-    path: Path
-    ticks: int
-    seconds: float
-    brick: str
-    started_utc: str
-    note: str
-
-
-def list_logs(folder: str | Path = LOG_FOLDER) -> list[Summary]:
-    """The MCAP files in a folder, by name. Only files that break off are read as a whole."""
-    return [_summarize(path) for path in sorted(Path(folder).glob("*.mcap"))]
-
-
-def _summarize(path: Path) -> Summary:
-    try:
-        with path.open("rb") as file:
-            reader = SeekingReader(file)
-            summary = reader.get_summary()
-            info = {item.name: item.metadata for item in reader.iter_metadata()}.get(METADATA)
-            if summary is not None and summary.statistics is not None and info is not None:
-                counts = summary.statistics.channel_message_counts
-                ticks = sum(
-                    counts.get(channel.id, 0)
-                    for channel in summary.channels.values()
-                    if channel.topic == TICKS
-                )
-                seconds = (
-                    summary.statistics.message_end_time - summary.statistics.message_start_time
-                ) / 1e9
-                return Summary(
-                    path, ticks, seconds, info.get("brick", ""), info.get("started_utc", ""), ""
-                )
-    except (OSError, *_DAMAGE):
-        pass  # without its index, the file has to be read
-    extent = _Extent()
-    try:
-        brief, whole = play(path, extent)
-    except LogError as error:
-        return Summary(path, 0, 0.0, "", "", str(error))
-    note = "" if whole else "breaks off"
-    return Summary(
-        path,
-        extent.ticks,
-        extent.seconds,
-        str(brief.get("brick", "")),
-        str(brief.get("started_utc", "")),
-        note,
-    )
-
-
-class _Extent:
-    """A tap that finds how long a stream is."""
-
-    def __init__(self) -> None:
-        self.ticks = 0
-        self.seconds = 0.0
-        self._latest_s = inf
-
-    def take_records(self, records: list[Record]) -> None:
-        for record in records:
-            self.seconds += max(0.0, record.t_s - self._latest_s)
-            self._latest_s = record.t_s
-        self.ticks += len(records)
-
-    def take_event(self, event: Event) -> None:
-        """A robot that begins anew counts its time anew; the step back is no time."""

@@ -1,4 +1,4 @@
-"""What a wheel does, from its angles: which way it turns, whether it has settled, and how long that took."""
+"""How a wheel moves, from its angles: its direction, and whether and when it has settled."""
 
 from __future__ import annotations
 
@@ -20,9 +20,18 @@ PAUSE = 0.5
 
 
 def heading_of(phi: Sequence[float]) -> str:
-    """'forward', 'backward' or 'stopped' after the last of some angles (rad) of successive ticks, by the robot's own rule.
+    """The heading after the last of some angles, by the robot's own rule.
 
-    The travel over DIRECTION_TICKS ticks decides, or over those that there are.
+    The travel over DIRECTION_TICKS ticks decides, or over fewer if there are not that many.
+
+    Args:
+        phi: angles (rad) of successive ticks.
+
+    Returns:
+        'forward', 'backward' or 'stopped'.
+
+    Raises:
+        ValueError: There is no angle.
     """
     if not len(phi):
         raise ValueError("a wheel's heading needs at least one angle")
@@ -30,29 +39,47 @@ def heading_of(phi: Sequence[float]) -> str:
 
 
 def travels(phi: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far (rad) wheels at angles phi (rad), (ticks, ...), came in the DIRECTION_TICKS ticks up to each; 0 before there are so many."""
+    """How far (rad) wheels came in the DIRECTION_TICKS ticks up to each tick.
+
+    Args:
+        phi: angles (rad), (ticks, ...).
+
+    Returns:
+        Travels (rad), as many as angles; 0 in the first DIRECTION_TICKS ticks.
+    """
     found = np.zeros_like(phi)
     found[DIRECTION_TICKS:] = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
     return found
 
 
 def directions(phi: NDArray[np.float64]) -> NDArray[np.int64]:
-    """1 forward, -1 backward, 0 at rest after each tick, by the robot's own rule; phi as for `travels`."""
+    """The directions after each tick, by the robot's own rule: 1 forward, -1 backward, 0 at rest.
+
+    Args:
+        phi: angles (rad), (ticks, ...).
+    """
     way = travels(phi)
     return np.where(np.abs(way) > REST_TRAVEL_RAD, np.sign(way), 0).astype(np.int64)
 
 
 def heading(log: Log, side: str, tick: int) -> str:
-    """The heading of the 'left' or 'right' wheel after `tick`: what the robot finds for a kick that begins in the tick after.
+    """The heading of a wheel after a tick, as the robot finds it for a kick in the next tick.
 
-    If the number stands in the log twice, as the robot began anew, the later one is meant. ValueError if it does not stand there.
+    Args:
+        log: the log.
+        side: 'left' or 'right'.
+        tick: number of the tick. If the robot restarted and the log has this number twice, the
+            later one counts.
+
+    Raises:
+        ValueError: The tick is not in the log.
     """
     ticks, _, phi, row = _around(log, side, tick)
     return heading_of(phi[: row + 1][ticks[: row + 1] >= tick - DIRECTION_TICKS].tolist())
 
 
 def _around(log: Log, side: str, tick: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], int]:
-    """Ticks, times and angles between the restarts around `tick`, and its row in them."""
+    """Ticks, times (s) and angles (rad) between the restarts around `tick`, and its row in them."""
     ticks = log.column("tick")
     rows = np.flatnonzero(ticks == tick)
     if not len(rows):
@@ -66,13 +93,22 @@ def _around(log: Log, side: str, tick: int) -> tuple[NDArray[Any], NDArray[Any],
 
 
 def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
-    """Whether a wheel moves steadily, or rests, at the end of its angles phi (rad) at the times t (s).
+    """Whether a wheel moves steadily, or rests, at the end of its angles.
 
-    The last two windows of WINDOW_S are compared; less than two windows of data are never settled, so that after a kick, given the
-    angles since, the answer is about these alone. Rest: no travel of more than one count of the encoder in either. Steady motion:
-    both windows' travels agree in sign and to BAND of the greater, or to two counts, which the encoder's steps may make of equal
-    travels; and, however well irregular motion may agree by chance, nowhere did the wheel turn back by more than a count, nor pause
-    or hurry for a quarter of the time, so that its travel there differs from the mean by more than PAUSE of it.
+    The last two windows of WINDOW_S are compared. Less than two windows of data are never settled:
+    given the angles since a kick, the answer depends on these alone. A wheel rests if it travels by
+    no more than one count of the encoder in the two windows. It moves steadily if
+
+    - the travels of both windows have the same sign and agree to BAND of the greater, or to two
+      counts, by which the encoder's steps may change equal travels;
+    - it never turned back by more than a count;
+    - in no quarter of the time did it pause or hurry, so that its travel there differs from the
+      mean by more than PAUSE of it. Irregular motion may agree in two windows by chance, but not in
+      this.
+
+    Args:
+        phi: angles (rad), (ticks,).
+        t: times (s), (ticks,).
     """
     times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
     if len(times) < 2 or times[-1] - times[0] < 2 * WINDOW_S - ROUNDING:
@@ -94,7 +130,19 @@ def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
 
 
 def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
-    """How long (s) after the begin of a kick the 'left' or 'right' wheel had settled, as settling_of has it. ValueError as heading."""
+    """How long after the begin of a kick a wheel had settled.
+
+    Args:
+        log: the log.
+        side: 'left' or 'right'.
+        begin_tick: the kick's first tick.
+
+    Returns:
+        The time (s), or None if the wheel has not settled by the end of the log or by a restart.
+
+    Raises:
+        ValueError: The tick is not in the log.
+    """
     _, times, angles, row = _around(log, side, begin_tick)
     return settling_of(angles, times, float(times[row]))
 
@@ -102,9 +150,15 @@ def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
 def settling_of(
     phi: Sequence[float] | NDArray[Any], t: Sequence[float] | NDArray[Any], begin_s: float
 ) -> float | None:
-    """How long after begin_s (s) a wheel with the angles phi (rad) at the times t (s) had settled, by the rule of sim_motor.settling.
+    """How long after a moment a wheel had settled, by the rule of sim_motor.settling.
 
-    None if it has not by the end of the data.
+    Args:
+        phi: angles (rad), (ticks,).
+        t: times (s), (ticks,).
+        begin_s: the moment (s).
+
+    Returns:
+        The time (s), or None if the wheel has not settled by the end of the data.
     """
     found = rule(
         np.asarray(phi, dtype=float).tolist(), np.asarray(t, dtype=float).tolist(), begin_s

@@ -1,7 +1,7 @@
-"""Feed a log's angles and delta t to the controller again: what it then computes must be what the robot recorded, bit for bit.
+"""Recompute the controller from the logged angles and delta t, and compare exactly.
 
-Nothing is computed here: the wheels are robot.wheel.Wheel, the limiter is robot.safety.limit_duty, and parameters and kicks are
-followed through the log's events as the robot's own black box follows them.
+The robot's own code computes: robot.wheel.Wheel, robot.safety.limit_duty, and the black box's way
+to follow parameters and kicks through the log's events.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ OTHER_MACHINE_TOLERANCE = 1e-12
 
 @dataclass(frozen=True)
 class Mismatch:
-    """A channel of a tick that came out differently."""
+    """A channel of a tick that the replay computed differently."""
 
     tick: int
     channel: str
@@ -35,17 +35,23 @@ class Mismatch:
     replayed: float
 
     def __str__(self) -> str:
-        return f"{self.channel} of tick {self.tick} is {self.recorded!r} in the log and {self.replayed!r} in the replay"
+        where = f"{self.channel} of tick {self.tick}"
+        return f"{where} is {self.recorded!r} in the log and {self.replayed!r} in the replay"
 
 
 @dataclass
 class ReplayResult:
-    """What came of a replay.
+    """What a replay found.
 
-    compared: ticks whose every channel was compared; not_comparable: ticks from whose record the potentials had to be taken, as
-    nothing says what they were before: the first of the log, the first after a gap or a restart, and those in the middle of which a
-    motor failed. first: the first channel that differs in any bit; beyond: the first that differs by more than `tolerance`; worst:
-    the greatest difference.
+    Attributes:
+        tolerance: the largest difference that counts as reproduced.
+        compared: how many ticks were compared in every channel.
+        not_comparable: how many ticks gave their potentials to the replay, because the log does not
+            say what these were before: the first tick of the log, the first after a gap or a
+            restart, and ticks in which a motor failed.
+        first: the first channel that differs in any bit.
+        beyond: the first channel that differs by more than the tolerance.
+        worst: the greatest difference.
     """
 
     tolerance: float
@@ -62,7 +68,10 @@ class ReplayResult:
 
     @property
     def reproduced(self) -> bool:
-        """Whether something was compared and nothing differs by more than the tolerance, which is 0 for logs of this kind of machine."""
+        """Whether something was compared, and nothing differs by more than the tolerance.
+
+        The tolerance is 0 for logs of this kind of machine.
+        """
         return self.compared > 0 and self.beyond is None
 
     def note(self, mismatch: Mismatch) -> None:
@@ -75,7 +84,7 @@ class ReplayResult:
 
 
 class _Controller:
-    """The robot's controller as the log tells of it: the wheels, and the parameters and the kick in force."""
+    """The robot's controller as the log describes it: wheels, parameters and the present kick."""
 
     def __init__(self) -> None:
         self.wheels = [Wheel(side) for side in WHEELS]
@@ -84,7 +93,7 @@ class _Controller:
         self._kick: Kick | None = None
 
     def take(self, event: Event) -> None:
-        """Bring parameters, kick and potentials past an event."""
+        """Change parameters, kick and potentials as an event says."""
         if event["event"] == "snapshot":
             self._snapshot = Snapshot(event["params"], event["kick"])
         else:
@@ -96,7 +105,7 @@ class _Controller:
                 wheel.x1, wheel.x2 = potentials
 
     def step(self, record: Record) -> None:
-        """The tick that a record tells of."""
+        """Compute the tick of a record."""
         for wheel in self.wheels:
             if record.state == RUNNING:
                 wheel.phi = getattr(record, wheel.side + "_phi_rad")
@@ -105,17 +114,16 @@ class _Controller:
                 wheel.rest()
 
     def adopt(self, record: Record) -> None:
-        """Take the potentials that a record tells of."""
+        """Take over the potentials of a record."""
         for wheel in self.wheels:
-            wheel.x1, wheel.x2 = (
-                getattr(record, wheel.side + "_x1"),
-                getattr(record, wheel.side + "_x2"),
-            )
+            wheel.x1 = getattr(record, wheel.side + "_x1")
+            wheel.x2 = getattr(record, wheel.side + "_x2")
 
     def differences(self, record: Record) -> Iterator[Mismatch]:
-        """Every channel of a record that is not, in every bit, what `step` came to."""
+        """Yield every channel of a record that is not what `step` computed, in every bit."""
         for wheel in self.wheels:
-            # From the recorded torque: rounding to whole percents may turn a difference in the last bit into one of 1.
+            # From the recorded torque: rounding to whole percents may turn a difference in the last
+            # bit into one of 1.
             torque = getattr(record, wheel.side + "_torque")
             duty = (
                 limit_duty(self.params.duty_scale * torque, self.params.max_duty_pct)
@@ -136,7 +144,7 @@ class _Controller:
 
 
 def replay(log: Log) -> ReplayResult:
-    """Replay a log; see ReplayResult for what is found. Nothing differs in the replay of a log that was neither changed nor damaged."""
+    """Replay a log. In a log that was neither changed nor damaged, nothing differs."""
     here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
     result = ReplayResult(
         0.0 if log.info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE

@@ -1,7 +1,7 @@
-"""Logs as tables, for spreadsheets and numpy: one row a tick, in the columns of COLUMNS.
+"""Logs as tables for spreadsheets and numpy: one row a tick, with the columns COLUMNS.
 
-Channels have the names, units and meaning of robot.record.CHANNELS, with names for state and kick; to these comes
-left_omega_rad_s, right_omega_rad_s, as Log.omega has them. Floats are written so that they read back bit for bit.
+Columns have the names, units and meaning of robot.record.CHANNELS, but state and kick are words.
+left_omega_rad_s and right_omega_rad_s are those of Log.omega. Floats read back bit for bit.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ COLUMNS = (
 
 
 def columns(arrays: dict[str, Any]) -> dict[str, Any]:
-    """A log's arrays in the order of COLUMNS, with kick (its mode, or empty) and state as text."""
+    """A log's arrays in the order of COLUMNS, with state and kick as words; no kick is empty."""
     import numpy as np
 
     named = {
@@ -35,7 +35,7 @@ def columns(arrays: dict[str, Any]) -> dict[str, Any]:
 
 
 def write_csv(arrays: dict[str, Any], out: TextIO) -> None:
-    """Write the table as comma-separated values under a line of names."""
+    """Write the table as comma-separated values below a line of column names."""
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)
     writer.writerows(zip(*(column.tolist() for column in columns(arrays).values()), strict=True))

@@ -1,4 +1,4 @@
-"""What a robot's subscription is made of, and what takes it in."""
+"""The stream of a robot's subscription, and the interface of what receives it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ Event = dict[str, Any]
 
 
 class Tap(Protocol):
-    """What a client feeds with the stream of a subscription, in the stream's order: an event stands before the record it concerns."""
+    """Receives the stream of a subscription in order: an event before the record it concerns."""
 
     def take_records(self, records: list[Record]) -> None:
-        """The next records, oldest first."""
+        """Receive the next records, oldest first."""
 
     def take_event(self, event: Event) -> None:
-        """The next event: `event` (its name), `tick`, and what belongs to it."""
+        """Receive the next event: `event` (its name), `tick`, and its other fields."""

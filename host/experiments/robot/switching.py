@@ -28,19 +28,25 @@ from sim_motor.motor import SUBSTEP_S, Constants, load
 Array = NDArray[np.float64]
 
 SWITCHES, ROLLS, RESTS = "switches", "rolls", "rests"
-# A wheel that has not switched for so long has stopped, for the time being: of 100 intervals
-# between switches at most one is longer.
+# A wheel that has not switched for this long has stopped switching: of 100 intervals between
+# switches at most one is longer.
 QUIET_S = 30.0
-# One run of the batch keeps the records of at most so many ticks.
+# One run of the batch keeps the records of at most this many ticks.
 _MOST_TICKS = 2_000_000
 _DEFAULT = Params()
 
 
 @dataclass(frozen=True)
 class Condition:
-    """How a simulated brick differs from the one that was asked for; None is as there. inertia.
+    """How a simulated brick differs from that of the setting; None stands for no difference.
 
-    Factor on the motor's own.
+    Attributes:
+        max_duty_pct: highest duty cycle (%).
+        tick_s: control period (s).
+        motor: name of the motor.
+        battery_v: open-circuit voltage of the battery (V).
+        latency_s: latency of the motors (s).
+        inertia: the motor's moment of inertia, as a multiple of its own (1).
     """
 
     max_duty_pct: float = _DEFAULT.max_duty_pct
@@ -51,7 +57,7 @@ class Condition:
     inertia: float = 1.0
 
     def constants(self, setting: Setting) -> Constants:
-        """Motor and wheel."""
+        """The constants of motor and wheel."""
         published = load(self.motor or setting.motor)
         latency_s = published.latency_s if self.latency_s is None else self.latency_s
         return replace(
@@ -59,11 +65,11 @@ class Condition:
         )
 
     def supply_v(self, setting: Setting) -> float:
-        """The battery's open-circuit voltage."""
+        """The battery's open-circuit voltage (V)."""
         return self.battery_v or setting.battery_v or self.constants(setting).battery_v
 
     def params(self, **changes: float) -> Params:
-        """Parameters of the loop."""
+        """The parameters of the loop, with these changes."""
         params = Params()
         params.apply(
             params.check({"max_duty_pct": self.max_duty_pct, "tick_s": self.tick_s, **changes})
@@ -72,7 +78,7 @@ class Condition:
 
 
 class Jump(NamedTuple):
-    """A jump of the first neuron's potential in a tick."""
+    """A jump of the first neuron's potential: in which tick, and by how much (1)."""
 
     tick: int
     size: float
@@ -105,12 +111,21 @@ def wheels_run(
     jump: Jump | None = None,
     **changes: float,
 ) -> Iterator[Array]:
-    """Records of wheels from random starts, a few wheels at a time.
+    """Run wheels from random starts, and yield their records a few wheels at a time.
 
-    (wheels, ticks, CHANNELS of sim_motor.batch).
+    The same seed gives the same starts, motors and ticks, with any jump.
 
-    changes: parameters of the loop. The same seed gives the same starts, motors and ticks, whatever
-    the jump.
+    Args:
+        condition: how the brick differs from the setting's.
+        setting: of the run.
+        wheels: how many wheels.
+        seconds: how long each runs (s).
+        seed: seed of all chance.
+        jump: a jump of a potential, None for no jump.
+        changes: parameters of the loop.
+
+    Yields:
+        Records, (wheels, ticks, CHANNELS of sim_motor.batch).
     """
     params = condition.params(**changes)
     ticks = round(seconds / params.tick_s)
@@ -151,7 +166,7 @@ def _loop_run(
     seed: int,
     jump: Jump | None,
 ) -> Array:
-    """One robot, through its whole loop."""
+    """Records of one or two wheels of a robot that runs its whole loop."""
     rng = np.random.default_rng(seed)
     clock = VirtualClock(seed)
     pair = (constants * 2)[:2]
@@ -183,7 +198,7 @@ def _loop_run(
 
 
 def switches(phi: Array) -> NDArray[np.int64]:
-    """The ticks in which a wheel turned around, from its angles (rad), one a tick."""
+    """The ticks in which a wheel changed its direction, from its angles (rad), (ticks,)."""
     way = directions(phi)
     moving = np.flatnonzero(way)
     changes = np.flatnonzero(np.diff(way[moving]))
@@ -195,7 +210,7 @@ def switches(phi: Array) -> NDArray[np.int64]:
 
 
 def ending(phi: Array, tick_s: float) -> tuple[float, str]:
-    """Until when (s) a wheel switched, and what it does in the end: SWITCHES, ROLLS or RESTS."""
+    """When a wheel switched last (s), and what it does then: SWITCHES, ROLLS or RESTS."""
     found = switches(phi)
     until_s = float(found[-1] * tick_s) if len(found) else 0.0
     if len(phi) * tick_s - until_s < QUIET_S:

@@ -1,4 +1,4 @@
-"""The robot's loop by itself, with no host: nothing but the clock makes it wait."""
+"""The robot's loop by itself, with no host: it waits for its clock only."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from robot.record import Record, unpack
 
 
 def run(loop: Loop, ticks: int) -> list[Record]:
-    """Let so many ticks pass, and return their records."""
+    """Run the loop for this number of ticks, and return their records."""
     records: list[Record] = []
     for _ in range(ticks):
         loop.clock.wait(loop.deadline, lambda timeout_s: None)

@@ -19,8 +19,7 @@ from host.logs.log import Log
 from host.logs.tap import Event
 from robot.kicks import WHEELS
 
-# What to show of one kick: two turns of the wheels before it, and long enough after it for them to
-# settle.
+# What to show of one kick: two turns of the wheels before it, and enough time after it to settle.
 KICK_WINDOW_S = (-1.0, 2.0)
 STALL_TORQUE = 0.1  # friction holds a wheel at torques below this one (paper, section 'Robot')
 
@@ -41,7 +40,7 @@ class Span(NamedTuple):
 
 
 def spans(log: Log, begin: int = 0) -> list[Span]:
-    """The kicks that acted from record number `begin` on, each to its end or to where a stop cut it short."""
+    """The kicks that acted from record number `begin` on, each until it ended or was stopped."""
     found = []
     for row, kick in log.kicks():
         after = row
@@ -71,12 +70,18 @@ def draw(
     window: tuple[float, float] | None = None,
     zero_tick: int | None = None,
 ) -> Path:
-    """Draw a PNG, 1600 pixels wide, at `path`, over whatever the file held.
+    """Draw a log as a PNG, 1600 pixels wide. After a restart of the robot, only the rest is drawn.
 
-    window: the stretch (s) to show as far as there is data, in the figure's own time, which is 0 at
-    the begin of zero_tick; all of the log by default. zero_tick: by default that of the log's first
-    kick, or of the log if it has none. Of a robot that began anew only what came after is shown.
-    ValueError if there are no ticks, or not that one.
+    Args:
+        log: the log.
+        path: the file; a file that is there already is replaced.
+        title: title of the figure.
+        window: from when to when (s) to draw, in the figure's time; None for all of the log.
+        zero_tick: the tick that begins at time 0; by default the first of the first kick, or of the
+            log if it has no kick.
+
+    Raises:
+        ValueError: The log has no ticks, or not that one.
     """
     begin = max([0, *log.restarts()])
     if begin >= len(log):
@@ -171,7 +176,7 @@ def _draw_speeds(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
 
 
 def _name(axes: Axes, kicks: list[Span], first_s: float, last_s: float) -> None:
-    """Name the kicks above the curves, each as low as the names before it leave room, and put the legend above all."""
+    """Name the kicks above the curves, in lines that avoid overlap, and put the legend on top."""
     character_s = (last_s - first_s) / 105
     line_ends: list[float] = []
     for span in kicks:

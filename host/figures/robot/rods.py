@@ -1,6 +1,6 @@
-"""The rods of a wheel at work, drawn as in the paper's fig. sketch_robot.
+"""Pictures of a film: the rods of a wheel as in the paper's fig. sketch_robot.
 
-A film's pictures, with potentials and torque beside them.
+Potentials and torque are beside them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from host.films.rod_course import Course
 
 SIZE = (960, 480)
 _DPI = 100
-# The rods end so far from the wheel's axle; the springs lie beside them.
+# How far from the wheel's axle the rods end, and how far beside them the springs lie.
 _LONG, _ASIDE = 2.9, 0.42
 _ROD, _WHEEL = "dimgrey", "#e8e8e8"
 _ACTUAL, _TARGET, _KICK = COLOURS[4], COLOURS[2], COLOURS[1]
@@ -31,21 +31,21 @@ _COILS = 7
 
 
 def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
-    """A picture for each time of the course, (height, width, 3). slower.
+    """Draw a picture for each time of the course.
 
-    Than life, as the film says.
+    Args:
+        course: what the wheel does.
+        slower: how many times slower than life the film is; the picture says so.
+
+    Yields:
+        Pictures, (height, width, 3).
     """
     with styled():
         figure = Figure(figsize=(SIZE[0] / _DPI, SIZE[1] / _DPI), dpi=_DPI)
         canvas: Any = FigureCanvasAgg(figure)
-        wheel, neurons, torque = (
-            figure.add_axes(place)
-            for place in (
-                (0.0, 0.0, 0.5, 1.0),
-                (0.585, 0.52, 0.395, 0.36),
-                (0.585, 0.13, 0.395, 0.29),
-            )
-        )
+        wheel = figure.add_axes((0.0, 0.0, 0.5, 1.0))
+        neurons = figure.add_axes((0.585, 0.52, 0.395, 0.36))
+        torque = figure.add_axes((0.585, 0.13, 0.395, 0.29))
         machine = _Machine(wheel)
         turning = np.gradient(course.phi)
         curves = _curves(neurons, torque, course)
@@ -62,13 +62,8 @@ def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
                 line.set_data(course.t_s[: number + 1], values[: number + 1])
                 dot.set_data([now_s], [values[number]])
             acts = 0.0 <= now_s < course.kick_s
-            way.set_text(
-                f"{course.kick} kick"
-                if acts
-                else "forward"
-                if turning[number] > 0.0
-                else "backward"
-            )
+            heading = "forward" if turning[number] > 0.0 else "backward"
+            way.set_text(f"{course.kick} kick" if acts else heading)
             way.set_color(_KICK if acts else "black")
             canvas.restore_region(still)
             for artist in moving:
@@ -111,7 +106,10 @@ def _curves(
 
 
 class _Machine:
-    """A wheel with two rods, the first along x, the second along y, each with a head that a spring pulls to its target."""
+    """A wheel with two rods, the first along x, the second along y.
+
+    A spring pulls each rod's head to its target.
+    """
 
     def __init__(self, axes: Axes) -> None:
         axes.set_aspect("equal")
@@ -174,10 +172,7 @@ class _Machine:
 
 
 def _place(rod: int, along: Any, aside: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points of a rod's head's rail in the picture.
-
-    The first rod's rail is right of the wheel, the second's below it.
-    """
+    """Points beside the rail of a rod's head: right of the wheel for rod 0, below it for rod 1."""
     on, off = np.asarray(along, dtype=float), np.asarray(aside, dtype=float)
     return (_LONG + on, -off) if rod == 0 else (off, on - _LONG)
 

@@ -121,7 +121,7 @@ def test_a_speed_that_was_not_held_is_no_point_of_the_branch(branch):
     assert least_k(held([slipped, shaken])) is None
 
 
-def test_the_figure_tells_unstable_cycles_from_stable_ones(sweep, folds, branch):
+def test_the_figure_separates_unstable_cycles_from_stable_ones(sweep, folds, branch):
     rows = [*sweep, *folds, *branch.values()]
     figure = draw(rows, bifurcation.report(rows, SETTING))
     lines = {line.get_label(): len(line.get_xdata()) for line in figure.axes[1].lines}

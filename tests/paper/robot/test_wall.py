@@ -111,7 +111,7 @@ def test_walls_stand_at_all_phases_of_the_wheels():
     assert np.diff(phases) == pytest.approx(2 * pi / 8, rel=0.01)
 
 
-def test_the_same_seed_is_the_same_robot_whatever_came_before():
+def test_the_same_seed_is_the_same_robot_after_any_other_cell():
     cell = {**FLOOR, "hits": 3}
     first = wall.simulate(cell, SETTING)
     wall.simulate({**FLOOR, "k": 3.0, "hits": 1}, SETTING)

@@ -111,7 +111,7 @@ def test_the_intervals_are_worth_something(odd):
 
 
 def test_a_run_that_was_not_fitted_is_predicted(odd):
-    """Six seconds and a kick, about 50 turns there and back, without being told where the wheel is."""
+    """Six seconds and a kick, about 50 turns there and back, without the wheel's true angle."""
     for _, _, findings in odd:
         for check in findings.numbers["check"].values():
             assert check["rms_deg"] < 5
@@ -119,7 +119,10 @@ def test_a_run_that_was_not_fitted_is_predicted(odd):
 
 
 def closed_loop(constants):
-    """(turns a second, duty in %, seconds to settle after a kick, share that it reversed) of robots with these constants."""
+    """What robots with these constants do.
+
+    ([turns a second, duty in %, seconds to settle after a kick], share that the kick reversed).
+    """
     params = Params()
     params.k = 3.0
     kick = Kick("k", MEMBRANE, WHEELS, 1, begin=170)
@@ -146,7 +149,7 @@ def test_the_entry_makes_a_robot_that_behaves_as_the_one_measured(odd, own_file)
 
 
 def test_a_disturbance_that_no_model_knows_widens_the_intervals(odd):
-    """An eccentric gear, of a sixth of the friction, on a robot whose right motor is mounted mirrored."""
+    """An eccentric gear, a sixth of the friction; the right motor is mounted mirrored."""
     brick = SimBrick(4, mount=(1, -1))
 
     def rub(motor, write):
@@ -272,7 +275,7 @@ def entry_of(changes, lack=()):
         ("odd = 3", "lacks torque_constant"),
     ],
 )
-def test_a_bad_file_of_own_motors_is_told_in_words(text, words, tmp_path, monkeypatch):
+def test_a_bad_file_of_own_motors_is_reported_in_words(text, words, tmp_path, monkeypatch):
     path = tmp_path / "motors.toml"
     path.write_text(text)
     monkeypatch.setenv("KICK_MOTORS", str(path))

@@ -1,6 +1,6 @@
 """Simulations spread over a Dask cluster of two worker processes.
 
-The same results, whatever becomes of a worker.
+The results stay the same even if a worker dies.
 """
 
 import csv
@@ -85,7 +85,7 @@ def test_nothing_is_lost_with_a_worker_that_is_killed(cluster, scramble):
     assert victim not in {nanny.pid for nanny in cluster.workers.values()}
 
 
-def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
+def test_a_cluster_that_is_lost_in_the_middle_is_reported_in_words(scramble):
     with LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
     ) as brief:
@@ -95,7 +95,7 @@ def test_a_cluster_that_is_lost_in_the_middle_is_told_in_words(scramble):
         list(results)
 
 
-def test_no_scheduler_is_told_in_words(monkeypatch):
+def test_a_missing_scheduler_is_reported_in_words(monkeypatch):
     monkeypatch.setattr("host.runs.cluster.CONNECT_S", 0.5)
     with pytest.raises(NoLink, match="no Dask scheduler answers"):
         next(compute_on_cluster("tcp://127.0.0.1:1", kick_map.simulate, [], Setting(1, {})))

@@ -67,7 +67,7 @@ def test_speed_is_the_turn_over_the_time_since_the_record_before():
 def test_no_speed_spans_a_restart():
     log = running(20)
     log.take_event({"event": "restart", "tick": 0, "boot": "b"})
-    # Ticks and times go on as if nothing had been: only the event tells.
+    # Ticks and times go on as if nothing had been: only the event says so.
     log.take_records(
         [
             record._replace(right_phi_rad=record.right_phi_rad + 100)
@@ -134,5 +134,6 @@ def test_a_log_introduces_itself():
 
 
 def test_a_log_alone_loads_nothing_heavy():
-    code = "import sys, host.logs.log; sys.exit(bool({'numpy', 'mcap', 'matplotlib'} & set(sys.modules)))"
+    heavy = {"numpy", "mcap", "matplotlib"}
+    code = f"import sys, host.logs.log; sys.exit(bool({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""What is written is read back bit for bit, also from files that were never finished; whatever else is in a file is refused in words."""
+"""Logs read back bit for bit, also from files that were never finished; others are refused."""
 
 import json
 import random
@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
-from host.logs import mcap_files as recording
+from host.logs import log_folder
 from host.logs.log import Log
-from host.logs.mcap_files import LogError, McapTap, list_logs, new_path
+from host.logs.log_folder import list_logs, new_path
+from host.logs.mcap_files import LogError, McapTap
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, STRUCT, Record, unpack
 from tests.fakes import Rig, eventful
 
@@ -310,7 +311,7 @@ def test_a_log_is_never_overwritten(tmp_path):
 
 def test_where_no_log_can_be_is_refused_in_words(tmp_path):
     (tmp_path / "file").touch()
-    with pytest.raises(LogError, match="cannot be made"):
+    with pytest.raises(LogError, match="cannot be written"):
         McapTap(tmp_path / "file" / "log.mcap", {})
 
 
@@ -321,7 +322,7 @@ def test_new_logs_have_names_of_their_own_in_the_present_folder(tmp_path, monkey
             return cls(2026, 11, 22, 15, 30, 12, tzinfo=tz)
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(recording, "datetime", Now)
+    monkeypatch.setattr(log_folder, "datetime", Now)
     log = running(3)
     names = [log.save(new_path("kick")).relative_to("logs").name for _ in range(3)]
     assert names == [
@@ -332,7 +333,7 @@ def test_new_logs_have_names_of_their_own_in_the_present_folder(tmp_path, monkey
     assert new_path("record").name == "record-20261122-153012.mcap"
 
 
-def test_the_list_of_logs_tells_whole_broken_and_foreign_files_apart(tmp_path):
+def test_the_list_of_logs_separates_whole_broken_and_foreign_files(tmp_path):
     log = running(100)
     log.info["started_utc"] = "2026-11-22T14:30:12+00:00"
     log.save(tmp_path / "a.mcap")
@@ -352,5 +353,5 @@ def test_the_list_of_logs_tells_whole_broken_and_foreign_files_apart(tmp_path):
 
 def test_a_finished_log_is_listed_without_being_read(tmp_path, monkeypatch):
     running(100).save(tmp_path / "a.mcap")
-    monkeypatch.setattr(recording, "play", None)
+    monkeypatch.setattr(log_folder, "play", None)
     assert list_logs(tmp_path)[0].ticks == 100

@@ -1,4 +1,4 @@
-"""Heading, settled and settling time on motions whose answers are known, seen through the encoder's whole degrees."""
+"""Heading, settled and settling time of known motions, read in the encoder's whole degrees."""
 
 from math import log as ln
 from math import pi, radians
@@ -24,7 +24,7 @@ def ticks(seconds, jitter_s=0.0, seed=1):
 
 
 def encoder(phi):
-    """Angles as the encoder tells them."""
+    """Angles as the encoder reads them."""
     return np.floor(phi / COUNT_RAD) * COUNT_RAD
 
 
@@ -145,7 +145,8 @@ def test_a_reversing_wheel_is_not_settled_until_it_has_reversed(tau_s):
     )
     answers = np.array([settled(phi[:end], t[:end]) for end in range(1, len(t) + 1)])
     assert answers[(t > 1.1) & (t < 2.0)].all()
-    # Within two windows after it turned, the wheel has turned back in them; a tick or two until the turn shows at all.
+    # Within two windows after the turn, the wheel has turned back in them. The turn shows only after
+    # a tick or two.
     turned = 2.0 + tau_s * ln(2)
     assert not answers[(t > turned + 0.1) & (t < turned + 0.95)].any()
     assert answers[t > turned + 1.1 + 3 * tau_s].all()
@@ -180,7 +181,7 @@ def test_irregular_switching_is_never_settled_while_a_switch_is_in_sight():
 
 
 def reversal(tau_s, t, begin_s, speed=12.6):
-    """A wheel that reverses from begin_s on with time constant tau_s: it enters the band of 10 % after tau_s ln 20."""
+    """A wheel that reverses from begin_s on; it enters the band of 10 % after tau_s ln 20."""
     return integral(
         lambda t: speed * np.where(t < begin_s, 1.0, 2 * np.exp(-(t - begin_s) / tau_s) - 1), t
     )
@@ -191,7 +192,8 @@ def reversal(tau_s, t, begin_s, speed=12.6):
 def test_settling_time_of_an_exponential_reversal(tau_s, jitter_s):
     t = ticks(9.0, jitter_s)
     phi = encoder(reversal(tau_s, t, 2.0))
-    # One tick of resolution, one of smoothing, one count in a span of 0.12 s against the slope at the band's edge.
+    # One tick of resolution, one of smoothing, and one count in a span of 0.12 s against the slope
+    # at the band's edge.
     tolerance = 2 * TICK_S + tau_s * (COUNT_RAD / 0.12) / 1.26
     assert settling_of(phi, t, 2.0) == pytest.approx(tau_s * ln(20), abs=tolerance)
     assert settling_of(-phi, t, 2.0) == settling_of(-phi, t, 2.0)
@@ -232,7 +234,7 @@ def test_the_steps_of_the_encoder_do_not_keep_a_slow_wheel_from_settling():
     assert 0.1 < settling_of(phi, t, 2.0) < 0.15 * ln(20)
 
 
-def test_what_has_not_settled_by_the_end_is_told():
+def test_what_has_not_settled_by_the_end_is_reported():
     t = ticks(6.0)
     at_last = encoder(
         integral(lambda t: np.where(t < 2.0, -12.6, np.where(t < 5.6, 10.3, 12.6)), t)

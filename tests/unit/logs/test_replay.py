@@ -1,4 +1,4 @@
-"""A replay reproduces what a real loop did, bit for bit, and finds whatever was changed in a log."""
+"""A replay reproduces what a real loop did, bit for bit, and finds every change of a log."""
 
 from struct import pack, unpack
 
@@ -90,7 +90,7 @@ def test_one_changed_bit_is_found(rig, side, channel):
 
 
 @pytest.mark.parametrize("machine", [None, "armv5tejl CPython 3.5.3"])
-def test_one_percent_of_duty_is_found_whatever_the_machine(rig, machine):
+def test_one_percent_of_duty_is_found_on_any_machine(rig, machine):
     log = changed(
         rig.log(),
         lambda record: (
@@ -191,7 +191,7 @@ def test_a_link_that_broke_without_loss_costs_nothing():
     assert (result.compared, result.not_comparable) == (40, 0)
 
 
-def test_a_robot_that_began_anew_begins_anew_in_the_replay():
+def test_a_robot_that_restarted_restarts_in_the_replay():
     log = Log()
     for seed, joined, ticks in ((1, 0, 60), (2, 60, 90)):  # by chance, the numbers go on
         rig = Rig(seed)
