@@ -67,7 +67,7 @@ def choose_preset(request: BodyRequest) -> Preset:
     from sim_motor.bodies.presets import NAMES, preset
 
     if request.preset not in NAMES:
-        raise WrongUse(f"there is no preset '{request.preset}'", f"there are {', '.join(NAMES)}")
+        raise WrongUse(f"there is no preset '{request.preset}'", f"choose {' or '.join(NAMES)}")
     own = preset(request.preset)
     if request.drag is not None:
         own = own.with_drag(request.drag)

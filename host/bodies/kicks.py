@@ -93,8 +93,10 @@ def parse_kick(text: str, wheels: Sequence[str]) -> ScheduledKick:
     """
     fields = _parse_fields(text)
     time_s, wheel = fields.pop("t", None), fields.pop("wheel", ALL)
-    if time_s is None or not 0.0 <= time_s < float("inf"):
-        raise WrongUse(f"a kick's time cannot be {time_s}", "write t=SECONDS, 0 or more")
+    if time_s is None:
+        raise WrongUse(f"the kick '{text}' has no time", "add t=SECONDS, for example t=5")
+    if not 0.0 <= time_s < float("inf"):
+        raise WrongUse(f"the time of a kick cannot be {time_s}", "write t=SECONDS, 0 or more")
     if not 0.0 < fields.get("seconds", KICK_S) < float("inf"):
         raise WrongUse(f"a kick cannot last {fields['seconds']} s", "write seconds=..., above 0")
     chosen = tuple(name for name in wheels if wheel == ALL or wheel in (name, *name.split("_")))
@@ -116,15 +118,18 @@ def _parse_fields(text: str) -> dict[str, Any]:
         name, _, value = part.strip().partition("=")
         if name not in _NAMES or not value:
             raise WrongUse(
-                f"'{part.strip()}' is no part of a kick",
-                f"write NAME=VALUE with {', '.join(_NAMES)}",
+                f"'{part.strip()}' in the kick '{text}' means nothing",
+                f"write NAME=VALUE, separated by commas; the names are {', '.join(_NAMES)}",
             )
         if name in fields:
-            raise WrongUse(f"a kick has one {name}, and '{text}' has more", "write it once")
+            raise WrongUse(f"the kick '{text}' has more than one {name}", "write it once")
         try:
             fields[name] = _NUMBERS[name](value) if name in _NUMBERS else value
         except (ValueError, ArgumentTypeError) as error:
-            raise WrongUse(f"{name} of a kick cannot be '{value}'", "give a number") from error
+            raise WrongUse(
+                f"{name} of a kick cannot be '{value}'",
+                "write a number, and a comma before the next name",
+            ) from error
     return fields
 
 

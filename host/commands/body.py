@@ -29,7 +29,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--scene",
         default="flat",
         metavar="NAME",
-        help="where it is, or your own NAME.xml (default %(default)s)",
+        help=(
+            "where it is: flat, walls, octagon, slopes, funnel, halfpipe, hills, box, or your own"
+            " NAME.xml (default %(default)s)"
+        ),
     )
     parser.add_argument(
         "--time",

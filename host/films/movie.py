@@ -47,8 +47,8 @@ class Movie:
         ending = path.suffix.lower()
         if ending not in writers:
             raise WrongUse(
-                f"there is no way to write a film into '{path.name}'",
-                f"its name should end with {' or '.join(writers)}",
+                f"a film cannot be written as '{path.name}'",
+                f"end its name with {' or '.join(writers)}",
             )
         if ending == ".mp4":
             need("imageio_ffmpeg", "bodies")

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
+from sim_motor.bodies.model import SCENES
+
 CAR = ("body", "car", "--time", "1.5", "--seed", "4")
 
 
@@ -65,6 +67,11 @@ def test_what_was_simulated_before_it_became_unstable_is_kept(kickctl, tmp_path)
     assert "are kept in" in err
     (states,) = tmp_path.glob("*/state.csv")
     assert len(states.read_text().splitlines()) > 1
+
+
+def test_help_names_all_scenes(kickctl):
+    _, out, _ = kickctl("body", "--help")
+    assert set(SCENES) <= set(out.replace(",", " ").split())
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,8 @@ from sim_motor.bodies.presets import preset
 CHECK = f"""
 import gymnasium
 from gymnasium.utils.env_checker import check_env
-check_env(gymnasium.make("sim_motor.bodies.environment:{ID}", cars=2, decision_s=0.05, kick_s=0.05).unwrapped)
+name = "sim_motor.bodies.environment:{ID}"
+check_env(gymnasium.make(name, cars=2, decision_s=0.05, kick_s=0.05).unwrapped)
 """
 
 

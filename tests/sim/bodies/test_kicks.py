@@ -31,7 +31,7 @@ def test_words_make_kicks_of_wheels_and_wrong_words_are_refused():
         ("t=1,mode=phase,shift=100", "shift"),
         ("t=1,mode=phase,shift=foo", "shift"),
         ("t=1,mode=phase,seconds=-1", "last"),
-        ("t=1,t=2,mode=phase", "one t"),
+        ("t=1,t=2,mode=phase", "more than one t"),
     ):
         with pytest.raises(WrongUse, match=reason):
             parse_kick(words, wheels)
