@@ -1,6 +1,6 @@
-"""Which experiments there are, and what each can be asked for.
+"""The experiments: help text, options and claims of each.
 
-Light enough for `kickctl --help`.
+`kickctl --help` imports it, so it imports nothing heavy.
 """
 
 from __future__ import annotations
@@ -86,21 +86,21 @@ ROBOT = {
         ("R1", "R2", "R3", "R4", "R7"),
     ),
     "timeline": Entry(
-        "the three kicks one after the other: potentials, torque, settling, and the phase slip"
-        " between the wheels",
+        "the three kicks one after the other: potentials, torque, settling times, and the phase"
+        " slip between the wheels",
         (Option("trials", 25, 1, 10000, "rounds of the three kicks, there and back"),),
         ("R11", "R12"),
     ),
     "reliability": Entry(
-        "how surely kicks of 1 to 10 ticks reverse a wheel: position and phase, both signs, and"
+        "how reliably kicks of 1 to 10 ticks reverse a wheel: position, phase of both signs, and"
         " membrane",
         (Option("trials", 50, 1, 100000, "kicks at each point"),),
         ("R8", "R9", "R10"),
     ),
     "kick-map": Entry(
-        "success against the kick's length and the wheel's phase when it comes: where the basin"
-        " lies",
-        (Option("kicks", 200000, 36, 100000000, "kicks in all; on a robot a few hundred"),),
+        "how often a kick reverses a wheel, against the kick's length and the wheel's phase when"
+        " it begins",
+        (Option("kicks", 200000, 36, 100000000, "number of kicks; on a robot a few hundred"),),
     ),
     "bifurcation": Entry(
         "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable"
@@ -109,8 +109,8 @@ ROBOT = {
         ("R5", "R6"),
     ),
     "wall": Entry(
-        "a robot between two walls at k = 2, which reverses by itself; grip, wall stiffness and k"
-        " varied",
+        "a robot with k = 2 between two walls, which reverses by itself; grip, wall stiffness and k"
+        " vary",
         (Option("bounces", 50, 1, 10000, "bounces to count"),),
         ("R13",),
     ),
@@ -121,7 +121,7 @@ ROBOT = {
         ("R14",),
     ),
     "calibrate": Entry(
-        "identifies this robot's motor from logs and writes it for sim://?motor=mine",
+        "identify this robot's motor from a drive, and write it as a file for sim://?motor=mine",
         (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about"),),
     ),
 }

@@ -37,13 +37,13 @@ from host.experiments.robot.bifurcation_pieces import (
 from host.experiments.robot.bifurcation_rows import (
     BifurcationCell,
     BifurcationRow,
+    CellRows,
     FoldRow,
-    Measured,
     Ramp,
     RampRow,
     branch_rows,
     fold_rows,
-    held,
+    held_cycles,
     least_k,
     ramp_rows,
     restarts,
@@ -144,7 +144,7 @@ def ladder(points: int) -> list[float]:
     return [float(k) for k in np.round([*lower, *upper], 4)]
 
 
-def trial(cell: BifurcationCell, robot: Robot, log: Log, setting: Setting) -> Measured:
+def trial(cell: BifurcationCell, robot: Robot, log: Log, setting: Setting) -> CellRows:
     """Do one cell. Before and after it, k is at START_K."""
     if cell["part"] == "ramp":
         return [_ramp(robot, log)]
@@ -152,7 +152,7 @@ def trial(cell: BifurcationCell, robot: Robot, log: Log, setting: Setting) -> Me
     robot.wait(WINDOW_S)
     motion = cell["motion"]
     drive(robot, log, motion)
-    rows: Measured
+    rows: CellRows
     if cell["part"] == "sweep":
         rows = sweep(robot, ladder(setting.options["points"]))
     elif cell["part"] == "fold":
@@ -177,7 +177,7 @@ def _ramp(robot: Robot, log: Log) -> Ramp:
 
 def report(rows: list[BifurcationRow], setting: Setting) -> Findings:
     """R5 and R6."""
-    folds, cycles = fold_rows(rows), held(rows)
+    folds, cycles = fold_rows(rows), held_cycles(rows)
     critical = [(row["k"] + row["k_after"]) / 2 for row in folds]
     node = least_k(cycles)
     asked = {row["held_hz"] for row in branch_rows(rows)}

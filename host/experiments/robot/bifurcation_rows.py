@@ -165,7 +165,7 @@ class RampRow(RampCell, Ramp):
 
 BifurcationCell = SweepCell | FoldCell | BranchCell | RampCell
 BifurcationRow = SweepRow | FoldRow | BranchRow | RampRow
-Measured = list[Step] | list[Fall] | list[HeldCycle] | list[Ramp]
+CellRows = list[Step] | list[Fall] | list[HeldCycle] | list[Ramp]
 
 
 def sweep_rows(rows: list[BifurcationRow]) -> list[SweepRow]:
@@ -195,7 +195,7 @@ def is_held(row: BranchRow) -> bool:
     return k_rests and abs(abs(row["hz"]) - held_hz) <= HELD_WITHIN * held_hz
 
 
-def held(rows: list[BifurcationRow]) -> list[BranchRow]:
+def held_cycles(rows: list[BifurcationRow]) -> list[BranchRow]:
     """The points of the branch of limit cycles."""
     return [row for row in branch_rows(rows) if is_held(row)]
 

@@ -20,9 +20,9 @@ from host.experiments.robot import chaos_pieces as pieces
 from host.experiments.robot.chaos_numbers import explain, reasons, series_numbers, tally
 from host.experiments.robot.chaos_pieces import SEEN, TAU_S, UNSEEN, K
 from host.experiments.robot.chaos_rows import (
+    CellRows,
     ChaosCell,
     ChaosRow,
-    Measured,
     Sample,
     lives_rows,
     series_of_wheels,
@@ -73,7 +73,7 @@ def world(cell: ChaosCell) -> dict[str, str]:
     return {}
 
 
-def simulate(cell: ChaosCell, setting: Setting) -> Measured:
+def simulate(cell: ChaosCell, setting: Setting) -> CellRows:
     """Do one cell."""
     if cell["part"] == "series":
         return pieces.series(cell, setting)
@@ -84,8 +84,8 @@ def simulate(cell: ChaosCell, setting: Setting) -> Measured:
     if cell["part"] == "twins":
         return pieces.twins(cell, setting)
     if cell["part"] == "map":
-        return pieces.mapped(cell, setting)
-    return pieces.model(cell, setting)
+        return pieces.map_wheels(cell, setting)
+    return pieces.model_runs(cell, setting)
 
 
 def trial(cell: ChaosCell, robot: Robot, log: Log, setting: Setting) -> list[Sample]:

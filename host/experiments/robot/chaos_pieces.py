@@ -17,9 +17,9 @@ from host.experiments.robot.chaos_rows import (
     Life,
     LivesCell,
     MapCell,
-    Mapped,
+    MapWheel,
     ModelCell,
-    Modelled,
+    ModelRun,
     Sample,
     SeriesCell,
     Speed,
@@ -53,7 +53,14 @@ TWIN_TICK, TWIN_S, TWIN_STEP_S = 300, 12.0, 0.25
 MAP_S, MAP_JUMP_S, PARTED_S, PARTED = 60.0, 40.0, 10.0, 1 / 3
 SPEED_S = 10.0
 # How many wheels, pairs of twins or runs make one piece.
-LIVES, LIVES_DELAYED, TWINS, MAPPED, PACED, MODELLED = 100, 16, 64, 4, 8, 4
+LIVES_WHEELS, LIVES_WHEELS_DELAYED, TWIN_PAIRS, MAP_WHEELS, SPEED_WHEELS, MODEL_RUNS = (
+    100,
+    16,
+    64,
+    4,
+    8,
+    4,
+)
 MODEL_S, MODEL_STEP_S = 60.0, 0.002
 
 _chaotic_run = partial(wheels_run, k=K, tau_s=TAU_S)
@@ -73,7 +80,7 @@ class WheelConstants(TypedDict):
 PAPER_WHEEL: WheelConstants = {"moment": 0.05, "friction": 0.5}
 
 
-def _gathered(records: Iterator[Array]) -> Array:
+def _gather(records: Iterator[Array]) -> Array:
     """The records of all wheels in one array, (wheels, ticks, CHANNELS)."""
     return np.concatenate(list(records))
 
@@ -82,7 +89,7 @@ def series(cell: SeriesCell, setting: Setting) -> list[Sample]:
     """One wheel, tick by tick."""
     condition = CONDITIONS[cell["condition"]]
     seconds, seed = 60 * setting.options["minutes"], setting.seed_of(cell)
-    records = _gathered(_chaotic_run(condition, setting, 1, seconds, seed))[0]
+    records = _gather(_chaotic_run(condition, setting, 1, seconds, seed))[0]
     samples = records[:, [_PHI, _FORCE, _TORQUE]].tolist()
     return [
         {
@@ -99,7 +106,7 @@ def series(cell: SeriesCell, setting: Setting) -> list[Sample]:
 def lives(cell: LivesCell, setting: Setting) -> list[Life]:
     """How long each of many wheels switches, and what it does then."""
     condition = CONDITIONS[cell["condition"]]
-    wheels = LIVES_DELAYED if cell["condition"] == DELAYED else LIVES
+    wheels = LIVES_WHEELS_DELAYED if cell["condition"] == DELAYED else LIVES_WHEELS
     seconds, seed = 60 * setting.options["minutes"], setting.seed_of(cell)
     rows: list[Life] = []
     for records in _chaotic_run(condition, setting, wheels, seconds, seed):
@@ -112,7 +119,7 @@ def lives(cell: LivesCell, setting: Setting) -> list[Life]:
 def speed(cell: SpeedCell, setting: Setting) -> list[Speed]:
     """Turns per second at the default parameters, over the second half of each run."""
     condition = CONDITIONS[cell["condition"]]
-    records = _gathered(wheels_run(condition, setting, PACED, SPEED_S, setting.seed_of(cell)))
+    records = _gather(wheels_run(condition, setting, SPEED_WHEELS, SPEED_S, setting.seed_of(cell)))
     phi = records[:, len(records[0]) // 2 :, _PHI]
     seconds = (phi.shape[1] - 1) * condition.tick_s
     turns_per_s = np.abs(phi[:, -1] - phi[:, 0]) / (2 * pi * seconds)
@@ -131,8 +138,8 @@ def twins(cell: TwinsCell, setting: Setting) -> list[Distance]:
     tick_s = condition.tick_s
     seconds = TWIN_TICK * tick_s + TWIN_S + 1.0
     jump = Jump(TWIN_TICK, cell["jump"])
-    plain = _gathered(_chaotic_run(condition, setting, TWINS, seconds, seed))
-    other = _gathered(_chaotic_run(condition, setting, TWINS, seconds, seed, jump))
+    plain = _gather(_chaotic_run(condition, setting, TWIN_PAIRS, seconds, seed))
+    other = _gather(_chaotic_run(condition, setting, TWIN_PAIRS, seconds, seed, jump))
     apart = _distances(plain, other)
     times = np.arange(0.0, TWIN_S + TWIN_STEP_S / 2, TWIN_STEP_S)
     return [
@@ -141,18 +148,18 @@ def twins(cell: TwinsCell, setting: Setting) -> list[Distance]:
             "since_s": float(since),
             "distance": float(apart[start, TWIN_TICK + round(since / tick_s)]),
         }
-        for start in range(TWINS)
+        for start in range(TWIN_PAIRS)
         for since in times
     ]
 
 
-def mapped(cell: MapCell, setting: Setting) -> list[Mapped]:
+def map_wheels(cell: MapCell, setting: Setting) -> list[MapWheel]:
     """What wheels with this latency and inertia do in the end, and whether their twins parted."""
     condition = Condition(latency_s=cell["latency_s"], inertia=cell["inertia"])
     seed, tick_s = setting.seed_of(cell), condition.tick_s
     jump = Jump(round(MAP_JUMP_S / tick_s), SEEN)
-    plain = _gathered(_chaotic_run(condition, setting, MAPPED, MAP_S, seed))
-    other = _gathered(_chaotic_run(condition, setting, MAPPED, MAP_S, seed, jump))
+    plain = _gather(_chaotic_run(condition, setting, MAP_WHEELS, MAP_S, seed))
+    other = _gather(_chaotic_run(condition, setting, MAP_WHEELS, MAP_S, seed, jump))
     last = round(PARTED_S / tick_s)
     unrelated = np.sqrt(2 * plain[:, -2 * last :, [_X1, _X2]].var(axis=1).sum(axis=1))
     apart = _distances(plain, other)[:, -last:].mean(axis=1)
@@ -162,14 +169,14 @@ def mapped(cell: MapCell, setting: Setting) -> list[Mapped]:
     ]
 
 
-def model(cell: ModelCell, setting: Setting) -> list[Modelled]:
+def model_runs(cell: ModelCell, setting: Setting) -> list[ModelRun]:
     """Runs of the paper's model, each from potentials of its own."""
     rng = np.random.default_rng(setting.seed_of(cell))
     constants = PAPER_WHEEL if cell["wheel"] == "paper" else model_constants(setting)
     tick_s = Params().tick_s
     stride = round(tick_s / MODEL_STEP_S)
-    rows: list[Modelled] = []
-    for _ in range(MODELLED):
+    rows: list[ModelRun] = []
+    for _ in range(MODEL_RUNS):
         remembered = float(rng.uniform(-pi, pi))
         phi = model_run(**constants, remembered=remembered, bounded=cell["bounded"])
         until_s, end = ending(phi[::stride], tick_s)

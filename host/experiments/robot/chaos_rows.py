@@ -138,7 +138,7 @@ class Distance(TypedDict):
     distance: float
 
 
-class Mapped(TypedDict):
+class MapWheel(TypedDict):
     """One wheel of the map.
 
     Attributes:
@@ -150,7 +150,7 @@ class Mapped(TypedDict):
     parted: bool
 
 
-class Modelled(Ending):
+class ModelRun(Ending):
     """One run of the model.
 
     Attributes:
@@ -178,17 +178,19 @@ class TwinsRow(TwinsCell, Distance):
     """A row of part `twins`."""
 
 
-class MapRow(MapCell, Mapped):
+class MapRow(MapCell, MapWheel):
     """A row of part `map`."""
 
 
-class ModelRow(ModelCell, Modelled):
+class ModelRow(ModelCell, ModelRun):
     """A row of part `model`."""
 
 
 ChaosCell = SeriesCell | LivesCell | SpeedCell | TwinsCell | MapCell | ModelCell
 ChaosRow = SeriesRow | LifeRow | SpeedRow | TwinsRow | MapRow | ModelRow
-Measured = list[Sample] | list[Life] | list[Speed] | list[Distance] | list[Mapped] | list[Modelled]
+CellRows = (
+    list[Sample] | list[Life] | list[Speed] | list[Distance] | list[MapWheel] | list[ModelRun]
+)
 
 
 def series_of_wheels(rows: list[ChaosRow]) -> dict[tuple[str, str], list[SeriesRow]]:

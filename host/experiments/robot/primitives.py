@@ -17,7 +17,7 @@ import numpy as np
 
 from host.client.robot import Robot
 from host.experiments.robot.primitives_rows import (
-    Measured,
+    CellRows,
     PrimitivesCell,
     PrimitivesRow,
     Rest,
@@ -102,7 +102,7 @@ def world(cell: PrimitivesCell) -> dict[str, str]:
     return {}
 
 
-def trial(cell: PrimitivesCell, robot: Robot, log: Log, setting: Setting) -> Measured:
+def trial(cell: PrimitivesCell, robot: Robot, log: Log, setting: Setting) -> CellRows:
     """Do one cell."""
     robot.set(k=K)
     robot.wait(STAY_S, until=lambda: len(log) > DIRECTION_TICKS)

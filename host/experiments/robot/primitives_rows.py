@@ -123,7 +123,7 @@ class RestRow(RestCell, Rest):
 
 PrimitivesCell = RoundCell | StartCell | RestCell
 PrimitivesRow = TransitionRow | SampleRow | StartRow | RestRow
-Measured = list[Transition | Sample] | list[Start] | list[Rest]
+CellRows = list[Transition | Sample] | list[Start] | list[Rest]
 
 
 def transitions(

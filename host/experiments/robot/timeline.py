@@ -126,7 +126,7 @@ def _slip(log: Log, tick: int) -> Slip:
     found: Slip = {
         "settling_left_s": left_s,
         "settling_right_s": right_s,
-        "relative_before_rad": wrapped(before),
+        "relative_before_rad": wrap(before),
         "relative_after_rad": None,
         "slip_rad": None,
         "drift_rad": None,
@@ -135,13 +135,13 @@ def _slip(log: Log, tick: int) -> Slip:
         return found
     settled_s = max(left_s, right_s)
     after = mean(begin_s + settled_s)
-    found["relative_after_rad"] = wrapped(after)
+    found["relative_after_rad"] = wrap(after)
     found["slip_rad"] = after - before
     found["drift_rad"] = before - mean(begin_s - settled_s - 2 * WINDOW_S)
     return found
 
 
-def wrapped(angle: float) -> float:
+def wrap(angle: float) -> float:
     """The same direction in [-pi, pi)."""
     return (angle + pi) % (2 * pi) - pi
 

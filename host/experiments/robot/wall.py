@@ -80,7 +80,7 @@ def cells(options: Options, *, batch: bool) -> list[WallCell]:
     for condition in (PAPER, ON_SMOOTH, WITH_BUMPER):
         work.append({"part": "claim", **condition, "hits": hits})
         done.append(condition)
-    for condition in _mapped():
+    for condition in _map_conditions():
         if condition not in done:
             work.append({"part": "map", **condition, "hits": MAP_HITS})
             done.append(condition)
@@ -88,7 +88,7 @@ def cells(options: Options, *, batch: bool) -> list[WallCell]:
     return work
 
 
-def _mapped() -> list[Condition]:
+def _map_conditions() -> list[Condition]:
     """The conditions of the three maps; some stand in two of them."""
     found: list[Condition] = [{**PAPER, "grip": grip, "k": k} for grip in GRIPS for k in KS]
     found += [

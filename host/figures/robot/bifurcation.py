@@ -16,7 +16,7 @@ from host.experiments.robot.bifurcation_rows import (
     BifurcationRow,
     BranchRow,
     SweepRow,
-    held,
+    held_cycles,
     least_k,
     sweep_rows,
 )
@@ -78,7 +78,7 @@ def _draw_quantity(
     wide, near = panels
     _draw_sweeps(wide, rows, quantity, signed=True)
     _draw_sweeps(near, rows, quantity, signed=False)
-    _draw_cycles(near, held(rows), quantity)
+    _draw_cycles(near, held_cycles(rows), quantity)
     wide.set(ylabel=label, ylim=(-most, most))
     near.set(ylabel=absolute, ylim=(-0.03 * most_near, most_near))
 

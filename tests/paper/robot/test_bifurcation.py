@@ -8,7 +8,7 @@ import pytest
 from host.client.robot import connect
 from host.experiments.robot import bifurcation
 from host.experiments.robot.bifurcation_pieces import LEAST_K, MIDDLE_K
-from host.experiments.robot.bifurcation_rows import held, least_k
+from host.experiments.robot.bifurcation_rows import held_cycles, least_k
 from host.figures.robot.bifurcation import draw
 from host.logs.log import Log
 from host.runs.contract import Setting
@@ -69,7 +69,7 @@ def test_locomotion_falls_from_a_torque_well_above_the_stall(folds):
 
 
 def test_feedback_holds_cycles_on_both_sides_of_the_fold_and_does_not_change_them(branch):
-    assert len(held(list(branch.values()))) == len(branch)
+    assert len(held_cycles(list(branch.values()))) == len(branch)
     assert branch[0.24]["k"] > branch[0.3]["k"] < branch[0.5]["k"]
 
 
@@ -117,8 +117,8 @@ def test_r5_does_not_hold_for_a_motor_that_moves_too_early(branch):
 def test_a_speed_that_was_not_held_is_no_point_of_the_branch(branch):
     slipped = {**branch[0.24], "hz": 0.0}
     shaken = {**branch[0.24], "k_sd": 0.1}
-    assert held([slipped, shaken]) == []
-    assert least_k(held([slipped, shaken])) is None
+    assert held_cycles([slipped, shaken]) == []
+    assert least_k(held_cycles([slipped, shaken])) is None
 
 
 def test_the_figure_separates_unstable_cycles_from_stable_ones(sweep, folds, branch):

@@ -145,7 +145,7 @@ def test_with_a_longer_latency_wheels_go_on_switching_and_their_exponent_is_posi
 
 
 def test_twins_part_with_the_latency_and_a_jump_below_the_steps_dies_with_tau(monkeypatch):
-    monkeypatch.setattr(chaos_pieces, "TWINS", 24)
+    monkeypatch.setattr(chaos_pieces, "TWIN_PAIRS", 24)
     cell = {"part": "twins", "condition": DELAYED}
     seen = growth(chaos.simulate({**cell, "jump": chaos_pieces.SEEN}, SETTING))
     unseen = growth(chaos.simulate({**cell, "jump": chaos_pieces.UNSEEN}, SETTING))
@@ -220,9 +220,9 @@ def _even(record):
 def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hold(monkeypatch):
     monkeypatch.setattr(chaos, "LATENCIES_S", (0.003, 0.06))
     monkeypatch.setattr(chaos, "INERTIAS", (1.0,))
-    monkeypatch.setattr(chaos_pieces, "LIVES", 6)
-    monkeypatch.setattr(chaos_pieces, "LIVES_DELAYED", 2)
-    monkeypatch.setattr(chaos_pieces, "TWINS", 4)
+    monkeypatch.setattr(chaos_pieces, "LIVES_WHEELS", 6)
+    monkeypatch.setattr(chaos_pieces, "LIVES_WHEELS_DELAYED", 2)
+    monkeypatch.setattr(chaos_pieces, "TWIN_PAIRS", 4)
     setting = Setting(1, {"minutes": 1.0})
     rows = [
         row

@@ -72,7 +72,7 @@ def test_kicks_make_the_relative_phase_slip_and_that_it_does_not_without(rows):
 def test_slip_is_what_lies_between_the_phases_before_and_after(rows):
     for kick in settled_kicks(kick_rows(rows)):
         left_over = kick.before_rad + kick.slip_rad - kick.after_rad
-        assert timeline.wrapped(left_over) == pytest.approx(0.0, abs=1e-9)
+        assert timeline.wrap(left_over) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_only_the_first_round_keeps_its_ticks_and_they_show_both_kicks_of_each_kind(rows):
@@ -133,4 +133,4 @@ def test_another_battery_decides_nothing(number):
     ("angle", "same"), [(0.0, 0.0), (3 * pi, -pi), (-pi / 2, -pi / 2), (7.0, 7.0 - 2 * pi)]
 )
 def test_relative_phases_are_directions(angle, same):
-    assert timeline.wrapped(angle) == pytest.approx(same)
+    assert timeline.wrap(angle) == pytest.approx(same)
