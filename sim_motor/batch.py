@@ -22,18 +22,8 @@ from robot.params import LONGEST_STEP_TICKS, Params
 from robot.safety import limit_duty
 from sim_motor.brick import lateness_s
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
-from sim_motor.motor import (
-    ANGLE,
-    LAST_ANGLE,
-    SUBSTEP_S,
-    Array,
-    Constants,
-    advance,
-    encoder,
-    load,
-    substep_at,
-    substep_from,
-)
+from sim_motor.constants import SUBSTEP_S, Array, Constants, load
+from sim_motor.motor import ANGLE, LAST_ANGLE, advance, encoder, substep_at, substep_from
 from sim_motor.settling import settling_s
 
 _actual_positions, _step_wheel, _limit_duty = (

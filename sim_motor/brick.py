@@ -15,18 +15,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from robot.motors import Battery, Motor, MotorFault
+from sim_motor.constants import COAST, Array, Constants, data, load
 from sim_motor.motor import (
     ANGLE,
-    COAST,
     CURRENT,
     GAP,
     LAST_ANGLE,
-    Array,
-    Constants,
     advance_in_place,
-    data,
     encoder,
-    load,
     substep_at,
     substep_from,
 )

@@ -1,18 +1,18 @@
-"""The one place that knows numba: pure functions compiled, or evaluated in another mathematics.
+"""The one place that knows how to compile functions.
 
 What is compiled is kept on disk (sim_motor.compiled_cache), so that only the first process on a
 machine compiles it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cache
-from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
 
 from sim_motor import compiled_cache
 from sim_motor.function_digest import function_digest
+from sim_motor.mathematics import with_mathematics
 
 F = TypeVar("F", bound=Callable[..., Any])
 prange = numba.prange
@@ -52,27 +52,4 @@ def parallel_jit(function: F) -> F:
 @cache
 def compiled(function: F) -> F:
     """A plain Python function compiled with the functions it calls. Its source stays as it is."""
-    return retold(function, {}, njit)
-
-
-def retold(
-    function: F,
-    mathematics: Mapping[str, Any],
-    finish: Callable[[Any], Any] = lambda function: function,
-) -> F:
-    """A plain Python function, with the functions it calls, in another mathematics.
-
-    Args:
-        function: Stays as it is. The new one runs the same code, with other globals: every Python
-            function that it names is replaced by that function retold.
-        mathematics: What stands for a name, as numpy's cosine for "cos".
-        finish: What is done to each new function, as compiling it.
-    """
-    source = cast(FunctionType, function)
-    names = source.__globals__
-    own = {name: mathematics[name] for name in source.__code__.co_names if name in mathematics}
-    for name in source.__code__.co_names:
-        if name not in own and isinstance(names.get(name), FunctionType):
-            own[name] = retold(names[name], mathematics, finish)
-    new = FunctionType(source.__code__, {**names, **own}, source.__name__, source.__defaults__)
-    return cast(F, finish(new))
+    return with_mathematics(function, {}, njit)

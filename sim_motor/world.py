@@ -23,7 +23,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from sim_motor.compiled import jit
-from sim_motor.motor import GRAVITY, SUBSTEP_S, WHEEL_SPEED, Array, Constants, advance, data
+from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
+from sim_motor.motor import WHEEL_SPEED, advance
 
 BodyNumbers = tuple[float, float, float, float, float, float]
 TyreNumbers = tuple[float, float]

@@ -15,7 +15,7 @@ from host.errors import NotDone
 from host.logs.log import Log
 from robot.controller import actual_positions, target_position
 from robot.kicks import WHEELS, pulse_weight, pulsed, seen_positions
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 
 Array = NDArray[np.float64]
 
@@ -25,8 +25,8 @@ WINDOW_S, SLOWER = (-0.4, 1.0), 4.0
 # Far less than any tick, far more than what rounding does to a time.
 ROUNDING_S = 1e-9
 _NUMPY = {"cos": np.cos, "sin": np.sin, "exp": np.exp}
-_actual: Any = retold(actual_positions, _NUMPY)
-_target: Any = retold(target_position, _NUMPY)
+_actual: Any = with_mathematics(actual_positions, _NUMPY)
+_target: Any = with_mathematics(target_position, _NUMPY)
 
 
 class Course(NamedTuple):

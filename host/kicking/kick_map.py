@@ -16,7 +16,7 @@ import numpy as np
 from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION, parse
 from robot.params import Params
 from sim_motor.batch import run
-from sim_motor.motor import load
+from sim_motor.constants import load
 
 
 class KickCell(TypedDict):

@@ -21,7 +21,7 @@ from host.runs.runner import do_cells, finish, open_study, simulate
 from host.util.extras import need
 from host.util.provenance import commit, sources
 from robot import __version__
-from sim_motor.motor import load as constants
+from sim_motor.constants import load as constants
 
 RESULTS = Path("results")
 DEFAULT_SEED = 1

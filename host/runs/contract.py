@@ -17,7 +17,7 @@ from typing import Any, Protocol
 from host.client.robot import Robot
 from host.logs.log import Log
 from host.runs.claims import Claim
-from sim_motor.motor import load
+from sim_motor.constants import load
 
 Cell = dict[str, Any]
 Row = dict[str, Any]

@@ -19,7 +19,7 @@ from robot.kicks import MEMBRANE, Kick, invert_membrane, jump
 from sim_motor.bodies.drive import Wheels, drive
 from sim_motor.bodies.model import SIDES, car_name
 from sim_motor.bodies.presets import Preset
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 RECORD_S = 0.005
 OF_A_WHEEL = ("phi_rad", "omega_rad_s", "x", "target", "torque_nm")
 OF_A_CAR = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
-_target_position: Any = retold(target_position, {"exp": np.exp})
+_target_position: Any = with_mathematics(target_position, {"exp": np.exp})
 
 
 class Unstable(Exception):

@@ -12,7 +12,7 @@ import heyoka
 import numpy as np
 
 from host.theory.model.wheel import Wheel, rates
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 from tests.bench_theory.problem import (
     MEASURED_S,
     TRANSIENT_S,
@@ -31,7 +31,7 @@ def equations():
     Tau, k and omega's offset in it are parameters.
     """
     state = heyoka.make_vars("x1", "x2", "phi", "omega")
-    told = retold(rates, {"sin": heyoka.sin, "cos": heyoka.cos, "exp": heyoka.exp})
+    told = with_mathematics(rates, {"sin": heyoka.sin, "cos": heyoka.cos, "exp": heyoka.exp})
     wheel = list(
         zip(
             state,

@@ -13,11 +13,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from host.theory.model.wheel import rates
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 from tests.bench_theory.problem import MEASURED_S, START, TRANSIENT_S, WORKERS, Contestant, averages
 
 jax.config.update("jax_enable_x64", True)
-_rates = retold(rates, {"sin": jnp.sin, "cos": jnp.cos, "exp": jnp.exp})
+_rates = with_mathematics(rates, {"sin": jnp.sin, "cos": jnp.cos, "exp": jnp.exp})
 
 
 def _field(time, y, constants):

@@ -39,7 +39,7 @@ from host.experiments.robot.motors_entry import Check, entry
 from host.logs.log import Log
 from host.runs.contract import Findings, Options, Setting
 from robot.kicks import PHASE, WHEELS
-from sim_motor.motor import Constants, load
+from sim_motor.constants import Constants, load
 
 simulate = None
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.experiments.robot.identification import Drive
-from sim_motor.motor import load
+from sim_motor.constants import load
 
 # The published motor that says what a log does not.
 BASE = "pybricks"

@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import degrees, radians
 from typing import NamedTuple
 
-from sim_motor.motor import Constants
+from sim_motor.constants import Constants
 
 # The least moment of inertia of a motor (kg m2). Below it, the published wheel and its share of the
 # robot are too heavy.

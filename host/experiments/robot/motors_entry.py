@@ -10,7 +10,7 @@ import numpy as np
 from host.experiments.robot.calibrate_rows import BASE
 from host.experiments.robot.identification import Found
 from host.experiments.robot.motor_traits import Traits, constants_of
-from sim_motor.motor import Constants
+from sim_motor.constants import Constants
 
 NAME = "mine"
 ADOPT = "install -D -m 644 motors.toml ~/.config/kickctl/motors.toml"

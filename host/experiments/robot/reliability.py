@@ -26,7 +26,7 @@ from host.util.intervals import fraction
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
 from robot.params import Params
 from sim_motor.batch import run
-from sim_motor.motor import load
+from sim_motor.constants import load
 
 LENGTHS = tuple(range(1, 11))
 TURN_S = 0.5

@@ -23,7 +23,7 @@ from robot.loop import Loop
 from robot.params import Params
 from sim_motor.batch import CHANNELS, run
 from sim_motor.brick import HIGHEST_BATTERY_V, LATE_MOST_S, SimMotor, VirtualClock
-from sim_motor.motor import SUBSTEP_S, Constants, load
+from sim_motor.constants import SUBSTEP_S, Constants, load
 
 Array = NDArray[np.float64]
 

@@ -53,7 +53,7 @@ from host.util.intervals import fraction, wilson
 from robot.kicks import DIRECTION_TICKS, PHASE
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
-from sim_motor.motor import GRAVITY
+from sim_motor.constants import GRAVITY
 from sim_motor.world import Scene
 
 # The values that the maps vary.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, NotRequired, TypedDict, final
 
-from sim_motor.motor import data
+from sim_motor.constants import data
 
 ROBOT = {name: float(entry[0]) for name, entry in data()["robot"].items()}
 

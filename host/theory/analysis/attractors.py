@@ -10,11 +10,10 @@ from __future__ import annotations
 from math import pi
 from typing import Literal, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from host.theory.engine.elementary import OPTIONS, sin
+from host.theory.engine.elementary import sin, vectorised
 from host.theory.engine.ensemble import FINE, advance, wheel_rates
 from host.theory.model.wheel import OMEGA, Array
 
@@ -63,7 +62,7 @@ class Watched(NamedTuple):
         return np.select(cases, (REST, ROLL, BACK, CHAOS, ROLL), BACK)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _windowed_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of wheels; of what part of the window is over, row 4, with its own rate below.
 

@@ -13,7 +13,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
 from host.theory.model.symbolic import jacobian_at
@@ -85,6 +84,8 @@ def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
     seconds = np.log(FACTOR) / abs(leading.real) if leading.real else 1.0 / abs(leading)
     constants = list(wheel)
     start = found.state + NEAR * (vector / np.abs(vector).max()).real
+    from scipy.integrate import solve_ivp
+
     run = solve_ivp(
         lambda _, state: rates(*state, *constants),
         (0.0, seconds),

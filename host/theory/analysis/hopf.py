@@ -9,18 +9,15 @@ Hurwitz.
 
 from __future__ import annotations
 
-from functools import cache
-from itertools import product
 from math import cos, inf, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-import sympy
 from scipy.optimize import brentq
 
 from host.errors import WrongUse
 from host.theory.analysis.fixpoints import ANGLES, fixpoint
-from host.theory.model.symbolic import STATE, Floats, field, function, jacobian_at
+from host.theory.model.symbolic import derivatives, jacobian_at
 from host.theory.model.wheel import Wheel
 from robot.controller import target_position
 
@@ -75,25 +72,9 @@ def critical_k(wheel: Wheel) -> float:
     return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
 
 
-@cache
-def _derivatives() -> tuple[Floats, Floats]:
-    """The functions of the second and of the third derivatives of the rates by the state."""
-    second, third = (
-        function(
-            [
-                sympy.diff(rate, *variables)
-                for rate in field()
-                for variables in product(STATE, repeat=order)
-            ]
-        )
-        for order in (2, 3)
-    )
-    return second, third
-
-
 def _lyapunov_coefficient(wheel: Wheel, omega: float) -> float:
     state = (1.0, 0.0, 0.0, 0.0)
-    second, third = (np.array(of(*state, *wheel)) for of in _derivatives())
+    second, third = (np.array(derivatives(order)(*state, *wheel)) for order in (2, 3))
     quadratic, cubic = second.reshape(4, 4, 4), third.reshape(4, 4, 4, 4)
     matrix = jacobian_at(state, wheel)
     values, vectors = np.linalg.eig(matrix)

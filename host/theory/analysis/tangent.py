@@ -11,16 +11,14 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
-import sympy
 
 from host.theory.analysis.attractors import settle
-from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, advance, rate_per_s
-from host.theory.model.symbolic import CONSTANTS, STATE, field, jacobian_at
+from host.theory.model.symbolic import jacobian_at, rates_of_vector
 from host.theory.model.wheel import Array, Wheel
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 
 # Between two orthonormalisations all vectors turn towards the fastest, on average by a factor of
 # e^6 or less, of the 16 digits they have. One vector alone must only stay within what a float can
@@ -31,15 +29,10 @@ LONGEST_S, LONGEST_ALONE_S = 1.0, 2.0
 # digit.
 PAIR_DISTANCE = 1e-7
 
-_vector = sympy.symbols("v1 v2 v3 v4", real=True)
-_driven = sympy.Matrix(field()).jacobian(STATE) * sympy.Matrix(_vector)
-_plain: Any = sympy.lambdify(
-    [*STATE, *_vector, *CONSTANTS], (*field(), *_driven), modules="math", cse=True
-)
-_both: Any = retold(_plain, MATHEMATICS, inlined)
+_both: Any = with_mathematics(rates_of_vector(), MATHEMATICS, inlined)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def tangent_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of all wheels, and of the vector below each, (8, wheels)."""
     s, p, o = states, parameters, out

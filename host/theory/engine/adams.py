@@ -11,11 +11,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-import numba
 import numpy as np
 
 from host.theory.engine import runge_kutta
-from host.theory.engine.elementary import OPTIONS
+from host.theory.engine.elementary import vectorised
 from host.theory.model.wheel import Array
 
 ORDER = 10
@@ -46,7 +45,7 @@ _OF_NEW, *_rest = weights([1, *_LATEST])
 _CORRECTING = tuple(_rest)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _predict(to: Array, states: Array, step_s: float, rates: Array, newest: int) -> None:
     for i in range(len(to)):
         change, slot = 0.0, newest
@@ -56,7 +55,7 @@ def _predict(to: Array, states: Array, step_s: float, rates: Array, newest: int)
         to[i] = states[i] + step_s * change
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _prepare(change_now: Array, step_s: float, rates: Array, newest: int) -> None:
     """What the old rates contribute to the corrected step."""
     for i in range(len(change_now)):
@@ -67,7 +66,7 @@ def _prepare(change_now: Array, step_s: float, rates: Array, newest: int) -> Non
         change_now[i] += step_s * change
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _correct(states: Array, lost: Array, step_s: float, new: Array) -> None:
     for i in range(len(states)):
         change, before = lost[i] + step_s * _OF_NEW * new[i], states[i]
@@ -75,7 +74,7 @@ def _correct(states: Array, lost: Array, step_s: float, new: Array) -> None:
         lost[i] = change - (states[i] - before)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
     """Take `count` steps of step_s.
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 from math import factorial
 from typing import Any
 
-import numba
 import numba.extending
 from numba.core import types
+
+from sim_motor.compiled import njit
 
 # Contracting a product and a sum to one instruction, or dividing by means of a reciprocal, changes
 # the last bit only.
@@ -51,9 +52,14 @@ def _float(context: Any, bits: Any) -> Any:
     )
 
 
+def vectorised(function: Any) -> Any:
+    """Compile a function so that one instruction may do several wheels."""
+    return njit(function, **OPTIONS)
+
+
 def inlined(function: Any) -> Any:
-    """Compile a function into those that call it."""
-    return numba.njit(forceinline=True, **OPTIONS)(function)
+    """As `vectorised`, and compile the function into those that call it."""
+    return njit(function, forceinline=True, **OPTIONS)
 
 
 @inlined

@@ -7,17 +7,18 @@ compiler lets one instruction do several of them.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
 from host.theory.engine import adams, runge_kutta
-from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
-from sim_motor.compiled import prange, retold
+from sim_motor.compiled import parallel_jit, prange
+from sim_motor.mathematics import with_mathematics
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
 # the fewest takes many more steps than it needs, for the sake of the others.
@@ -38,10 +39,10 @@ _SPINNING_UP_S = 1000.0
 
 Whole = NDArray[np.int64]
 
-vectorised_rates = retold(rates, MATHEMATICS, inlined)
+vectorised_rates = with_mathematics(rates, MATHEMATICS, inlined)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of all wheels, (4, wheels)."""
     for i in range(states.shape[1]):
@@ -59,7 +60,7 @@ def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
         )
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of all wheels, and the square of omega's difference from the seventh parameter, which makes the standard deviation.
 
@@ -71,29 +72,25 @@ def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
         out[4, i] = (states[3, i] - parameters[6, i]) ** 2
 
 
-@numba.njit(parallel=True, error_model="numpy")
-def _advance_all(
-    steps: Any,
-    rates_of: Any,
-    states: Array,
-    parameters: Array,
-    seconds: float,
-    counts: Any,
-    edges: Any,
-    order: Any,
-) -> None:
-    """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each.
+@cache
+def _advancing(steps: Any, rates_of: Any) -> Any:
+    """The compiled function that advances blocks of wheels by a method, with these rates."""
 
-    Each core does a run of `order`.
-    """
-    for place in prange(len(order)):
-        block = order[place]
-        first, end = edges[block], edges[block + 1]
-        own = states[:, first:end].copy()
-        steps(
-            rates_of, own, parameters[:, first:end].copy(), seconds / counts[block], counts[block]
-        )
-        states[:, first:end] = own
+    def advance_all(
+        states: Array, parameters: Array, seconds: float, counts: Any, edges: Any, order: Any
+    ) -> None:
+        """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each.
+
+        Each core does a run of `order`.
+        """
+        for place in prange(len(order)):
+            block = order[place]
+            first, end = edges[block], edges[block + 1]
+            own, constants = states[:, first:end].copy(), parameters[:, first:end].copy()
+            steps(rates_of, own, constants, seconds / counts[block], counts[block])
+            states[:, first:end] = own
+
+    return parallel_jit(advance_all)
 
 
 def rate_per_s(parameters: Array) -> Array:
@@ -165,9 +162,7 @@ def _advanced(
     # Neighbours cost about the same, so a core must not get neighbours only.
     blocks = np.argsort(np.arange(len(counts)) * _GOLDEN % 1.0)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
-    _advance_all(
-        steps,
-        rates_of,
+    _advancing(steps, rates_of)(
         found,
         np.ascontiguousarray(parameters[:, order]),
         float(seconds),

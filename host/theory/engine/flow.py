@@ -11,20 +11,14 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-import numba
 import numpy as np
-import sympy
-from scipy.integrate import DOP853
 
 from host.theory.engine.ensemble import rate_per_s, too_stiff
-from host.theory.model.symbolic import CONSTANTS, field, function, jacobian
+from host.theory.engine.runge_kutta import STAGES, TABLEAU
+from host.theory.model.symbolic import derivatives, derivatives_by_constant
 from host.theory.model.wheel import Array, Wheel, rates
-from sim_motor.compiled import compiled, jit, retold
+from sim_motor.compiled import compiled, jit
 
-# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is
-# the step's own.
-_TABLEAU = np.vstack([DOP853.A, DOP853.B]).astype(np.float64)
-_STAGES = len(DOP853.B)
 # Steps per unit of a wheel's rate (see host.theory.engine.ensemble); at this, the error of a period
 # is of the order of rounding.
 FINENESS = 3.0
@@ -34,7 +28,7 @@ _LEAST_STEPS = 16
 MOST_STEPS = 40_000
 
 _rates: Any = compiled(rates)
-_jacobian: Any = retold(jacobian(), {}, numba.njit)
+_jacobian: Any = compiled(derivatives(1))
 
 
 def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
@@ -48,32 +42,42 @@ def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
     return max(_LEAST_STEPS, int(needed))
 
 
-# Loops over rows and columns instead of slices: these take the compiler ten times as long.
-@jit
 def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: int) -> Array:
-    """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns). own_rates.
+    """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns).
 
-    `plain` or one of `varied`.
+    own_rates: `plain` or one of `varied`.
     """
-    columns, step_s = states.shape[1], seconds / count
-    path, stages, at = (
-        np.empty((count + 1, 4, columns)),
-        np.empty((_STAGES, 4, columns)),
-        states.copy(),
-    )
-    for index in range(count + 1):
-        for row in range(4):
-            for column in range(columns):
-                path[index, row, column] = at[row, column]
-        for stage in range(1, _STAGES + 1):
-            own_rates(at, constants, stages[stage - 1])
+    path: Array = _running(own_rates)(states, constants, seconds, count)
+    return path
+
+
+@cache
+def _running(own_rates: Any) -> Any:
+    """`run` with these rates, compiled."""
+
+    # Loops over rows and columns instead of slices: these take the compiler ten times as long.
+    def run(states: Array, constants: Any, seconds: float, count: int) -> Array:
+        columns, step_s = states.shape[1], seconds / count
+        path, stages, at = (
+            np.empty((count + 1, 4, columns)),
+            np.empty((STAGES, 4, columns)),
+            states.copy(),
+        )
+        for index in range(count + 1):
             for row in range(4):
                 for column in range(columns):
-                    total = 0.0
-                    for earlier in range(stage):
-                        total += _TABLEAU[stage, earlier] * stages[earlier, row, column]
-                    at[row, column] = path[index, row, column] + step_s * total
-    return path
+                    path[index, row, column] = at[row, column]
+            for stage in range(1, STAGES + 1):
+                own_rates(at, constants, stages[stage - 1])
+                for row in range(4):
+                    for column in range(columns):
+                        total = 0.0
+                        for earlier in range(stage):
+                            total += TABLEAU[stage, earlier] * stages[earlier, row, column]
+                        at[row, column] = path[index, row, column] + step_s * total
+        return path
+
+    return jit(run)
 
 
 @jit
@@ -87,9 +91,7 @@ def plain(states: Array, constants: Any, out: Array) -> None:
 @cache
 def varied(followed: int) -> Any:
     """The rates of a state, of its derivatives by the initial state, and of that by the constant of this number, (4, 1 + 4 + 1)."""
-    by_constant: Any = retold(
-        function([sympy.diff(rate, CONSTANTS[followed]) for rate in field()]), {}, numba.njit
-    )
+    by_constant: Any = compiled(derivatives_by_constant(followed))
 
     def own_rates(states: Array, constants: Any, out: Array) -> None:
         x1, x2, phi, omega = states[0, 0], states[1, 0], states[2, 0], states[3, 0]

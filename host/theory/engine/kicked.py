@@ -9,11 +9,10 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple, Protocol
 
-import numba
 import numpy as np
 
 from host.theory.engine import ensemble, sampled
-from host.theory.engine.elementary import MATHEMATICS, OPTIONS, inlined
+from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, Averages
 from host.theory.engine.sampled import Clock, Seen, ticks_in
 from host.theory.model.wheel import OMEGA, Array, Wheel, seen_rates
@@ -29,7 +28,7 @@ from robot.kicks import (
     seen_positions,
 )
 from robot.params import Params
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 
 # Mode, and sign of the shift.
 KICKS = ((MEMBRANE, 0), (POSITION, 0), (PHASE, 1), (PHASE, -1))
@@ -138,10 +137,10 @@ def _rates(
     )
 
 
-_vectorised_rates: Any = retold(_rates, MATHEMATICS, inlined)
+_vectorised_rates: Any = with_mathematics(_rates, MATHEMATICS, inlined)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _seeing_rates(states: Array, parameters: Array, out: Array) -> None:
     """The rates of wheels whose rows 4 and 5 are what the kick does to what they see, which stays."""
     for i in range(states.shape[1]):

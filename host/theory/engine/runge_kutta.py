@@ -4,27 +4,26 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 from scipy.integrate import DOP853
 
-from host.theory.engine.elementary import OPTIONS
+from host.theory.engine.elementary import vectorised
 from host.theory.model.wheel import Array
 
-# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate: its rows, and the
-# weights as the last. Half of it is zeros; of the others, one pass over the memory adds four.
-_ROWS = [
-    [(j, factor) for j, factor in enumerate(row) if factor != 0.0] for row in (*DOP853.A, DOP853.B)
-]
+# The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is
+# the step's own.
+TABLEAU = np.vstack([DOP853.A, DOP853.B]).astype(np.float64)
+STAGES = len(DOP853.A)
+# Half of the tableau is zeros; of the others, one pass over the memory adds four.
+_ROWS = [[(j, factor) for j, factor in enumerate(row) if factor != 0.0] for row in TABLEAU.tolist()]
 _FIRST = np.cumsum([0, *(-(-len(row) // 4) for row in _ROWS)])
 _PASSES = [(row[i : i + 4] + 3 * [(0, 0.0)])[:4] for row in _ROWS for i in range(0, len(row), 4)]
 _WHICH, _FACTORS = (
     np.array([[term[part] for term in terms] for terms in _PASSES]) for part in range(2)
 )
-_STAGES = len(DOP853.A)
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _begin(to: Array, base: Array, step_s: float, turn: int, rates: Array) -> None:
     """`to` becomes `base` and what a pass adds.
 
@@ -43,7 +42,7 @@ def _begin(to: Array, base: Array, step_s: float, turn: int, rates: Array) -> No
         )
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
     """The same in place."""
     f0, f1, f2, f3 = (
@@ -57,7 +56,7 @@ def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
         to[i] += f0 * rates[j0, i] + f1 * rates[j1, i] + f2 * rates[j2, i] + f3 * rates[j3, i]
 
 
-@numba.njit(**OPTIONS)
+@vectorised
 def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
     """Take `count` steps of step_s.
 
@@ -67,24 +66,24 @@ def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count:
     large by small steps.
     """
     rates, at, lost = (
-        np.zeros((_STAGES, *states.shape)),
+        np.zeros((STAGES, *states.shape)),
         np.empty_like(states),
         np.zeros(states.size),
     )
     # The same memory without rows, for loops as long as can be.
     flat_rates, flat_at, flat_states = (
-        rates.reshape((_STAGES, states.size)),
+        rates.reshape((STAGES, states.size)),
         at.reshape(states.size),
         states.reshape(states.size),
     )
     for _ in range(count):
         rates_of(states, parameters, rates[0])
-        for stage in range(1, _STAGES):
+        for stage in range(1, STAGES):
             _begin(flat_at, flat_states, step_s, _FIRST[stage], flat_rates)
             for turn in range(_FIRST[stage] + 1, _FIRST[stage + 1]):
                 _add(flat_at, step_s, turn, flat_rates)
             rates_of(at, parameters, rates[stage])
-        for turn in range(_FIRST[_STAGES], _FIRST[_STAGES + 1]):
+        for turn in range(_FIRST[STAGES], _FIRST[STAGES + 1]):
             _add(lost, step_s, turn, flat_rates)
         for i in range(len(lost)):
             before = flat_states[i]

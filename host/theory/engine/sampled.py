@@ -25,7 +25,8 @@ from host.theory.model.wheel import PHI, Array, Wheel
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS, Kick, seen_positions
 from robot.params import Params
-from sim_motor.compiled import compiled, parallel_jit, prange, retold
+from sim_motor.compiled import compiled, parallel_jit, prange
+from sim_motor.mathematics import with_mathematics
 
 HELD = 4
 # A wheel that needs more ticks has a tick too short for what it is asked.
@@ -140,7 +141,7 @@ def _unsaturated(force: float) -> float:
 
 
 _coast: Any = compiled(coast)
-_tick: Any = retold(tick, {**MATHEMATICS, "tanh": _unsaturated}, inlined)
+_tick: Any = with_mathematics(tick, {**MATHEMATICS, "tanh": _unsaturated}, inlined)
 
 
 @parallel_jit
@@ -278,7 +279,7 @@ def as_robot(
     return np.array(seen).T
 
 
-_complex_tick: Any = retold(
+_complex_tick: Any = with_mathematics(
     tick, {"cos": cmath.cos, "sin": cmath.sin, "exp": cmath.exp, "tanh": lambda force: force}
 )
 _COMPLEX_STEP = 1e-100

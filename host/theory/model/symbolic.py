@@ -1,49 +1,135 @@
-"""The analytic model in symbols, from the same source as its numbers, and its derivatives as plain functions of floats."""
+"""The analytic model in symbols, from the same source as its numbers, and derivatives of its rates.
+
+sympy takes seconds to import and to differentiate. So the derivatives are kept as text, which a
+second process reads instead (sim_motor.kept_files).
+"""
 
 from __future__ import annotations
 
+import hashlib
+import math
 from collections.abc import Callable, Sequence
 from functools import cache
+from importlib.metadata import version
+from itertools import product
 from typing import Any
 
 import numpy as np
-import sympy
 
 from host.theory.model.wheel import Array, Wheel, rates
-from sim_motor.compiled import retold
+from robot.sources import fingerprint
+from sim_motor.function_digest import function_digest
+from sim_motor.kept_files import keep, load
+from sim_motor.mathematics import with_mathematics
 
-STATE = sympy.symbols("x1 x2 phi omega", real=True)
-CONSTANTS = sympy.symbols(" ".join(Wheel._fields), positive=True)
+STATE = ("x1", "x2", "phi", "omega")
 Floats = Callable[..., tuple[float, ...]]
 
 
+def _symbols() -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """The state and the constants of a wheel."""
+    import sympy
+
+    constants = sympy.symbols(" ".join(Wheel._fields), positive=True)
+    return sympy.symbols(" ".join(STATE), real=True), constants
+
+
 @cache
-def field() -> tuple[Any, ...]:
-    """The four rates as expressions in STATE and CONSTANTS. Eq. dot_x_phi."""
-    told = retold(rates, {"sin": sympy.sin, "cos": sympy.cos, "exp": sympy.exp})
-    return tuple(sympy.nsimplify(rate) for rate in told(*STATE, *CONSTANTS))
+def _field() -> tuple[Any, ...]:
+    """The four rates as expressions in the state and the constants. Eq. dot_x_phi."""
+    import sympy
+
+    state, constants = _symbols()
+    symbolic = {"sin": sympy.sin, "cos": sympy.cos, "exp": sympy.exp}
+    found = with_mathematics(rates, symbolic)(*state, *constants)
+    return tuple(sympy.nsimplify(rate) for rate in found)
 
 
-def function(expressions: Sequence[Any]) -> Floats:
-    """Expressions as a plain function of STATE and CONSTANTS that returns a tuple.
+def _text(arguments: Sequence[Any], expressions: Sequence[Any]) -> str:
+    """The source of a plain function `derived` of the arguments that returns a tuple of floats."""
+    import inspect
+
+    import sympy
+
+    derived = sympy.lambdify(list(arguments), tuple(expressions), modules="math", cse=True)
+    source = inspect.getsource(derived)
+    return source.replace("def _lambdifygenerated(", "def derived(")
+
+
+def _kept(name: str, write: Callable[[], str]) -> Floats:
+    """The function `derived` of a text that is written once a machine.
 
     It uses `math` only, so that numba compiles it.
     """
-    made: Floats = sympy.lambdify(
-        [*STATE, *CONSTANTS], tuple(expressions), modules="math", cse=True
-    )
-    return made
+    key = (name, function_digest(rates, {}), fingerprint(__file__), version("sympy"))
+    file = f"{name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
+    content = load("derivatives", file)
+    if content is None:
+        content = write().encode()
+        keep("derivatives", file, content)
+    names = {**vars(math), "__name__": __name__}
+    exec(content, names)  # noqa: S102 - what sympy wrote
+    derived: Floats = names["derived"]
+    return derived
 
 
 @cache
-def jacobian() -> Floats:
-    """The function of the 16 derivatives of the rates by the state, row by row."""
-    return function([sympy.diff(rate, variable) for rate in field() for variable in STATE])
+def derivatives(order: int) -> Floats:
+    """The function of all derivatives of this order of the rates by the state.
+
+    It takes the state and the constants. In its result the rate counts first, and the last variable
+    runs fastest.
+    """
+
+    def write() -> str:
+        import sympy
+
+        state, constants = _symbols()
+        found = [
+            sympy.diff(rate, *variables)
+            for rate in _field()
+            for variables in product(state, repeat=order)
+        ]
+        return _text([*state, *constants], found)
+
+    return _kept(f"order{order}", write)
+
+
+@cache
+def derivatives_by_constant(number: int) -> Floats:
+    """The function of the derivatives of the four rates by the wheel's constant of this number."""
+
+    def write() -> str:
+        import sympy
+
+        state, constants = _symbols()
+        found = [sympy.diff(rate, constants[number]) for rate in _field()]
+        return _text([*state, *constants], found)
+
+    return _kept(f"constant{number}", write)
+
+
+@cache
+def rates_of_vector() -> Floats:
+    """The function of the rates of a state, and of a vector that the Jacobian drives.
+
+    It takes the state, the vector and the constants.
+    """
+
+    def write() -> str:
+        import sympy
+
+        state, constants = _symbols()
+        vector = sympy.symbols("v1 v2 v3 v4", real=True)
+        driven = sympy.Matrix(_field()).jacobian(state) * sympy.Matrix(vector)
+        return _text([*state, *vector, *constants], (*_field(), *driven))
+
+    return _kept("vector", write)
 
 
 def jacobian_at(state: Sequence[float], wheel: Wheel) -> Array:
     """The Jacobian, (4, 4), in 1/s."""
-    return np.array(jacobian()(*state, *wheel)).reshape(4, 4)
+    return np.array(derivatives(1)(*state, *wheel)).reshape(4, 4)
 
 
 def jacobian_by_differences(state: Sequence[float], wheel: Wheel, step: float = 1e-5) -> Array:

@@ -9,7 +9,6 @@ from math import sqrt
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from host.theory.model.wheel import Array, Wheel, numpy_positions
 from robot.controller import actual_positions, membrane_rate
@@ -59,6 +58,7 @@ def driven(phi: Array, omega: float, tau_s: float) -> Array:
 
     phi: ascending, from 0 or more.
     """
+    from scipy.integrate import solve_ivp
 
     def rate(time_s: float, x: Array) -> list[float]:
         seen = actual_positions(omega * time_s)

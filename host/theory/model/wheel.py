@@ -25,7 +25,7 @@ from robot.controller import (
     tangential_force,
     target_position,
 )
-from sim_motor.compiled import retold
+from sim_motor.mathematics import with_mathematics
 
 Array = NDArray[np.float64]
 PHI, OMEGA = 2, 3
@@ -155,5 +155,5 @@ def resting(phi: Array) -> Array:
 
 _NUMPY = {"cos": np.cos, "sin": np.sin, "exp": np.exp}
 # The functions of arrays.
-numpy_positions: Any = retold(actual_positions, _NUMPY)
-numpy_rates: Any = retold(rates, _NUMPY)
+numpy_positions: Any = with_mathematics(actual_positions, _NUMPY)
+numpy_rates: Any = with_mathematics(rates, _NUMPY)

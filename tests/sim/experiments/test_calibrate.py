@@ -25,7 +25,8 @@ from robot.kicks import MEMBRANE, WHEELS, Kick
 from robot.params import Params
 from sim_motor import batch
 from sim_motor.brick import SimBrick
-from sim_motor.motor import encoder, load, names
+from sim_motor.constants import load, names
+from sim_motor.motor import encoder
 
 SECONDS = 60.0
 # Every constant is another than the published motor's, also those which the fit takes from there.

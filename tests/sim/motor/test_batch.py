@@ -23,7 +23,7 @@ from robot.safety import limit_duty
 from sim_motor import batch
 from sim_motor.brick import SimBrick
 from sim_motor.compiled import compiled
-from sim_motor.motor import load
+from sim_motor.constants import load
 
 TICKS, BEGIN = 600, 250
 

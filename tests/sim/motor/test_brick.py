@@ -11,7 +11,7 @@ import pytest
 from robot.loop import Loop
 from robot.motors import MonotonicClock, MotorFault
 from sim_motor.brick import LATE_MOST_S, SimBrick, VirtualClock
-from sim_motor.motor import load
+from sim_motor.constants import load
 
 
 class HandClock:

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-import sim_motor.compiled_cache
-from sim_motor.compiled_cache import place
+import sim_motor.kept_files
 from tests.sim.motor.compiled_line import build, counts, line
 
 ROOT = Path(__file__).parents[3]
@@ -19,9 +18,9 @@ ROOT = Path(__file__).parents[3]
 def folder(tmp_path, monkeypatch):
     """The folder of compiled functions: this test's own."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
-    sim_motor.compiled_cache._say_once.cache_clear()
-    yield place()
-    sim_motor.compiled_cache._say_once.cache_clear()
+    sim_motor.kept_files._say_once.cache_clear()
+    yield Path(line.__globals__["jit"](lambda: 0)._cache.cache_path)
+    sim_motor.kept_files._say_once.cache_clear()
 
 
 def run(script):
@@ -120,7 +119,7 @@ def test_without_a_home_folder_nothing_is_kept(capsys, tmp_path, monkeypatch):
     for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name)
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
-    assert place() is None
+    assert sim_motor.kept_files.place("kind") is None
     assert line(3.0)(2.0) == 6.0
     assert "no home folder" in capsys.readouterr().err
     assert not (tmp_path / "~").exists()
@@ -146,7 +145,7 @@ def test_the_files_that_were_not_used_for_longest_are_removed(folder, monkeypatc
     used = [path for path in files if path.stat().st_mtime > 1]
     assert len(used) == 1
     room = 3.5 * max(path.stat().st_size for path in files)
-    monkeypatch.setattr(sim_motor.compiled_cache, "MOST_BYTES", room)
+    monkeypatch.setattr(sim_motor.kept_files, "MOST_BYTES", room)
     line(5.0)(2.0)
     assert [path for path in files if path.exists()] == used
 
@@ -155,7 +154,7 @@ def test_the_files_of_others_are_left_alone(tmp_path, monkeypatch):
     other = tmp_path / "numba" / "other" / "file"
     other.parent.mkdir(parents=True)
     other.write_text("theirs")
-    monkeypatch.setattr(sim_motor.compiled_cache, "MOST_BYTES", 0)
+    monkeypatch.setattr(sim_motor.kept_files, "MOST_BYTES", 0)
     line(3.0)(2.0)
     assert other.exists()
 

@@ -9,8 +9,9 @@ import numba.extending
 import numpy as np
 import pytest
 
-from sim_motor.compiled import jit, njit, retold
+from sim_motor.compiled import jit, njit
 from sim_motor.function_digest import function_digest
+from sim_motor.mathematics import with_mathematics
 
 
 def digest(source, name="f", options=None, **names):
@@ -87,8 +88,8 @@ def test_another_mathematics_is_another_function():
     def wave(x):
         return math.sin(x)
 
-    assert function_digest(wave, {}) == function_digest(retold(wave, {"math": math}), {})
-    assert function_digest(wave, {}) != function_digest(retold(wave, {"math": cmath}), {})
+    assert function_digest(wave, {}) == function_digest(with_mathematics(wave, {"math": math}), {})
+    assert function_digest(wave, {}) != function_digest(with_mathematics(wave, {"math": cmath}), {})
 
 
 def test_an_intrinsic_counts_by_its_definition():

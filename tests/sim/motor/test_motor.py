@@ -8,21 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sim_motor.constants import COAST, GRAVITY, SUBSTEP_S, data, load, names
 from sim_motor.motor import (
     ANGLE,
-    COAST,
     CURRENT,
     GAP,
-    GRAVITY,
     SAMPLE_SUBSTEPS,
     SPEED,
-    SUBSTEP_S,
     WHEEL_SPEED,
     advance_in_place,
-    data,
     encoder,
-    load,
-    names,
     substep_at,
     substep_from,
 )

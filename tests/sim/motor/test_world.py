@@ -12,7 +12,7 @@ from host.errors import WrongUse
 from host.link.addresses import make_link
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
-from sim_motor.motor import GRAVITY, SUBSTEP_S, data
+from sim_motor.constants import GRAVITY, SUBSTEP_S, data
 from sim_motor.world import PARTS, Scene, World, move_body, tyre_force
 
 ROBOT = {name: entry[0] for name, entry in data()["robot"].items()}

@@ -1,0 +1,189 @@
+"""A motor's constants, with their sources in motors.toml, and the tables that its model needs.
+
+- The battery's sag is a resistance in the motor's circuit. A motor at duty d draws d i from the
+  battery, and the other is taken to draw as much; so a wheel can be computed alone, exactly as long
+  as both wheels work equally hard.
+- The body's mass is taken to sit over the wheels, half at each (radius of gyration = half the
+  track): then driving and turning decouple, and each wheel carries wheel inertia + mass/2 radius^2
+  by itself.
+"""
+
+import tomllib
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.resources import files
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_motor.own_motors import own_motor
+
+Array = NDArray[np.float64]
+
+SUBSTEPS_PER_S = 1000
+SUBSTEP_S = 1.0 / SUBSTEPS_PER_S
+COAST = 101  # in place of a duty cycle
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class Constants:
+    """One motor with its wheel and its share of the robot.
+
+    SI units, torques and inertias at the output shaft.
+    """
+
+    torque_constant: float
+    emf_constant: float
+    resistance: float
+    inductance: float
+    motor_inertia: float
+    viscous: float
+    kinetic: float
+    static: float
+    wheel_inertia: float  # of the wheel and of half the body, which the wheel carries
+    rolling: float
+    backlash: float
+    source_resistance: float
+    battery_v: float
+    latency_s: float
+    encoder_counts: float
+    wheel_radius: float
+    spread: float
+
+    def bare(self) -> "Constants":
+        """The motor alone on a stiff supply: no wheel to speak of, no floor, no backlash."""
+        return replace(self, wheel_inertia=1e-9, rolling=0.0, backlash=0.0, source_resistance=0.0)
+
+    def with_wheel(self, inertia: float) -> "Constants":
+        """With a wheel of this moment of inertia (kg m2), which then carries nothing else."""
+        return replace(self, wheel_inertia=inertia)
+
+    def varied(self, strength: float, friction: float) -> "Constants":
+        """Another specimen: torque and friction by these factors.
+
+        What starts to move at which duty stays as it is.
+        """
+        return replace(
+            self,
+            torque_constant=self.torque_constant * strength,
+            kinetic=self.kinetic * friction,
+            static=self.static * strength,
+        )
+
+    def specimens(self, count: int, rng: np.random.Generator) -> "tuple[Constants, ...]":
+        """So many specimens at random, within the published spread."""
+        factors = rng.uniform(1 - self.spread, 1 + self.spread, (count, 2))
+        return tuple(self.varied(*pair) for pair in factors.tolist())
+
+    def scalars(self) -> Array:
+        """What `advance` needs besides the tables."""
+        share = self.wheel_inertia / (self.motor_inertia + self.wheel_inertia)
+        half = self.backlash / 2
+        return np.array(
+            [
+                self.torque_constant,
+                self.viscous,
+                self.kinetic,
+                self.static,
+                self.rolling,
+                self.wheel_inertia,
+                share,
+                half,
+            ]
+        )
+
+    def tables(self) -> Array:
+        """Exact solutions over one substep.
+
+        (motor alone or with wheel, |duty| in % or COAST, coefficient).
+
+        Coefficients: new speed from speed, current, voltage, torque; new current from the same;
+        turned angle from the same; and the new current of a locked motor from current and voltage.
+        """
+        duty = np.arange(COAST) / 100
+        ohms = self.resistance + 2 * self.source_resistance * duty**2
+        out = np.zeros((2, COAST + 1, 14))
+        for side, inertia in enumerate(
+            (self.motor_inertia, self.motor_inertia + self.wheel_inertia)
+        ):
+            system = np.zeros(
+                (COAST + 1, 5, 5)
+            )  # of speed, current, angle and the constant voltage and torque
+            system[:, 0, 0] = -self.viscous / inertia
+            system[:, 0, 4] = 1 / inertia
+            system[:, 2, 0] = 1
+            system[:COAST, 0, 1] = self.torque_constant / inertia
+            system[:COAST, 1, 0] = -self.emf_constant / self.inductance
+            system[:COAST, 1, 1] = -ohms / self.inductance
+            system[:COAST, 1, 3] = 1 / self.inductance
+            solution = _exponential(system * SUBSTEP_S)
+            out[side, :, :12] = solution[:, :3][:, :, (0, 1, 3, 4)].reshape(-1, 12)
+            out[side, :COAST, 12] = np.exp(-ohms / self.inductance * SUBSTEP_S)
+            out[side, :COAST, 13] = (1 - out[side, :COAST, 12]) / ohms
+        return out
+
+
+def _exponential(matrices: Array) -> Array:
+    """exp of each matrix in a stack, by its series at a 256th of the size, squared eight times."""
+    small = matrices / 256
+    term, out = small, np.eye(small.shape[-1]) + small
+    order = 1
+    while True:
+        order += 1
+        term = term @ small / order
+        before, out = out, out + term
+        # From the sixth power on every entry that can differ from 0 does, and terms only shrink.
+        if order > 6 and np.array_equal(out, before):
+            break
+    for _ in range(8):
+        out = out @ out
+    return out
+
+
+@cache
+def data() -> dict[str, dict[str, list[Any]]]:
+    """The data file: tables of name -> [value, unit, source]. Not to be changed."""
+    return tomllib.loads((files("sim_motor") / "motors.toml").read_text())
+
+
+def names() -> list[str]:
+    """The published motors there are; the first is the default."""
+    return [table for table in data() if table != "robot"]
+
+
+def load(name: str = "pybricks") -> Constants:
+    """The motor `name` in the robot.
+
+    A published one, or a user's own, whose values of the robot come before the published ones.
+
+    Raises ValueError, in words, for a name that nobody has, and for an own one that is not as it
+    should be.
+    """
+    published = data()
+    entry = published[name] if name in names() else own_motor(name, published)
+    values = {key: float(row[0]) for key, row in {**published["robot"], **entry}.items()}
+    share = values["mass"] / 2
+    rolling = values["rolling_resistance"] * share * GRAVITY * values["wheel_radius"]
+    start_v = values["break_away_duty"] / 100 * values["battery_voltage"]
+    return Constants(
+        torque_constant=values["torque_constant"],
+        emf_constant=values["emf_constant"],
+        resistance=values["resistance"],
+        inductance=values["inductance"],
+        motor_inertia=values["inertia"],
+        viscous=values["viscous_friction"],
+        kinetic=values["coulomb_friction"],
+        static=values["torque_constant"] * start_v / values["resistance"] - rolling,
+        wheel_inertia=values["wheel_inertia"] + share * values["wheel_radius"] ** 2,
+        rolling=rolling,
+        backlash=values["backlash"] * pi / 180,
+        source_resistance=values["source_resistance"],
+        battery_v=values["battery_voltage"],
+        latency_s=values["latency"],
+        encoder_counts=values["encoder_counts"],
+        wheel_radius=values["wheel_radius"],
+        spread=values["spread"],
+    )
