@@ -7,6 +7,7 @@ arithmetic, same latency. It stands alone, which the motor's model allows (see s
 Only a link, a lease and a fault have no place here.
 """
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from math import isnan, nan, pi
@@ -158,7 +159,7 @@ def run(
         records=np.empty((min(record, wheels), ticks, len(CHANNELS))),
     )
     # numpy multiplies matrices on several cores at once.
-    with ThreadPoolExecutor() as pool:
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
         tables = np.stack(list(pool.map(Constants.tables, motors)))
     _run_all(
         start.states,

@@ -9,6 +9,7 @@ as Runge and Kutta's method of order 8; but its steps must be short, or it is no
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -74,38 +75,41 @@ def _correct(states: Array, lost: Array, step_s: float, new: Array) -> None:
         lost[i] = change - (states[i] - before)
 
 
-@vectorised
-def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
-    """Take `count` steps of step_s.
+@cache
+def stepping(rates_of: Any) -> Any:
+    """The compiled function that takes `count` steps of step_s, as that of runge_kutta.
 
-    States, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
-
-    The first are of Runge and Kutta's method, for want of earlier rates. What rounding takes from a
-    step is given to the next, as there.
+    The first steps are of Runge and Kutta's method, for want of earlier rates. What rounding takes
+    from a step is given to the next, as there.
     """
-    # The latest rates stand first, from `newest` on; there is room for as many steps more, before
-    # they are moved.
-    rates = np.zeros((2 * ORDER, *states.shape))
-    at, new, lost = np.empty_like(states), np.empty_like(states), np.zeros(states.size)
-    # The same memory without rows, for loops as long as can be.
-    flat_states, flat_at, flat_new = (
-        states.reshape(states.size),
-        at.reshape(states.size),
-        new.reshape(states.size),
-    )
-    flat_rates = rates.reshape((2 * ORDER, states.size))
-    newest = 2 * ORDER - 1
-    rates_of(states, parameters, rates[newest])
-    for step in range(count):
-        if step < ORDER - 1:
-            runge_kutta.steps(rates_of, states, parameters, step_s, 1)
-        else:
-            if newest == 0:
-                rates[ORDER:] = rates[:ORDER]
-                newest = ORDER
-            _predict(flat_at, flat_states, step_s, flat_rates, newest)
-            _prepare(lost, step_s, flat_rates, newest)
-            rates_of(at, parameters, new)
-            _correct(flat_states, lost, step_s, flat_new)
-        newest -= 1
+    first_steps = runge_kutta.stepping(rates_of)
+
+    def steps(states: Array, parameters: Array, step_s: float, count: int) -> None:
+        # The latest rates stand first, from `newest` on; there is room for as many steps more, before
+        # they are moved.
+        rates = np.zeros((2 * ORDER, *states.shape))
+        at, new, lost = np.empty_like(states), np.empty_like(states), np.zeros(states.size)
+        # The same memory without rows, for loops as long as can be.
+        flat_states, flat_at, flat_new = (
+            states.reshape(states.size),
+            at.reshape(states.size),
+            new.reshape(states.size),
+        )
+        flat_rates = rates.reshape((2 * ORDER, states.size))
+        newest = 2 * ORDER - 1
         rates_of(states, parameters, rates[newest])
+        for step in range(count):
+            if step < ORDER - 1:
+                first_steps(states, parameters, step_s, 1)
+            else:
+                if newest == 0:
+                    rates[ORDER:] = rates[:ORDER]
+                    newest = ORDER
+                _predict(flat_at, flat_states, step_s, flat_rates, newest)
+                _prepare(lost, step_s, flat_rates, newest)
+                rates_of(at, parameters, new)
+                _correct(flat_states, lost, step_s, flat_new)
+            newest -= 1
+            rates_of(states, parameters, rates[newest])
+
+    return vectorised(steps)

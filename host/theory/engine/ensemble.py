@@ -73,8 +73,9 @@ def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
 
 
 @cache
-def _advancing(steps: Any, rates_of: Any) -> Any:
+def _advancing(method: Any, rates_of: Any) -> Any:
     """The compiled function that advances blocks of wheels by a method, with these rates."""
+    steps = method.stepping(rates_of)
 
     def advance_all(
         states: Array, parameters: Array, seconds: float, counts: Any, edges: Any, order: Any
@@ -87,7 +88,7 @@ def _advancing(steps: Any, rates_of: Any) -> Any:
             block = order[place]
             first, end = edges[block], edges[block + 1]
             own, constants = states[:, first:end].copy(), parameters[:, first:end].copy()
-            steps(rates_of, own, constants, seconds / counts[block], counts[block])
+            steps(own, constants, seconds / counts[block], counts[block])
             states[:, first:end] = own
 
     return parallel_jit(advance_all)
@@ -145,13 +146,13 @@ def advance(
     stands beside a wheel matters to it by the block's step, and in the last digits. Raises WrongUse
     of a wheel that is too stiff.
     """
-    return _advanced(runge_kutta.steps, states, parameters, seconds, fineness, rates_of)
+    return _advanced(runge_kutta, states, parameters, seconds, fineness, rates_of)
 
 
 def _advanced(
-    steps: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any
+    method: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any
 ) -> Array:
-    """The same by any method."""
+    """The same by any method, `runge_kutta` or `adams`."""
     rate = rate_per_s(parameters)
     order = np.argsort(rate, kind="stable")
     needed = np.ceil(seconds * fineness * rate[order])
@@ -162,7 +163,7 @@ def _advanced(
     # Neighbours cost about the same, so a core must not get neighbours only.
     blocks = np.argsort(np.arange(len(counts)) * _GOLDEN % 1.0)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
-    _advancing(steps, rates_of)(
+    _advancing(method, rates_of)(
         found,
         np.ascontiguousarray(parameters[:, order]),
         float(seconds),
@@ -191,13 +192,13 @@ def averages(
 
     Raises WrongUse of a wheel that is too stiff, and of one that cannot be followed.
     """
-    steps, fineness = (
-        (adams.steps, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta.steps, fineness)
+    method, fineness = (
+        (adams, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta, fineness)
     )
 
     def after(seconds: float, begun: Array) -> Array:
         given = np.vstack([begun, np.zeros(begun.shape[1])]), np.vstack([parameters, begun[OMEGA]])
-        return _advanced(steps, *given, seconds, fineness, _averaged_rates)
+        return _advanced(method, *given, seconds, fineness, _averaged_rates)
 
     begun = np.asarray(states, dtype=np.float64)
     if begun.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != len(Wheel._fields):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -56,36 +57,40 @@ def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
         to[i] += f0 * rates[j0, i] + f1 * rates[j1, i] + f2 * rates[j2, i] + f3 * rates[j3, i]
 
 
-@vectorised
-def steps(rates_of: Any, states: Array, parameters: Array, step_s: float, count: int) -> None:
-    """Take `count` steps of step_s.
+@cache
+def stepping(rates_of: Any) -> Any:
+    """The compiled function that takes `count` steps of step_s with these rates.
 
-    States, (rows, systems), of which rates_of(states, parameters, out) gives the rates.
+    states: (rows, systems), changed in place; rates_of(states, parameters, out) gives their rates.
 
     What rounding takes from a step is given to the next one (Kahan's summation), as an angle grows
     large by small steps.
     """
-    rates, at, lost = (
-        np.zeros((STAGES, *states.shape)),
-        np.empty_like(states),
-        np.zeros(states.size),
-    )
-    # The same memory without rows, for loops as long as can be.
-    flat_rates, flat_at, flat_states = (
-        rates.reshape((STAGES, states.size)),
-        at.reshape(states.size),
-        states.reshape(states.size),
-    )
-    for _ in range(count):
-        rates_of(states, parameters, rates[0])
-        for stage in range(1, STAGES):
-            _begin(flat_at, flat_states, step_s, _FIRST[stage], flat_rates)
-            for turn in range(_FIRST[stage] + 1, _FIRST[stage + 1]):
-                _add(flat_at, step_s, turn, flat_rates)
-            rates_of(at, parameters, rates[stage])
-        for turn in range(_FIRST[STAGES], _FIRST[STAGES + 1]):
-            _add(lost, step_s, turn, flat_rates)
-        for i in range(len(lost)):
-            before = flat_states[i]
-            flat_states[i] = before + lost[i]
-            lost[i] -= flat_states[i] - before
+
+    def steps(states: Array, parameters: Array, step_s: float, count: int) -> None:
+        rates, at, lost = (
+            np.zeros((STAGES, *states.shape)),
+            np.empty_like(states),
+            np.zeros(states.size),
+        )
+        # The same memory without rows, for loops as long as can be.
+        flat_rates, flat_at, flat_states = (
+            rates.reshape((STAGES, states.size)),
+            at.reshape(states.size),
+            states.reshape(states.size),
+        )
+        for _ in range(count):
+            rates_of(states, parameters, rates[0])
+            for stage in range(1, STAGES):
+                _begin(flat_at, flat_states, step_s, _FIRST[stage], flat_rates)
+                for turn in range(_FIRST[stage] + 1, _FIRST[stage + 1]):
+                    _add(flat_at, step_s, turn, flat_rates)
+                rates_of(at, parameters, rates[stage])
+            for turn in range(_FIRST[STAGES], _FIRST[STAGES + 1]):
+                _add(lost, step_s, turn, flat_rates)
+            for i in range(len(lost)):
+                before = flat_states[i]
+                flat_states[i] = before + lost[i]
+                lost[i] -= flat_states[i] - before
+
+    return vectorised(steps)
