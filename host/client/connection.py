@@ -18,7 +18,7 @@ from host.client.access import greet, hear
 from host.client.conversation import Conversation
 from host.client.stop import REPEAT_S, Stopped, stop_frame, stop_robot, unconfirmed
 from host.client.stream import Stream
-from host.errors import KickctlError, LeaseLost, NoLink, RefusedByRobot
+from host.errors import KickctlError, NoLink, RefusedByRobot
 from host.link.transport import Link, LinkLost
 from host.util.installation import deploy_command
 from robot.token import default_path
@@ -126,29 +126,6 @@ class Connection:
         if self._leased:
             self._leased = False
             self.request("release", sealed=True)
-
-    def command(self, command: str, **arguments: Any) -> int:
-        """Command the robot, taking control first if need be.
-
-        Args:
-            command: One of the robot's commands that need control.
-            arguments: What belongs to it.
-
-        Returns:
-            The first tick in which it holds.
-
-        Raises:
-            KickctlError: The robot refuses, does not answer, or cannot be reached.
-        """
-        if not self._leased:
-            self.lease()
-        try:
-            return int(self.request(command, arguments, sealed=True)["tick"])
-        except LeaseLost:
-            # The robot took this host for lost while the link was silent; what was refused has
-            # changed nothing.
-            self.lease()
-            return int(self.request(command, arguments, sealed=True)["tick"])
 
     def request(
         self, command: str, arguments: dict[str, Any] | None = None, *, sealed: bool = False

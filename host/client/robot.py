@@ -10,27 +10,17 @@ robot passes only within them.
 
 from __future__ import annotations
 
-import threading
 import uuid
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from math import inf
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from host.client.access import find_token
-from host.client.connection import Connection
-from host.client.listeners import Backlog, Listener, Records
-from host.errors import NoLink, WrongUse
+from host.client.watching import Watcher
+from host.errors import LeaseLost
 from host.link.addresses import chosen, make_link
-from host.logs.tap import Tap
-from host.util.provenance import origin
-from robot.record import STATES, Record
-
-if TYPE_CHECKING:
-    from host.logs.log import Log
+from robot.record import STATES
 
 
-class Robot(Connection):
+class Robot(Watcher):
     """A robot to drive and to watch: a connection with verbs.
 
     Every method that talks to the robot raises KickctlError in words when that fails. Leaving the
@@ -47,7 +37,21 @@ class Robot(Connection):
         *,
         observe: bool = False,
     ) -> Self:
-        """As the function `connect`."""
+        """Connect to a robot.
+
+        Args:
+            uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot.
+            seed: Fixes all chances of the simulated robot.
+            token: The path of the token file, by default the usual place.
+            name: Who this is, for the robot and for other people.
+            observe: Only look on, and stop the robot if need be, which takes no token.
+
+        Returns:
+            The robot.
+
+        Raises:
+            KickctlError: The robot cannot be reached, or refuses.
+        """
         link = make_link(chosen(uri), seed)
         return cls(link, None if observe else find_token(link, token), name)
 
@@ -71,26 +75,28 @@ class Robot(Connection):
             )
         return f"<Robot {self.link.uri}: {'; '.join(facts)}>"
 
-    def status(self) -> dict[str, Any]:
-        """What the robot does now.
-
-        Returns:
-            state, reason, tick, parameters in force, battery (V), who controls it, and how punctual
-            its ticks are.
-        """
-        return self.request("status")
-
-    def describe(self, table: str) -> list[dict[str, Any]]:
-        """One of the robot's own tables.
+    def command(self, command: str, **arguments: Any) -> int:
+        """Command the robot, taking control first if need be.
 
         Args:
-            table: 'params', 'channels' or 'commands'.
+            command: One of the robot's commands that need control.
+            arguments: What belongs to it.
 
         Returns:
-            The table's rows.
+            The first tick in which it holds.
+
+        Raises:
+            KickctlError: The robot refuses, does not answer, or cannot be reached.
         """
-        rows: list[dict[str, Any]] = self.request("describe", {"table": table})["table"]
-        return rows
+        if not self.drives:
+            self.lease()
+        try:
+            return int(self.request(command, arguments, sealed=True)["tick"])
+        except LeaseLost:
+            # The robot took this host for lost while the link was silent; what was refused has
+            # changed nothing.
+            self.lease()
+            return int(self.request(command, arguments, sealed=True)["tick"])
 
     def start(self) -> int:
         """Run from random membrane potentials.
@@ -145,185 +151,6 @@ class Robot(Connection):
         kick.update((name, value) for name, value in details.items() if value is not None)
         return self.command("kick", kick=kick)
 
-    def wait(self, seconds: float, until: Callable[[], bool] | None = None) -> bool:
-        """Let time pass, as counted by the robot's records.
-
-        Args:
-            seconds: How long (s of the robot's time).
-            until: Ends the wait as soon as it returns True.
-
-        Returns:
-            Whether `until` has ended the wait.
-
-        Raises:
-            NoLink: The robot is gone, or sends no more records.
-        """
-        if not seconds >= 0.0:
-            raise WrongUse(
-                f"nobody can wait for {seconds!r} s", "give a number of seconds, 0 or more"
-            )
-        self._subscribe()
-        first = self.newest
-        silent_since = self.link.now()
-        while until is None or not until():
-            newest = self.newest
-            if newest is not None:
-                if first is None or newest.tick < first.tick:
-                    first = newest
-                if newest.t_s - first.t_s >= seconds:
-                    return False
-            if self.pump(0.1):
-                silent_since = self.link.now()
-            elif self.link.now() - silent_since > self.answer_s + self.reconnect_s:
-                raise NoLink(
-                    "the robot sends no more records",
-                    "look at its screen; `kickctl doctor` says more",
-                )
-        return True
-
-    @property
-    def newest(self) -> Record | None:
-        """The latest record, None before the first."""
-        recent = self.stream.recent
-        return recent[-1] if recent else None
-
-    def recent(self) -> list[Record]:
-        """The latest records.
-
-        Returns:
-            About twelve seconds of records, oldest first.
-        """
-        return list(self.stream.recent)
-
-    def record(self, seconds: float) -> Log:
-        """Record the next `seconds`.
-
-        Args:
-            seconds: How long (s of the robot's time).
-
-        Returns:
-            The log, in memory.
-        """
-        with self.recording() as log:
-            self.wait(seconds)
-        return log
-
-    @contextmanager
-    def recording(self) -> Iterator[Log]:
-        """Record while other things are done: `with robot.recording() as log: ...`.
-
-        Yields:
-            The log, in memory; it grows until the end of the block.
-        """
-        from host.logs.log import Log
-
-        log = Log(self.info())
-        self.add_tap(log)
-        try:
-            yield log
-        finally:
-            self.remove_tap(log)
-
-    def on_record(self, callback: Callable[[Record], object]) -> Listener:
-        """Have a function called with every record from now on.
-
-        With a real robot the callback runs in a thread of its own, so it may be slow: link, lease
-        and stop do not wait for it. What it cannot take is dropped, the oldest first, and counted
-        (`dropped`). An exception of the callback ends nothing; it is counted (`failures`), and the
-        first one is logged. With sim:// the robot's time passes only within calls such as `wait`,
-        and the callback runs within them, in the same thread, while the robot's time stands still:
-        it misses nothing.
-
-        Args:
-            callback: Called with one Record at a time.
-
-        Returns:
-            The listener; its `close` ends the calls, as does leaving it as a `with` block.
-        """
-        listener = Listener(callback, self._forget)
-        if self.link.virtual:
-            self.stream.after.append(listener.catch_up)
-        else:
-            threading.Thread(target=listener.run, name="kickctl listener", daemon=True).start()
-        self.add_tap(listener.backlog)
-        return listener
-
-    def records(self, seconds: float = inf) -> Records:
-        """The records of the next `seconds`, one by one: `for record in robot.records(3): ...`.
-
-        The loop may be slow: link, lease and stop do not wait for it. What it cannot take is
-        dropped, the oldest first, and counted (`dropped`).
-
-        Args:
-            seconds: How long (s of the robot's time), by default for ever.
-
-        Returns:
-            An iterator of Records.
-        """
-        if not seconds >= 0.0:
-            raise WrongUse(
-                f"there are no records of {seconds!r} s", "give a number of seconds, 0 or more"
-            )
-        backlog = Backlog()
-        self.add_tap(backlog)
-        return Records(backlog, seconds, lambda until: self.wait(inf, until), self.remove_tap)
-
-    def add_tap(self, tap: Tap) -> None:
-        """Feed a tap with everything that the robot sends from now on.
-
-        Args:
-            tap: Has take_records(records) and take_event(event), which return at once.
-        """
-        with self._lock:
-            self._subscribe()
-            self.stream.add(tap)
-
-    def remove_tap(self, tap: Tap) -> None:
-        """Feed a tap no more.
-
-        Args:
-            tap: The tap; nothing happens if it is not fed.
-        """
-        with self._lock:
-            self.stream.remove(tap)
-
-    def pull(self, tap: Tap) -> None:
-        """Feed a tap with everything that the robot's black box holds, up to now.
-
-        Args:
-            tap: As for `add_tap`.
-        """
-        with self._lock:
-            # The answer comes behind the last record of the subscription that there was.
-            self.request("unsubscribe")
-            until = self.request("status")["tick"]
-            self.stream.begin(0, -inf)
-            self.stream.add(tap)
-            try:
-                self.wait(inf, until=lambda: (self.stream.place.next_tick or 0) >= until)
-            finally:
-                self.stream.remove(tap)
-
-    def info(self) -> dict[str, Any]:
-        """What a log must say of its origin.
-
-        Returns:
-            Plain JSON data, as in `Log.info`.
-        """
-        return origin(self.link.uri, self.hello, self.status(), self.clock_zero_s, self.started_utc)
-
-    def _forget(self, listener: Listener) -> None:
-        self.stream.remove(listener.backlog)
-        if listener.catch_up in self.stream.after:
-            self.stream.after.remove(listener.catch_up)
-
-    def _subscribe(self) -> None:
-        with self._lock:
-            if not self.stream.wanted:
-                tick = self.request("subscribe")["tick"]
-                if not self.stream.wanted:
-                    self.stream.begin(tick, self.link.now())
-
 
 def connect(
     uri: str | None = None,
@@ -333,19 +160,5 @@ def connect(
     *,
     observe: bool = False,
 ) -> Robot:
-    """Connect to a robot.
-
-    Args:
-        uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot (sim://).
-        seed: Fixes all chances of the simulated robot.
-        token: The path of the token file, by default the usual place.
-        name: Who this is, for the robot and for other people.
-        observe: Only look on, and stop the robot if need be, which takes no token.
-
-    Returns:
-        The robot, to be used in a `with` block or closed.
-
-    Raises:
-        KickctlError: The robot cannot be reached, or refuses.
-    """
+    """Connect to a robot: `Robot.connect`, for use in a `with` block."""
     return Robot.connect(uri, seed, token, name, observe=observe)

@@ -57,7 +57,7 @@ PROMISED = [
     f"{name}.{method}"
     for name in ("Robot", "Log", "Listener", "Records")
     for method, value in inspect.getmembers(getattr(kickctl, name))
-    if not method.startswith("_") and inspect.isfunction(value)
+    if not method.startswith("_") and inspect.isroutine(value)
 ]
 
 

@@ -333,3 +333,20 @@ def test_the_embedded_robot_is_stopped_by_its_own_program_alone():
     with connect("sim://", seed=1) as robot, connect("sim://", seed=1) as other:
         robot.stop()
         assert other.status()["state"] == "running"
+
+
+def test_a_stop_over_a_line_that_another_program_reads(tmp_path):
+    """Each reader takes bytes from the other: the answer, or a record, comes through in the end."""
+    cable = Cable(tmp_path)
+    machine = Machine(cable.paths["robot"])
+    uri = f"serial://{cable.paths['host']}"
+    try:
+        with Robot(make_link(uri), None, "reader") as reader, reader.recording() as log:
+            reader.wait(0.1)
+            assert stop_robot(make_link(uri), patience_s=PATIENCE_S).state == "stopped"
+            assert STATES[machine.loop.safety.state] == "stopped"
+            reader.wait(0.3)
+        assert log.missing() == []
+    finally:
+        machine.close()
+        cable.close()
