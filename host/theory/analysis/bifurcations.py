@@ -1,16 +1,15 @@
 """A curve of cycles followed to its ends, and the bifurcations on it.
 
-Folds, pitchforks and Neimark-Sacker points.
-
-A multiplier -1 of the reduced map is +1 for the whole period: there the cycle loses its symmetry in
-a pitchfork. For the same reason a cycle with its symmetry has no period doubling: the period's
-multipliers are squares at least.
+Folds, pitchforks and Neimark-Sacker bifurcations. A multiplier -1 of the reduced map is +1 for the
+whole period: there the cycle loses its symmetry in a pitchfork. For the same reason a cycle with
+its symmetry has no period doubling: the multipliers of its period are squares, or fourth powers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -19,43 +18,57 @@ from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import Shooting
 from host.theory.analysis.fixpoints import NDComplex
 from host.theory.analysis.merging import saddle
-from host.theory.model.wheel import OMEGA
+from host.theory.model.wheel import OMEGA, Array
 
-FOLD, PITCHFORK, NEIMARK_SACKER = "fold", "pitchfork", "neimark-sacker"
-# Where a curve may end.
-MERGING, RANGE, HOPF, STICKS, LOST, LONG = "merging", "range", "hopf", "sticks", "lost", "long"
-# A reduced map of so many times of the saddle's growth is within about 1e-7 of the merging.
+BifurcationType = Literal["fold", "pitchfork", "neimark-sacker"]
+FOLD: BifurcationType = "fold"
+PITCHFORK: BifurcationType = "pitchfork"
+NEIMARK_SACKER: BifurcationType = "neimark-sacker"
+# Where a curve ends: at a merging; at the end of the range; at a Hopf bifurcation; where a wheel
+# with dry friction stops; where it cannot be followed further; after too many points.
+End = Literal["merging", "range", "hopf", "sticks", "lost", "long"]
+MERGING: End = "merging"
+RANGE: End = "range"
+HOPF: End = "hopf"
+STICKS: End = "sticks"
+LOST: End = "lost"
+LONG: End = "long"
+# A cycle whose reduced map takes this many times of the saddle's growth is within about 1e-7 of the
+# merging.
 _LONGEST = 18.0
 _SHORTEST_STEP, _LONGEST_STEP, _MOST_POINTS = 1e-7, 0.2, 1500
-# What vanishes by rounding alone, near a merging, is no bifurcation: a multiplier is as near to
-# where it should be.
+# A multiplier at a bifurcation is this close to where it should be. What vanishes by rounding, near
+# a merging, is no bifurcation.
 _SURE = 1e-3
 _FINER = 1.5
 
 
-class Special(NamedTuple):
-    """A bifurcation: its type, the point, its place, between the points before - 1 and before of its curve, and a check.
+class Bifurcation(NamedTuple):
+    """A bifurcation of cycles.
 
-    off_by: by how much (relative) the followed constant differs if it is located with shorter steps
-    in time.
+    Attributes:
+        type: fold, pitchfork or Neimark-Sacker.
+        point: the cycle at which it happens.
+        before: its place on the curve, between the points number `before` - 1 and `before`.
+        off_by: relative difference of the followed constant if located with shorter time steps.
     """
 
-    type: str
+    type: BifurcationType
     point: Point
     before: int
     off_by: float
 
 
 class Followed(NamedTuple):
-    """A curve's points, the bifurcations on it, and why it ended."""
+    """A curve of cycles: its points, the bifurcations on it, and why it ends."""
 
     points: list[Point]
-    specials: list[Special]
-    end: str
+    bifurcations: list[Bifurcation]
+    end: End
 
 
-def _tests(shooting: Any) -> dict[str, Callable[[Point], float]]:
-    """What vanishes at each type of bifurcation."""
+def _tests(shooting: Shooting) -> dict[BifurcationType, Callable[[Point], float]]:
+    """The function that vanishes at each type of bifurcation (Kuznetsov, section 10.2)."""
 
     def flip(point: Point) -> float:
         return float(np.linalg.det(shooting.map_derivative(point.unknowns) + np.eye(3)))
@@ -67,15 +80,17 @@ def _tests(shooting: Any) -> dict[str, Callable[[Point], float]]:
     return {FOLD: lambda point: float(point.tangent[-1]), PITCHFORK: flip, NEIMARK_SACKER: pair}
 
 
-def _sure(kind: str, multipliers: NDComplex) -> bool:
-    if kind == NEIMARK_SACKER:  # two real multipliers of product 1 are none
-        return bool(
-            np.any((np.abs(multipliers.imag) > 0.0) & (np.abs(np.abs(multipliers) - 1) < _SURE))
-        )
-    return bool(np.abs(multipliers - (1 if kind == FOLD else -1)).min() < _SURE)
+def _is_bifurcation(type_: BifurcationType, multipliers: NDComplex) -> bool:
+    """Whether a multiplier is where this type has it."""
+    if type_ == NEIMARK_SACKER:  # two real multipliers of product 1 are no such pair
+        on_circle = np.abs(np.abs(multipliers) - 1) < _SURE
+        return bool(np.any((np.abs(multipliers.imag) > 0.0) & on_circle))
+    expected = 1 if type_ == FOLD else -1
+    return bool(np.abs(multipliers - expected).min() < _SURE)
 
 
-def _end(shooting: Shooting, point: Point, low: float, high: float, smallest: float) -> str | None:
+def _end(shooting: Shooting, point: Point, low: float, high: float, smallest: float) -> End | None:
+    """Why the curve ends at this point; None if it does not."""
     value, seconds = point.unknowns[4], point.unknowns[3]
     if not low < value < high:
         return RANGE
@@ -90,54 +105,50 @@ def _end(shooting: Shooting, point: Point, low: float, high: float, smallest: fl
     return None
 
 
-def _beyond(bound: float) -> Callable[[Point], float]:
-    return lambda point: float(point.unknowns[4] - bound)
+def follow(shooting: Shooting, scales: Array, first: Point, low: float, high: float) -> Followed:
+    """Follow cycles along a constant, around folds, to the end of their curve.
 
+    Args:
+        shooting: The problem that the cycles solve.
+        scales: The scales of its unknowns, (5,).
+        first: The first cycle, and the direction in which to go.
+        low: Least value of the followed constant.
+        high: Greatest value of the followed constant.
 
-def follow(curve: Curve, first: Point, low: float, high: float) -> Followed:
-    """The curve of cycles from its first point on, as long as the followed constant is between low and high."""
-    shooting = curve.problem
-    assert isinstance(shooting, Shooting)
-    tests = _tests(shooting)
-    finer = curve._replace(
-        problem=type(shooting)(
-            shooting.wheel, shooting.family, shooting.along, _FINER * shooting.fineness
-        )
-    )
+    Returns:
+        The curve and the bifurcations on it.
+    """
+    curve, tests = Curve(shooting, scales), _tests(shooting)
+    finer = shooting.with_finer_steps(_FINER)
     points: list[Point] = []
-    specials: list[Special] = []
-    values: dict[str, float] = {}
-    smallest = (
-        0.0 if shooting.family.turn else abs(first.unknowns[2]) / 2
-    )  # smaller cycles have come back to the fixpoint
+    found: list[Bifurcation] = []
+    values: dict[BifurcationType, float] = {}
+    # Smaller forth-and-back cycles have come back to the fixpoint.
+    smallest = 0.0 if shooting.family.turn else abs(first.unknowns[2]) / 2
     try:
         for length, point in curve.follow(first, _SHORTEST_STEP, _LONGEST_STEP):
-            now = {kind: test(point) for kind, test in tests.items()}
-            for kind in tests if points else ():
-                if values[kind] * now[kind] < 0.0:
-                    there = curve.locate(points[-1], length, tests[kind])
-                    if _sure(kind, shooting.multipliers(there.unknowns)):
-                        again = finer.locate(points[-1], length, _tests(finer.problem)[kind])
-                        specials.append(
-                            Special(
-                                kind,
-                                there,
-                                len(points),
-                                abs(float(again.unknowns[4] / there.unknowns[4]) - 1),
-                            )
-                        )
+            before, values = values, {type_: test(point) for type_, test in tests.items()}
+            for type_ in before:
+                if before[type_] * values[type_] >= 0.0:
+                    continue
+                there = curve.locate(points[-1], length, tests[type_])
+                if _is_bifurcation(type_, shooting.multipliers(there.unknowns)):
+                    again = Curve(finer, scales).locate(points[-1], length, _tests(finer)[type_])
+                    off_by = abs(float(again.unknowns[4] / there.unknowns[4]) - 1)
+                    found.append(Bifurcation(type_, there, len(points), off_by))
             end = _end(shooting, point, low, high, smallest)
             if end == RANGE and points:
-                points.append(
-                    curve.locate(
-                        points[-1], length, _beyond(low if point.unknowns[4] <= low else high)
-                    )
-                )
+                bound = low if point.unknowns[4] <= low else high
+                points.append(curve.locate(points[-1], length, partial(_beyond, bound)))
             else:
                 points.append(point)
-            values = now
             if end or len(points) == _MOST_POINTS:
-                return Followed(points, specials, end or LONG)
+                return Followed(points, found, end or LONG)
     except NotDone:
-        return Followed(points, specials, LOST)
+        return Followed(points, found, LOST)
     raise AssertionError("a curve has no last point")
+
+
+def _beyond(bound: float, point: Point) -> float:
+    """How far the followed constant is beyond a bound."""
+    return float(point.unknowns[4] - bound)

@@ -1,7 +1,7 @@
-"""Whole branches of cycles in one constant of the wheel, each from where it begins.
+"""Branches of cycles in one constant of the wheel, each from where it begins.
 
-Forth-and-back cycles begin at a Hopf bifurcation, rotations near a merging; both are followed to
-their ends, through folds.
+Forth-and-back cycles begin at a Hopf bifurcation, rotations close to a merging. Both are followed
+to their ends, around folds.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from host.theory.analysis.bifurcations import MERGING, Followed, follow
 from host.theory.analysis.continuation import Curve, Point
-from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Shooting, rolling
+from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Shooting, settle_in_rotation
 from host.theory.analysis.fixpoints import fixpoint
 from host.theory.analysis.hopf import hopf
 from host.theory.analysis.merging import course, mergings
@@ -24,17 +24,24 @@ from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 
 # The fields of Wheel by the paper's letters.
 FIELDS = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
-# Amplitude of phi (rad) of the cycle with which a branch of swinging begins.
+# Amplitude of phi (rad) of the cycle with which a branch of forth-and-back cycles begins.
 SMALLEST = 5e-3
-# Rotations are looked for so far (relative) beyond a merging.
+# Rotations are looked for this far (relative) beyond a merging.
 _BEYOND = 0.1
+# Two mergings this close (relative) are one.
+_SAME = 1e-3
 _GRID = 240
 # The direction in which only the followed constant varies.
 _ALONG = np.array([0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 class Branch(NamedTuple):
-    """A branch: its curve, and what was found on it one way and, if it began in the middle, the other way."""
+    """A branch of cycles.
+
+    Attributes:
+        shooting: the problem that the cycles solve.
+        ways: the curve; two of them, down and up, if the branch begins in the middle.
+    """
 
     shooting: Shooting
     ways: tuple[Followed, ...]
@@ -46,101 +53,145 @@ def with_constant(wheel: Wheel, field: str, value: float) -> Wheel:
 
 
 def hopf_values(wheel: Wheel, field: str, low: float, high: float) -> list[float]:
-    """Where, along a constant, the even fixpoints' leading pair of eigenvalues crosses the imaginary axis."""
+    """The Hopf bifurcations of the even fixpoints along a constant.
+
+    Args:
+        wheel: The wheel; its own value of the constant does not matter.
+        field: The field of Wheel that is followed.
+        low: Least value of the constant, above 0.
+        high: Greatest value of the constant.
+
+    Returns:
+        The values at which the leading eigenvalues cross the imaginary axis, ascending.
+
+    Raises:
+        WrongUse: The wheel can rest at any angle.
+    """
 
     def growth(value: float) -> float:
         return float(fixpoint(0.0, with_constant(wheel, field, value)).eigenvalues[0].real)
 
     values = np.geomspace(low, high, _GRID).tolist()
-    known = [(value, growth(value) > 0.0) for value in values]
+    unstable = [(value, growth(value) > 0.0) for value in values]
     return [
         float(brentq(growth, below, above, xtol=1e-14, rtol=1e-14))
-        for (below, first), (above, then) in pairwise(known)
-        if first != then
+        for (below, first), (above, second) in pairwise(unstable)
+        if first != second
     ]
 
 
 def swings(wheel: Wheel, field: str, low: float, high: float) -> list[Branch]:
-    """The branches of forth-and-back cycles around phi = 0."""
-    found = []
+    """The branches of forth-and-back cycles around phi = 0, one from each Hopf bifurcation.
+
+    Args:
+        wheel: The wheel; its own value of the constant does not matter.
+        field: The field of Wheel that is followed.
+        low: Least value of the constant, above 0.
+        high: Greatest value of the constant.
+
+    Returns:
+        The branches, each followed one way.
+
+    Raises:
+        NotDone: The first cycle of a branch was not found.
+        WrongUse: There is no Hopf bifurcation.
+    """
+    branches = []
     for value in hopf_values(wheel, field, low, high):
-        shooting = Shooting(wheel, FORTH_AND_BACK, field)
-        curve = Curve(shooting, _scales(with_constant(wheel, field, value), value))
-        found.append(
-            Branch(
-                shooting,
-                (
-                    follow(
-                        curve,
-                        _first_swing(curve, with_constant(wheel, field, value), value),
-                        low,
-                        high,
-                    ),
-                ),
-            )
-        )
-    return found
+        there = with_constant(wheel, field, value)
+        shooting, scales = Shooting(wheel, FORTH_AND_BACK, field), _scales(there, value)
+        first = _first_swing(Curve(shooting, scales), there, value)
+        branches.append(Branch(shooting, (follow(shooting, scales, first, low, high),)))
+    return branches
 
 
 def rotations(wheel: Wheel, field: str, low: float, high: float) -> list[Branch]:
-    """The branches of rotations forward: one from each merging.
+    """The branches of rotations forward, one from each merging.
 
-    Without any, one from the wheel itself. Raises NotDone if none rolls.
+    Without a merging, one from the wheel itself.
+
+    Args:
+        wheel: The wheel.
+        field: The field of Wheel that is followed.
+        low: Least value of the constant, above 0.
+        high: Greatest value of the constant.
+
+    Returns:
+        The branches, each followed down and up.
+
+    Raises:
+        NotDone: The wheel does not go on rolling.
+        WrongUse: There is no Hopf bifurcation, or the wheel is too stiff.
     """
-    met = list(mergings(wheel, low, high, field))
+    found = list(mergings(wheel, low, high, field))
     branches: list[Branch] = []
-    for found in met:
-        value = getattr(found.wheel, field)
+    for one in found:
+        value = getattr(one.wheel, field)
         ends = [
             way.points[-1].unknowns[4]
             for branch in branches
             for way in branch.ways
             if way.end == MERGING
         ]
-        if not any(abs(value / end - 1) < 1e-3 for end in ends):
-            start = with_constant(
-                wheel, field, value * (1 + _BEYOND if found.passes_above else 1 / (1 + _BEYOND))
-            )
-            branches.append(_both_ways(start, field, course(start)[1][:, -1], low, high))
-    if not met:
-        start = (
-            wheel
-            if low < getattr(wheel, field) < high
-            else with_constant(wheel, field, 0.999 * high)
-        )
-        branches.append(_both_ways(start, field, turned(start), low, high))
+        if any(abs(value / end - 1) < _SAME for end in ends):
+            continue
+        factor = 1 + _BEYOND if one.passes_above else 1 / (1 + _BEYOND)
+        start = with_constant(wheel, field, value * factor)
+        branches.append(_both_ways(start, field, course(start)[1][:, -1], low, high))
+    if not found:
+        start = wheel
+        if not low < getattr(wheel, field) < high:
+            start = with_constant(wheel, field, 0.999 * high)
+        branches.append(_both_ways(start, field, turning_state(start), low, high))
     return branches
 
 
 def _both_ways(wheel: Wheel, field: str, state: Array, low: float, high: float) -> Branch:
     shooting = Shooting(wheel, ROTATION, field)
-    curve = Curve(shooting, _scales(wheel, getattr(wheel, field)))
-    first = rotation(wheel, state, field)
-    ways = (
-        Point(first.unknowns, sign * curve.tangent(first.unknowns, _ALONG)) for sign in (-1.0, 1.0)
+    scales = _scales(wheel, getattr(wheel, field))
+    first = rotation(wheel, state, field).unknowns
+    down, up = (
+        Point(first, sign * Curve(shooting, scales).tangent(first, _ALONG)) for sign in (-1.0, 1.0)
     )
-    return Branch(shooting, tuple(follow(curve, way, low, high) for way in ways))
+    ways = (
+        follow(shooting, scales, down, low, high),
+        follow(shooting, scales, up, low, high),
+    )
+    return Branch(shooting, ways)
 
 
-def turned(wheel: Wheel) -> Array:
-    """The state (4,), at phi = 0, of a wheel that has been turned for long at the paper's speed of locomotion, or at 1/tau."""
-    return turning(np.zeros(1), np.array([constant_velocity(wheel) or 1.0 / wheel.tau_s]), wheel)[
-        :, 0
-    ]
+def turning_state(wheel: Wheel) -> Array:
+    """The state, (4,), at phi = 0, of a wheel that has always turned at constant velocity.
+
+    That of the paper's formula, or 1/tau where it has none.
+    """
+    omega = constant_velocity(wheel) or 1.0 / wheel.tau_s
+    return turning(np.zeros(1), np.array([omega]), wheel)[:, 0]
 
 
 def rotation(wheel: Wheel, state: Array, field: str = "k") -> Point:
-    """The rotation of a wheel at its own constants, sought from a state in which it rolls.
+    """The rotation of a wheel at its own constants.
 
-    Raises NotDone.
+    Args:
+        wheel: The wheel.
+        state: A state from which it rolls, (4,).
+        field: The field of Wheel in which the rotation may be followed.
+
+    Returns:
+        The rotation, with the unknowns of Shooting.
+
+    Raises:
+        NotDone: The wheel does not go on rolling.
+        WrongUse: The wheel is too stiff to be followed.
     """
-    section, seconds = rolling(wheel, state)
+    section, seconds = settle_in_rotation(wheel, state)
     value = getattr(wheel, field)
     guess = np.array([*section[[0, 1, OMEGA]], seconds, value])
     return Curve(Shooting(wheel, ROTATION, field), _scales(wheel, value)).solve(guess, _ALONG)
 
 
 def _scales(wheel: Wheel, value: float) -> Array:
+    """The scales of the unknowns of Shooting, (5,)."""
     swinging = hopf(wheel).omega
     return np.array([1.0, 1.0, swinging, pi / swinging, value])
 

@@ -1,9 +1,10 @@
-"""Cycles of the wheel by shooting, stable or not, each from a piece of its period that the wheel's symmetry repeats.
+"""Cycles of the wheel by shooting, stable or not.
 
-The equations look the same from a quarter turn on, R: (x1, x2, phi) -> (-x2, x1, phi + pi/2), and
-in the mirror, M: (x2, phi, omega) -> -(x2, phi, omega). A rotation is a fixpoint of: run for a
-quarter turn, then undo R; a forth-and-back cycle around phi = 0 one of: run for half a period, then
-apply M. With the plane phi = 0 as section, such a reduced map has three multipliers.
+The equations have two symmetries. R is a quarter turn, (x1, x2, phi) -> (-x2, x1, phi + pi/2), and
+M the mirror, (x2, phi, omega) -> -(x2, phi, omega). It is enough to integrate the piece of a period
+that a symmetry repeats: a rotation is a fixpoint of 'integrate a quarter turn, then undo R', and a
+forth-and-back cycle around phi = 0 one of 'integrate half a period, then apply M'. On the section
+phi = 0 this reduced map has three multipliers.
 """
 
 from __future__ import annotations
@@ -18,19 +19,23 @@ from host.errors import NotDone, WrongUse
 from host.theory.engine.flow import FINENESS, plain, run, steps_for, varied
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 
-# The coordinates of the section phi = 0.
+# The coordinates on the section phi = 0.
 SECTION = [0, 1, OMEGA]
-# A wheel has settled in a rotation when its state changes so little in a quarter turn, or after so
-# many; it is given so many steps.
-_SETTLED, _QUARTERS, _CHUNK, _PATIENCE = 1e-4, 60, 100, 20_000
+# A wheel has settled in a rotation if its state changes less than this (relative) in a quarter turn,
+# or after this many quarter turns.
+_SETTLED, _QUARTERS = 1e-4, 60
+# It is integrated in chunks of steps, at most this many.
+_CHUNK, _MOST_CHUNKS = 100, 20_000
 
 
 class Family(NamedTuple):
-    """Cycles of one symmetry. back.
+    """Cycles of one symmetry.
 
-    The symmetry that closes the reduced map, (4, 4), after the wheel has advanced by `turn` (rad).
-
-    power: how many reduced maps make a period.
+    Attributes:
+        name: FB or LLM.
+        back: the symmetry that closes the reduced map, (4, 4).
+        turn: how far the wheel has turned before `back` is applied, rad.
+        power: how many reduced maps make a period.
     """
 
     name: str
@@ -46,25 +51,45 @@ ROTATION = Family("LLM", _UNDO_QUARTER, pi / 2, 4.0)
 
 
 class Shooting:
-    """The cycles of a family as a problem (see host.theory.analysis.continuation) in the unknowns (x1, x2, omega, time, constant).
+    """The cycles of a family as a problem (see host.theory.analysis.continuation).
 
-    The first three are the state at phi = 0. time: what the reduced map takes, s. constant: of the
-    wheel, that of the field `along`.
+    The unknowns are (x1, x2, omega, time, constant), (5,): the state at phi = 0, the duration of the
+    reduced map in s, and the wheel's constant that is followed.
     """
 
     def __init__(
         self, wheel: Wheel, family: Family, along: str = "k", fineness: float = FINENESS
     ) -> None:
+        """Cycles of a wheel.
+
+        Args:
+            wheel: The wheel; the followed constant is replaced.
+            family: The symmetry of the cycles.
+            along: The field of Wheel that is followed.
+            fineness: Steps per unit of the wheel's rate (see host.theory.engine.flow).
+        """
         self.wheel, self.family, self.along, self.fineness = wheel, family, along, fineness
+
+    def with_finer_steps(self, factor: float) -> Shooting:
+        """The same problem with steps that are shorter by a factor."""
+        return type(self)(self.wheel, self.family, self.along, factor * self.fineness)
 
     def wheel_at(self, unknowns: Array) -> Wheel:
         """The wheel with its followed constant."""
         return self.wheel._replace(**{self.along: float(unknowns[4])})
 
     def path(self, unknowns: Array) -> Array:
-        """States and their derivatives in the course of the reduced map, (steps + 1, 4, 6).
+        """The states of the reduced map, and their derivatives.
 
-        Raises NotDone if it makes no sense there.
+        Args:
+            unknowns: (x1, x2, omega, time, constant), (5,).
+
+        Returns:
+            (steps + 1, 4, 6): the state, its derivatives by the initial state, and its derivative
+            by the constant.
+
+        Raises:
+            NotDone: There is no cycle with these unknowns, or the wheel is too stiff.
         """
         x1, x2, omega, seconds, constant = map(float, unknowns)
         if not (
@@ -91,7 +116,17 @@ class Shooting:
         return np.array(rates(x1, x2, phi, omega, *self.wheel_at(unknowns)))
 
     def __call__(self, unknowns: Array) -> tuple[Array, Array]:
-        """By how much the reduced map misses its start, (4,), and the derivatives (4, 5) by the unknowns."""
+        """The residual of the reduced map, and its Jacobian.
+
+        Args:
+            unknowns: (x1, x2, omega, time, constant), (5,).
+
+        Returns:
+            End minus start, (4,), and the derivatives of that by the unknowns, (4, 5).
+
+        Raises:
+            NotDone: There is no cycle with these unknowns, or the wheel is too stiff.
+        """
         end = self.path(unknowns)[-1]
         start = np.array([unknowns[0], unknowns[1], 0.0, unknowns[2]])
         back = self.family.back
@@ -109,15 +144,20 @@ class Shooting:
         return found
 
     def multipliers(self, unknowns: Array) -> NDArray[np.complex128]:
-        """The three of the reduced map, the greatest modulus first.
+        """The three multipliers of the reduced map, the greatest modulus first, (3,).
 
-        To the family's power they are those of the whole period.
+        Raised to the family's power they are the Floquet multipliers of the whole period, without
+        the trivial one.
         """
         found = np.linalg.eigvals(self.map_derivative(unknowns)).astype(complex)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
     def product_off_by(self, unknowns: Array) -> float:
-        """By how much the product of these misses what the constant divergence, -2 / tau - f / I, makes it exactly: a check."""
+        """The error of the product of the multipliers: a check.
+
+        Liouville's formula gives the product exactly: the divergence of the flow is constant, -2 /
+        tau - f / I.
+        """
         wheel = self.wheel_at(unknowns)
         exact = np.linalg.det(self.family.back) * np.exp(
             -(2.0 / wheel.tau_s + wheel.friction / wheel.inertia) * unknowns[3]
@@ -125,33 +165,37 @@ class Shooting:
         return float(abs(np.linalg.det(self.map_derivative(unknowns)) - exact))
 
 
-def rolling(wheel: Wheel, state: Array) -> tuple[Array, float]:
-    """(state (4,) at phi = 0, time of a quarter turn, s) of a wheel that began in a state and was given time to settle in a rotation.
+def settle_in_rotation(wheel: Wheel, state: Array) -> tuple[Array, float]:
+    """Let a wheel settle in a rotation.
 
-    Raises NotDone if it turns back instead.
+    Args:
+        wheel: The wheel.
+        state: Where it starts, (4,).
+
+    Returns:
+        Its state at phi = 0, (4,), and the time it takes for a quarter turn, s.
+
+    Raises:
+        NotDone: It turns back instead.
+        WrongUse: It is too stiff to be followed.
     """
     step_s = 1.0 / steps_for(1.0, wheel)
     at, now_s, crossings = np.array(state, dtype=np.float64), 0.0, 0
     section, since_s = np.full(4, np.inf), 0.0
-    for _ in range(_PATIENCE):
+    for _ in range(_MOST_CHUNKS):
         path = run(plain, at[:, None], tuple(wheel), _CHUNK * step_s, _CHUNK)[:, :, 0]
         quarters = np.floor(path[:, PHI] / ROTATION.turn)
         for index in np.flatnonzero(np.diff(quarters) > 0):
-            part = (ROTATION.turn * quarters[index + 1] - path[index, PHI]) / (
-                path[index + 1, PHI] - path[index, PHI]
-            )
+            rest_of_step = ROTATION.turn * quarters[index + 1] - path[index, PHI]
+            part = rest_of_step / (path[index + 1, PHI] - path[index, PHI])
             there = path[index] + part * (path[index + 1] - path[index])
             before, before_s = section, since_s
-            section, since_s = (
-                np.linalg.matrix_power(ROTATION.back, int(quarters[index + 1]) % 4) @ there,
-                now_s + (index + part) * step_s,
-            )
+            section = np.linalg.matrix_power(ROTATION.back, int(quarters[index + 1]) % 4) @ there
             section[PHI] = 0.0
+            since_s = now_s + (index + part) * step_s
             crossings += 1
-            if (
-                np.abs(section - before).max() < _SETTLED * np.abs(section).max()
-                or crossings > _QUARTERS
-            ):
+            same = np.abs(section - before).max() < _SETTLED * np.abs(section).max()
+            if same or crossings > _QUARTERS:
                 return section, since_s - before_s
         if path[:, OMEGA].min() < 0.0:
             break

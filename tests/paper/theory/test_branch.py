@@ -1,4 +1,4 @@
-"""The study `branch`: what it tells, its two methods against each other, its claims, and what it says where there is nothing to find."""
+"""The study `branch`: its numbers by two methods, its claims, and runs that find nothing."""
 
 import json
 

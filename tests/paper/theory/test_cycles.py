@@ -17,7 +17,7 @@ from host.theory.analysis.bifurcations import (
     RANGE,
     follow,
 )
-from host.theory.analysis.branches import hopf_values, rotation, rotations, swings, turned
+from host.theory.analysis.branches import hopf_values, rotation, rotations, swings, turning_state
 from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Family, Shooting
 from host.theory.analysis.hopf import hopf
@@ -30,7 +30,7 @@ K_MERGE = merging(PAPER).k
 
 
 def types(branch):
-    return [special.type for way in branch.ways for special in way.specials]
+    return [found.type for way in branch.ways for found in way.bifurcations]
 
 
 def rolls_by_scipy(wheel):
@@ -64,7 +64,7 @@ def swinging():
 @pytest.fixture(scope="module")
 def rolling_8():
     wheel = PAPER._replace(k=8.0)
-    return rotation(wheel, turned(wheel)).unknowns
+    return rotation(wheel, turning_state(wheel)).unknowns
 
 
 # The global bifurcation
@@ -92,7 +92,7 @@ def test_slower_wheels_and_stronger_forces_merge_at_the_same_place_in_their_own_
     assert stronger.k == pytest.approx(7 * K_MERGE, rel=1e-12)
 
 
-def test_the_saddles_eigenvalues_add_up_to_the_divergence_and_one_of_them_is_that_of_the_decoupled_sum():
+def test_the_saddles_eigenvalues_add_up_to_the_divergence_and_one_is_that_of_the_decoupled_sum():
     eigenvalues = merging(PAPER).eigenvalues
     assert eigenvalues.sum() == pytest.approx(-2 / 0.25 - 0.5 / 0.05)
     assert np.abs(eigenvalues + 1 / 0.25).min() < 1e-9
@@ -208,8 +208,8 @@ def test_at_tau_of_a_second_there_are_folds_on_both_sides_and_a_neimark_sacker_p
     (swing,), (roll,) = swings(wheel, "k", 0.1, 6.0), rotations(wheel, "k", 0.3, 6.0)
     assert (types(swing), types(roll)) == ([FOLD], [FOLD, NEIMARK_SACKER])
     # AUTO-07p's value.
-    assert swing.ways[0].specials[0].point.unknowns[4] == pytest.approx(0.475056, abs=1e-6)
-    pair = roll.shooting.multipliers(roll.ways[1].specials[0].point.unknowns)[:2]
+    assert swing.ways[0].bifurcations[0].point.unknowns[4] == pytest.approx(0.475056, abs=1e-6)
+    pair = roll.shooting.multipliers(roll.ways[1].bifurcations[0].point.unknowns)[:2]
     assert np.abs(pair) == pytest.approx(1.0, abs=1e-9)
 
 
@@ -217,7 +217,7 @@ def test_dry_friction_makes_the_rotations_end_in_a_fold_above_a_homoclinic_end()
     dry = PAPER._replace(dry_friction=0.1)
     (branch,), (end,) = rotations(dry, "k", 1.0, 4.0), mergings(dry, 1.0, 4.0)
     down = branch.ways[0]
-    (fold,) = down.specials
+    (fold,) = down.bifurcations
     assert (fold.type, down.end) == (FOLD, MERGING)
     assert K_MERGE < fold.point.unknowns[4] < end.k
     assert down.points[-1].unknowns[4] == pytest.approx(end.k, rel=1e-6)
@@ -282,16 +282,16 @@ class Flipping(Shooting):
 
 
 def test_a_multiplier_minus_one_of_the_reduced_map_is_a_pitchfork():
-    curve = Curve(Flipping(PAPER, FORTH_AND_BACK), np.ones(5))
     found = follow(
-        curve,
+        Flipping(PAPER, FORTH_AND_BACK),
+        np.ones(5),
         Point(np.array([1.0, 0.0, 1.0, 0.1, 0.5]), np.array([0.0, 0.0, 0.0, 0.0, 1.0])),
         0.1,
         20.0,
     )
-    (special,) = found.specials
-    assert (special.type, found.end) == (PITCHFORK, LOST)
-    assert special.point.unknowns[4] == pytest.approx(1.0, abs=1e-12)
+    (bifurcation,) = found.bifurcations
+    assert (bifurcation.type, found.end) == (PITCHFORK, LOST)
+    assert bifurcation.point.unknowns[4] == pytest.approx(1.0, abs=1e-12)
 
 
 # The constantly turning wheel
@@ -322,11 +322,13 @@ def test_rotations_approach_the_formula_as_k_grows():
     for k in (4.0, 8.0, 40.0):
         wheel = PAPER._replace(k=k)
         off.append(
-            constant_velocity(wheel) / (np.pi / 2 / rotation(wheel, turned(wheel)).unknowns[3]) - 1
+            constant_velocity(wheel)
+            / (np.pi / 2 / rotation(wheel, turning_state(wheel)).unknowns[3])
+            - 1
         )
     assert off[0] > off[1] > 0.05 > off[2] > 0.0
 
 
 def test_a_wheel_below_the_merging_does_not_go_on_rolling():
     with pytest.raises(NotDone, match="rolling"):
-        rotation(PAPER._replace(k=1.7), turned(PAPER))
+        rotation(PAPER._replace(k=1.7), turning_state(PAPER))

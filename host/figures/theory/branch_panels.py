@@ -1,0 +1,70 @@
+"""Two panels of the figure `branch`: the merging over tau, and potentials of a turning wheel."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from math import degrees
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from host.figures.style import COLOURS
+from host.theory.studies.branch_tables import LineRow, TurnedRow
+
+DASHED: Any = (0, (2.5, 1.2))
+
+
+def draw_line(axes: Axes, line: list[LineRow]) -> None:
+    """The merging in units of the Hopf bifurcation's k, by the sign of the saddle quantity."""
+    last: list[LineRow] = []
+    for positive, group in groupby(line, key=lambda row: row["saddle_quantity"] > 0.0):
+        points = list(group)
+        stretch = last + points  # joined to the one before it
+        axes.plot(
+            [row["tau"] for row in stretch],
+            [row["k"] / row["k_hopf"] for row in stretch],
+            color=COLOURS[3] if positive else COLOURS[5],
+            linewidth=2.5,
+            label="unstable cycles, folds" if positive else "stable cycles",
+        )
+        last = points[-1:]
+    axes.axhline(1.0, color="black", linewidth=1.0)
+    axes.set_title(r"the merging over $\tau$", fontsize=12)
+    axes.set(xscale="log")
+    axes.set_xlabel(r"time constant $\tau$ (s)", fontsize=12)
+    axes.set_ylabel("$k_\\mathrm{merging} / k_\\mathrm{Hopf}$", fontsize=12)
+    if line:
+        axes.legend(
+            fontsize=10.5,
+            title="near the merging:",
+            title_fontsize=10.5,
+            loc="upper right",
+            handlelength=1.0,
+        )
+
+
+def draw_turning(axes: Axes, turned: dict[float, list[TurnedRow]]) -> None:
+    """x1 of a turned wheel: formula, numbers, and the wheel that rolls by itself."""
+    for colour, k in zip(COLOURS, sorted(turned), strict=False):
+        own = sorted(turned[k], key=lambda row: row["phi"])
+        angles = [degrees(row["phi"]) for row in own]
+        axes.plot(angles, [row["x1"] for row in own], color=colour, label=f"$k$ = {k:g}")
+        dots = own[:: max(1, len(own) // 24)]
+        axes.plot(
+            [degrees(row["phi"]) for row in dots],
+            [row["x1_numeric"] for row in dots],
+            color=colour,
+            linestyle="",
+            marker=".",
+        )
+        if own[0]["x1_rolling"] is not None:
+            rolling = np.array([row["x1_rolling"] for row in own], dtype=float)
+            axes.plot(angles, rolling, color=colour, linestyle=DASHED)
+    axes.set_title(
+        "potentials: formula, numbers ($\\bullet$),\nand of a rolling wheel (dashed)", fontsize=12
+    )
+    axes.set_xlabel(r"angle $\varphi$ (°)", fontsize=12)
+    axes.set_ylabel("$x_1$", fontsize=12)
+    axes.set_xticks((0, 90, 180, 270, 360))
+    axes.legend(fontsize=10.5, loc="upper center", handlelength=1.0)

@@ -1,0 +1,123 @@
+"""Where the branches merge, by two methods, and whether there is hysteresis: the claim M5."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from host.runs.claims import Claim
+from host.theory.studies.branch_rows import WAYS, CyclePart
+from host.theory.studies.branch_tables import (
+    BranchRow,
+    CycleRow,
+    HopfRow,
+    MergingRow,
+    cycles_along,
+    cycles_of,
+    folds,
+    mergings,
+)
+
+# Passages by a saddle in a period of each family.
+_PASSAGES: dict[CyclePart, int] = {"FB": 2, "LLM": 4, "dry": 4}
+# A merging is extrapolated from this many last cycles of a branch that ends close to it (relative).
+_LAST, _CLOSE = 25, 1e-2
+# Two values of a merging that differ by less (relative) are the same.
+_SAME = 1e-6
+# Where the paper's portraits find a wheel forth and back, and rolling.
+_SWINGS_K, _ROLLS_K = 1.65, 1.85
+
+
+def extrapolated(rows: list[BranchRow], part: CyclePart, merging: MergingRow) -> float | None:
+    """Where a branch would reach an infinite period: a second value of the merging.
+
+    With the time T for a passage by one saddle, the followed constant approaches its limit as
+    exp(-lambda_u T) and exp(lambda_s T) (Kuznetsov, section 6.2). None if the branch does not go
+    there.
+    """
+    cycles = _last_cycles(rows, part, merging["value"])
+    if len(cycles) < _LAST:
+        return None
+    times = np.array([row["period"] for row in cycles]) / _PASSAGES[part]
+    values = np.array([row["value"] for row in cycles])
+    (rising, _), (falling, _) = merging["eigenvalues"][:2]
+    decays = [np.exp(-rate * (times - times[0])) for rate in (rising, -falling, 2 * rising)]
+    solution = np.linalg.lstsq(
+        np.column_stack([np.ones_like(times), *decays]), values - merging["value"], rcond=None
+    )[0]
+    return float(merging["value"] + solution[0])
+
+
+def _last_cycles(rows: list[BranchRow], part: CyclePart, value: float) -> list[CycleRow]:
+    """The last cycles of the branch whose period grows towards this value of the constant."""
+    found: list[CycleRow] = []
+    for way in WAYS:
+        branch = cycles_along(rows, part, way)
+        if not branch or abs(branch[-1]["value"] / value - 1) >= _CLOSE:
+            continue
+        if branch[-1]["period"] == max(row["period"] for row in branch):
+            found = branch[-_LAST:]
+    return found
+
+
+def coexistence(
+    rows: list[BranchRow], first_hopf: HopfRow | None, merging: MergingRow | None
+) -> dict[str, float] | None:
+    """The range of k where stable rotations coexist with stable rest or forth-and-back cycles."""
+    if not merging or not first_hopf or not cycles_of(rows, "LLM"):
+        return None
+    k_merge = merging["value"]
+    least = min([*(row["value"] for row in folds(rows, "LLM")), k_merge])
+    most = max([first_hopf["value"], *(row["value"] for row in folds(rows, "FB")), k_merge])
+    return {"from": least, "to": most} if most > least else None
+
+
+def dry_branch(rows: list[BranchRow]) -> dict[str, Any] | None:
+    """The rotations with dry friction; None if there are none."""
+    cycles = cycles_of(rows, "dry")
+    if not cycles:
+        return None
+    found = mergings(rows, "dry")
+    return {
+        "folds": [
+            {"value": row["value"], "omega_mean": row["omega_mean"]} for row in folds(rows, "dry")
+        ],
+        "merging": found[0]["value"] if found else None,
+        "merging_by_extrapolation": extrapolated(rows, "dry", found[0]) if found else None,
+        "least_omega_while_rolling": min(row["omega_min"] for row in cycles),
+    }
+
+
+def claim_m5(
+    rows: list[BranchRow],
+    merging: MergingRow,
+    first_hopf: HopfRow,
+    second: dict[CyclePart, float | None],
+    both: dict[str, float] | None,
+) -> Claim:
+    """M5: cycles are born stable, and both branches reach the merging."""
+    k_merge, k_hopf = merging["value"], first_hopf["value"]
+    born_stable = first_hopf["l1"] < 0.0
+    joined = all(value and abs(value / k_merge - 1) < _SAME for value in second.values())
+    amplitude = max((row["amplitude"] or 0.0 for row in cycles_of(rows, "FB")), default=0.0)
+    hysteresis = "no hysteresis"
+    if both:
+        hysteresis = f"hysteresis from k = {both['from']:.9g} to {both['to']:.9g}"
+    paper = ""
+    if k_hopf < _SWINGS_K < k_merge < _ROLLS_K:
+        paper = f"; k = {_SWINGS_K} swings, k = {_ROLLS_K} rolls, as in its portraits"
+    return Claim(
+        "M5",
+        "a supercritical Hopf bifurcation, whose four cycles merge with the saddles into a"
+        " rotation",
+        "amplitude of the cycle against k up to the merging; merging value located",
+        k_merge,
+        "k",
+        None,
+        born_stable and joined,
+        f"cycles are born {'stable' if born_stable else 'unstable'} at k = {k_hopf:.9g} and"
+        f" grow to {amplitude:.4f} rad (pi/4: 0.7854); they and the rotations reach k_merge ="
+        f" {k_merge:.12g} from both sides; the connection is heteroclinic, a ring of four saddles"
+        f" of saddle quantity {merging['saddle_quantity']:.3g}/s, {hysteresis}{paper}",
+    )
