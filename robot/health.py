@@ -14,16 +14,16 @@ from robot import __version__, sources, token, wire
 from robot.program import PORT
 
 HOST = "127.0.0.1"
-# The robot's machine is slow, and has just started the program.
+# Patience with a slow machine that has just started the program.
 PATIENCE_S = 20.0
 # A program that ticks does so within this time.
 LONGEST_TICK_S = 2.0
-# What main returns.
+# The exit statuses.
 WELL, UNWELL, IN_FAULT = 0, 1, 3
 
 
 class Unwell(Exception):
-    """The program does not do what it should; the message says what."""
+    """The program does not work as it should; the message says why."""
 
 
 class Questioner(object):
@@ -37,7 +37,7 @@ class Questioner(object):
         self._decoder = wire.Decoder()
 
     def ask(self, kind, **message):
-        """The message that answers a frame."""
+        """Send a frame. Returns the message that answers it."""
         self._link.sendall(wire.encode_json(kind, message))
         while True:
             frame = self._decoder.next()
@@ -50,7 +50,7 @@ class Questioner(object):
                 data = self._link.recv(wire.MAX_PAYLOAD)
             except socket.timeout:
                 raise Unwell(
-                    "it hangs, without a word for {:g} s; the watchdog stops the motors of a"
+                    "it hangs: it has not answered for {:g} s; the watchdog stops the motors of a"
                     " program that hangs".format(PATIENCE_S)
                 ) from None
             if not data:
@@ -58,7 +58,7 @@ class Questioner(object):
             self._decoder.feed(data)
 
     def status(self):
-        """What the robot answers to 'status'."""
+        """The robot's status."""
         return self.ask(wire.ASK, id=1, do="status")["result"]
 
     def close(self):
@@ -104,9 +104,9 @@ def examine(port, secret):
 
 
 def main():
-    """Print in a line how the robot is.
+    """Print one line about the robot.
 
-    Returns WELL, UNWELL, or IN_FAULT if the program is well and its motors, for example, are not.
+    Returns WELL, UNWELL, or IN_FAULT if the program is well but the robot is in fault.
     """
     arguments = argparse.ArgumentParser(
         description="Asks the robot's program on this machine whether it is well."

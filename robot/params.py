@@ -1,6 +1,6 @@
-"""The one table of parameters.
+"""The table of parameters.
 
-Checks, command line, documentation and dashboards are derived from it.
+Checks, command line, documentation and dashboards all use this one table.
 """
 
 from collections import OrderedDict, namedtuple
@@ -19,8 +19,8 @@ def _choice(name, default, choices, doc, at_rest_only=False):
     return Param(name, "", None, None, default, choices, at_rest_only, doc)
 
 
-# A late tick's delta t is cut off at this many ticks, so tau must be at least that long or an Euler
-# step could overshoot.
+# The delta t of a late tick is at most this many control periods. tau must be at least that long,
+# or an Euler step could overshoot.
 LONGEST_STEP_TICKS = 3
 
 _ROWS = (
@@ -41,7 +41,7 @@ _ROWS = (
         0.5,
         2.0,
         1.0,
-        "factor on every duty cycle; max_duty_pct bounds the product all the same",
+        "factor on every duty cycle; max_duty_pct limits the product",
     ),
     _choice("rods", 2, (1, 2), "transmission rods on each wheel"),
     _choice(
@@ -54,7 +54,7 @@ _ROWS = (
         "link_loss",
         "stop",
         ("stop", "hold", "continue"),
-        "what the robot does when the host that holds the lease is lost",
+        "what the robot does when it loses the host that drives it",
     ),
     _number(
         "link_loss_s",
@@ -62,22 +62,34 @@ _ROWS = (
         0.2,
         10.0,
         0.5,
-        "silence of the host that holds the lease that counts as its loss",
+        "silence after which the host that drives the robot counts as lost",
     ),
 )
 TABLE = OrderedDict((row.name, row) for row in _ROWS)
 
 
 def describe():
-    """The table as a list of plain dictionaries, as the robot serves it."""
+    """The table as plain data, as the robot sends it.
+
+    Returns:
+        A list of dictionaries with the keys name, unit, minimum, maximum, default, choices and doc.
+    """
     keys = ("name", "unit", "minimum", "maximum", "default", "choices", "doc")
     return [OrderedDict((key, getattr(row, key)) for key in keys) for row in _ROWS]
 
 
 def check_value(name, value):
-    """The value in its parameter's own type.
+    """Check a value and convert it to the type of its parameter.
 
-    Raises Refused for an unknown name, a wrong type, NaN or a value out of range.
+    Args:
+        name: The parameter's name.
+        value: A number or text.
+
+    Returns:
+        The value: a float, or one of the parameter's choices.
+
+    Raises:
+        Refused: The name is unknown, or the value has a wrong type, is NaN or is out of range.
     """
     row = TABLE.get(name)
     if row is None:
@@ -112,7 +124,15 @@ def check_value(name, value):
 
 
 def check_step(tick_s, tau_s):
-    """Raises Refused if the longest delta t of a tick could carry an Euler step past its target."""
+    """Check that the Euler step after a late tick cannot overshoot.
+
+    Args:
+        tick_s: The control period, s.
+        tau_s: The time constant of the membrane potentials, s.
+
+    Raises:
+        Refused: tau_s is shorter than LONGEST_STEP_TICKS control periods.
+    """
     if tau_s < LONGEST_STEP_TICKS * tick_s:
         raise Refused(
             "range",
@@ -125,20 +145,32 @@ def check_step(tick_s, tau_s):
 
 
 class Params(object):
-    """The values in force, as attributes by name."""
+    """The values in force. Each parameter is an attribute."""
 
     def __init__(self):
         for row in _ROWS:
             setattr(self, row.name, row.default)
 
     def values(self):
-        """Name to value, in the table's order."""
+        """The values in force.
+
+        Returns:
+            An OrderedDict from name to value, in the order of the table.
+        """
         return OrderedDict((name, getattr(self, name)) for name in TABLE)
 
     def check(self, changes, at_rest=True):
-        """The changes in the parameters' own types; nothing is changed.
+        """Check changes without making them.
 
-        Raises Refused if any of them is wrong.
+        Args:
+            changes: New values by name.
+            at_rest: Whether the robot stands still; some parameters change only then.
+
+        Returns:
+            An OrderedDict with the changes, each in its parameter's own type.
+
+        Raises:
+            Refused: One of the changes is wrong; none may be made.
         """
         if not isinstance(changes, dict) or not changes:
             raise Refused("usage", "no parameter is named", "name at least one, as in k=8")
@@ -154,6 +186,10 @@ class Params(object):
         return checked
 
     def apply(self, checked):
-        """Take over what `check` returned."""
+        """Make changes.
+
+        Args:
+            checked: What `check` returned.
+        """
         for name in checked:
             setattr(self, name, checked[name])

@@ -1,6 +1,6 @@
-"""What one tick leaves behind.
+"""The record of a tick: the table of channels, and the packed form on the wire.
 
-The table of channels, and its packed form on the wire and in the black box.
+The black box keeps records in the same form.
 """
 
 import struct
@@ -9,19 +9,19 @@ from collections import OrderedDict, namedtuple
 from robot.kicks import MODES, WHEELS
 
 STATES = ("idle", "running", "held", "stopped", "fault")
-# The record's `kick` channel: 0, or 1 + the index of the mode that acts.
+# The values of the `kick` channel: 0 for no kick, or 1 + the index of the mode that acts.
 KICK_NAMES = ("",) + MODES
 
 Channel = namedtuple("Channel", "name code unit doc")
 
 _TICK = (
-    Channel("tick", "I", "1", "number of the tick, without gaps since the robot's program began"),
-    Channel("t_s", "d", "s", "the robot's clock when the tick began, since its program began"),
+    Channel("tick", "I", "1", "number of the tick, without gaps since the robot's program started"),
+    Channel("t_s", "d", "s", "the robot's clock when the tick began, since its program started"),
     Channel(
         "dt_s", "d", "s", "delta t of the Euler step: measured since the tick before, within bounds"
     ),
     Channel("late_s", "f", "s", "how long after its deadline the tick began"),
-    Channel("missed", "H", "1", "deadlines that passed without a tick since the tick before"),
+    Channel("missed", "H", "1", "control periods without a tick since the tick before"),
     Channel(
         "state",
         "B",
@@ -55,13 +55,24 @@ Record = namedtuple("Record", NAMES)
 
 
 def describe():
-    """The channels as a list of plain dictionaries, as the robot serves them."""
+    """The channels as plain data, as the robot sends them.
+
+    Returns:
+        A list of OrderedDicts with the keys name, code (as in Python's struct), unit and doc.
+    """
     return [OrderedDict(zip(Channel._fields, channel)) for channel in CHANNELS]
 
 
 def unpack(data):
-    """The Records in packed data, oldest first.
+    """Unpack records.
 
-    Raises struct.error if the data is not a whole number of records.
+    Args:
+        data: Packed records, bytes.
+
+    Returns:
+        A list of Records, oldest first.
+
+    Raises:
+        struct.error: The data is not a whole number of records.
     """
     return [Record(*fields) for fields in STRUCT.iter_unpack(data)]

@@ -4,7 +4,7 @@ import argparse
 
 from host.commands._terminal import recorded, robot_of, show
 
-HELP = "bring the robot into a motion primitive by kicks, or to rest by k"
+HELP = "bring the robot into a motion primitive by kicks, or to rest by the spring constant k"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Drive there, starting the robot if it does not run; 1 if it did not get there."""
+    """Start the robot if it does not run, and drive there. Returns 1 if it did not get there."""
     from host.figures.robot.kick import draw
     from host.kicking.outcome import require_running
     from host.kicking.primitives import drive

@@ -7,14 +7,11 @@ from host.commands._terminal import say, show, tell
 from host.experiments.registry import TABLE
 from host.runs.registry import add_options, options_given
 
-HELP = (
-    "one of the robot's experiments: logs, table, figure, and what the paper claims beside what was"
-    " measured"
-)
+HELP = "run one of the experiments: logs, a table, a figure, and the paper's claims, measured"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """A name, and that experiment's options."""
+    """A command for each experiment, with its options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="experiment")
     for name, entry in TABLE.items():
         own = names.add_parser(
@@ -24,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it; 1 if a claim does not hold."""
+    """Run it or resume it. Returns 1 if a claim does not hold."""
     from host.perform.run import perform
     from host.runs.claims import exit_status
 

@@ -9,11 +9,11 @@ from robot.errors import Refused
 from robot.kicks import DEFAULT_TICKS, MODES, PULSED, RECTANGULAR, SMOOTH, WHEELS, parse
 from robot.params import Params
 
-HELP = "kick the robot, and tell whether it reversed"
+HELP = "kick the robot, and say whether it reversed"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The kick, and whether to wait for the right moment."""
+    """The kick, and whether to wait until the wheels have settled."""
     lengths = ", ".join(f"{mode} {ticks}" for mode, ticks in DEFAULT_TICKS.items())
     parser.add_argument("--mode", choices=MODES, required=True, help="which kick")
     parser.add_argument(
@@ -29,13 +29,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--shift",
         type=parse_angle,
         metavar="RAD",
-        help="phase: the shift, as in -3pi/4 (default: the sign that reverses)",
+        help="phase: the shift, such as -3pi/4 (default: 3pi/4, with the sign that reverses)",
     )
     parser.add_argument(
-        "--shape", choices=(RECTANGULAR, SMOOTH), help="course of a pulse (default rectangular)"
+        "--shape", choices=(RECTANGULAR, SMOOTH), help="shape of a pulse (default rectangular)"
     )
-    parser.add_argument("--param", choices=sorted(PULSED), help="pulse: the parameter")
-    parser.add_argument("--value", type=float, help="pulse: its value at the pulse's height")
+    parser.add_argument(
+        "--param", choices=sorted(PULSED), help="pulse: the parameter that it changes"
+    )
+    parser.add_argument(
+        "--value", type=float, help="pulse: the value of the parameter at the height of the pulse"
+    )
     parser.add_argument("--variable", choices=("x1", "x2"), help="jump: the membrane potential")
     parser.add_argument("--delta", type=float, help="jump: how far it jumps")
     parser.add_argument(
@@ -46,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Kick, write log and figure, and answer; 1 if a kicked wheel did not reverse."""
+    """Kick, and write a log and a figure. Returns 1 if a kicked wheel did not reverse."""
     from host.figures.robot.kick import KICK_WINDOW_S, draw
     from host.kicking.outcome import (
         advice,
@@ -68,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
             if not options.now and not wait_settled(robot):
                 raise NotDone(
                     "the wheels did not settle",
-                    "--now kicks all the same; are the parameters those of a steady motion?",
+                    "are the parameters those of a steady motion? --now kicks without waiting",
                 )
             outcome = kick_and_watch(robot, log, options.mode, wheel=options.wheel, **details)
         brick, seed = robot.link.uri, robot.hello["seed"]
@@ -94,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _check(mode: str, wheel: str, details: dict[str, object]) -> None:
-    """Refuse by the robot's own rule, before anything is waited for or written, what it would refuse anyway."""
+    """Raise WrongUse for a kick that the robot would refuse, before anything is done."""
     request = {name: value for name, value in details.items() if value is not None}
     try:
         parse({"id": "check", "mode": mode, "wheel": wheel, **request}, (1, 1), Params(), 0)

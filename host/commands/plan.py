@@ -10,18 +10,18 @@ from host.commands._terminal import robot_of, show
 if TYPE_CHECKING:
     from host.client.robot import Robot
 
-HELP = "say which kick, and when, would bring each wheel to a direction; nothing is kicked"
+HELP = "say which kick would turn each wheel to a direction, and when; nothing is kicked"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The direction."""
     parser.add_argument(
-        "--to", choices=("forward", "backward"), required=True, help="where the robot should go"
+        "--to", choices=("forward", "backward"), required=True, help="the direction"
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Look at the wheels, and tell each wheel's plan."""
+    """Watch the wheels, and say the plan for each."""
     from host.errors import NotDone
     from host.kicking.outcome import require_running, wait_settled
     from robot.kicks import WHEELS
@@ -30,8 +30,8 @@ def run(options: argparse.Namespace) -> int:
         require_running(robot)
         if not wait_settled(robot):
             raise NotDone(
-                "the wheels did not settle, so there is no cycle to kick them out of",
-                "look at k and tau_s: kickctl params list",
+                "the wheels did not settle, so there is no steady motion to reverse",
+                "are k and tau_s those of a steady motion? see: kickctl params list",
             )
         wheels = {side: _plan(robot, side, options.to) for side in WHEELS}
         origin = {
@@ -48,10 +48,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
-    """A wheel's heading, phase and speed, and the kick for it.
-
-    None if it goes as wanted already.
-    """
+    """A wheel's heading, phase and speed, and its kick; None if it already goes as wanted."""
     from math import pi
 
     from host.kicking.primitives import course, plan
@@ -96,13 +93,13 @@ def _sentence(side: str, wanted: str, found: dict[str, Any]) -> str:
         first, last = (degrees(edge) for edge in found["window_rad"])
         moment = f"at a phase from {first:.0f}° to {last:.0f}°"
         moment += (
-            " (which it does not meet)"
+            " (the wheel does not come there)"
             if found["wait_ticks"] is None
             else f", {found['wait_ticks']} ticks from now"
         )
     reason = "no quenched kick is sure at these parameters"
     if found["heading"] == "stopped":
-        reason = f"sets a resting wheel going {wanted}"
+        reason = f"makes a resting wheel roll {wanted}"
     elif found["rate"] is not None:
         low, high = found["interval"]
         reason = (

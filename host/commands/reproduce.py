@@ -9,21 +9,24 @@ if TYPE_CHECKING:
     from host.runs.claims import Claim
 
 HELP = (
-    "all of the paper's claims about the robot and its model, measured: a table and a report with"
+    "measure all of the paper's claims about the robot and its model, and write a report with"
     " figures"
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Which claims, and where to."""
-    parser.add_argument("--only", metavar="IDS", help="only these claims, as R5,M7")
+    """Which claims, and the folder."""
+    parser.add_argument("--only", metavar="IDS", help="only these claims, such as R5,M7")
     parser.add_argument(
-        "--out", default="results", metavar="FOLDER", help="where results go (default %(default)s)"
+        "--out",
+        default="results",
+        metavar="FOLDER",
+        help="folder for the results (default %(default)s)",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Measure and report; whether the claims hold is what the report says, not the exit status."""
+    """Measure and report. The report says whether the claims hold, not the exit status."""
     from host.perform.reproduce import reproduce
 
     only = [number.strip().upper() for number in options.only.split(",")] if options.only else []
@@ -52,7 +55,7 @@ def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
             claim.verdict.upper() if claim.holds is False else claim.verdict,
         )
     for number in skipped:
-        table.add_row(number, "", "", "", "not tried")
+        table.add_row(number, "", "", "", "not measured")
     console = Console()
     console.print(table)
     for number, note in [(claim.id, claim.note) for claim in claims] + list(skipped.items()):

@@ -8,13 +8,13 @@ from host.runs.registry import add_options, options_given
 from host.theory.studies.registry import TABLE
 
 HELP = (
-    "the paper's analytic model of a wheel: fixpoints, bifurcations, portraits, phase diagram,"
-    " chaos, basins"
+    "study the paper's model of a wheel: fixpoints, bifurcations, portraits, phase diagram, chaos,"
+    " basins"
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """A name, and that study's options."""
+    """A command for each study, with its options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="study")
     for name, entry in TABLE.items():
         add_options(
@@ -26,9 +26,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it; 1 if a claim does not hold.
+    """Run it or resume it. Returns 1 if a claim does not hold.
 
-    With --json the numbers stand at the top, unless they are a list, which is all then.
+    With --json the numbers stand beside the fields of the summary. If they are a list, they are the
+    whole answer.
     """
     from host.perform.run import perform
     from host.runs.claims import exit_status

@@ -1,4 +1,1 @@
-"""Kicks and what comes of them.
-
-The outcome, plans from the kick map, motion primitives, manoeuvres.
-"""
+"""Kicks and their outcome: plans from the kick map, motion primitives, manoeuvres, claims."""

@@ -53,24 +53,22 @@ class Row(KickCell, Counts):
     """A row of the map: a kick and what it did."""
 
 
-# Mode, and sign of the shift; a phase kick of the sign of the wheel's direction is the one that the
-# paper names.
+# Mode, and sign of the shift. For phase kicks, the paper names the sign of the wheel's direction.
 KINDS = ((POSITION, 0), (PHASE, 1), (PHASE, -1))
-# Ten counts of the encoder each: half of what a wheel at 2 Hz turns in a tick, and a kick can be
-# timed no better than to a tick.
+# A bin has ten counts of the encoder: half of what a wheel at 2 Hz turns in a tick. A kick cannot
+# be timed better than to a tick.
 PHASE_BINS = 36
 _BIN_DEG = 360 / PHASE_BINS
-# Lengths worth trying. The longest lasts three quarters of a turn at 2 Hz: inverted positions and
-# shifts of 3/4 pi act against the motion for about half a turn, and what lasts longer meets a wheel
-# that has turned around already.
+# Lengths worth trying. The longest lasts three quarters of a turn at 2 Hz. Inverted positions and
+# shifts of 3/4 pi act against the motion for about half a turn; then the wheel has turned around.
 LENGTHS = tuple(range(1, 13))
 _LENGTH_STEP_S = 0.03
-# How long a wheel takes from rest into its cycle, and back there after a kick: for friction and
-# inertia, and for the potentials' memory.
+# How long a wheel takes from rest into its cycle, and back into it after a kick: a part for
+# friction and inertia, and one for the memory of the potentials.
 _SETTLE_S, _WATCH_S, _MEMORY_TAU = 3.0, 2.0, 8.0
 _PATIENCE_S = 15.0
-# A shorter tick would be missed if it came as late as on the brick; wheels are then computed with
-# punctual ones.
+# With a shorter tick than this, a tick as late as on the brick would be missed. Wheels are then
+# computed without delays.
 _LEAST_LATE_TICK_S = 0.02
 # A specimen's tables take as long to compute as some twenty kicks.
 _SPECIMENS, _WHEELS_OF_A_SPECIMEN = 64, 20
@@ -112,12 +110,20 @@ def tally(
     motor: str = "pybricks",
     battery_v: float | None = None,
 ) -> list[Counts]:
-    """Kick simulated wheels that have settled, each at whatever phase it has, and count.
+    """Kick simulated wheels that have settled, each at a phase by chance, and count.
 
-    Rows of before, phase, tried, reversed.
+    Args:
+        mode: The kick's mode.
+        sign: The sign of a phase shift; 0 for other kicks.
+        ticks: The kick's length.
+        wheels: How many wheels. Those that rest before the kick do not count.
+        seed: The random seed.
+        params: The robot's parameters.
+        motor: The wheels have specimens of this motor, within its published spread.
+        battery_v: The battery's voltage, V; None for the motor's nominal one.
 
-    Wheels that rested before the kick are left out. Motors are specimens of `motor` within its
-    published spread.
+    Returns:
+        A row for each direction and bin of phases in which a wheel met the kick.
     """
     rng = np.random.default_rng(seed)
     motors = load(motor).specimens(min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN), rng)

@@ -1,4 +1,4 @@
-"""What the demo has the robot do so that the paper's claims can be measured in its log."""
+"""Manoeuvres of the demo. The paper's claims are measured in their log."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from robot.kicks import DEFAULT_SHIFT_RAD, WHEELS
 STEADY_S = 2.0
 REST_S = 3.0
 RAMP_SHIFT_TICKS = 5000
-# The torque is about k while the rods are held off centre; this step of k raises M by less than
-# what is asked about, 0.1.
+# While the rods are held off centre, the torque is about k. This step of k is small beside the
+# torque in question, 0.1.
 RAMP_STEP_K = 0.004
 RAMP_TOP_K = 1.0
 RAMP_STEP_S = 0.3
 
 
 def steady(robot: Robot, log: Log) -> Span:
-    """A stretch of settled motion."""
+    """Wait until the wheels have settled, and let them run on. Returns that stretch of the log."""
     wait_settled(robot)
     first = len(log)
     robot.wait(STEADY_S)
@@ -27,9 +27,9 @@ def steady(robot: Robot, log: Log) -> Span:
 
 
 def starts(robot: Robot, log: Log, count: int) -> list[Span]:
-    """Stop and start from random potentials, again and again.
+    """Stop the robot and start it from random potentials, `count` times.
 
-    The settled motion after each start.
+    Returns the stretch of settled motion after each start.
     """
     spans = []
     for _ in range(count):
@@ -42,12 +42,12 @@ def starts(robot: Robot, log: Log, count: int) -> list[Span]:
 
 
 def ramp(robot: Robot, log: Log) -> Span:
-    """On a robot at rest, raise the torque in small steps until both wheels have moved.
-
-    K is put back afterwards.
+    """Raise the torque of a robot at rest in small steps of k until both wheels have moved.
 
     A long pulse of the phase shift holds the rods off centre, so that the torque of a resting wheel
-    stays and grows with k alone.
+    grows with k alone. Afterwards the robot is stopped and k is as before.
+
+    Returns the stretch of the log from rest on.
     """
     k_before = robot.status()["params"]["k"]
     robot.set(k=0.0)

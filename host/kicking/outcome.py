@@ -1,7 +1,4 @@
-"""Kick a robot and watch what comes of it.
-
-Wait until the wheels have settled, kick, wait until they have settled again.
-"""
+"""Kicks a robot and watches its wheels until they have settled again."""
 
 from __future__ import annotations
 
@@ -18,8 +15,7 @@ from sim_motor.settling import WINDOW_S
 
 SETTLE_PATIENCE_S = 15.0
 WATCH_S = 6.0
-# What `motion.settled` looks back on, and a tick or two; after a kick all of it must lie behind the
-# kick.
+# How far `motion.settled` looks back, and a tick or two. All of this must lie behind a kick.
 JUDGED_S = 2 * WINDOW_S + 0.1
 
 FORWARD, BACKWARD, STOPPED = (HEADINGS[way] for way in (1, -1, 0))
@@ -29,12 +25,19 @@ DIRECTIONS = {word: way for way, word in HEADINGS.items() if way}
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a kick did. `before` and `after` give each wheel's heading.
+    """What a kick did.
 
-    settling_s is None if a kicked wheel never settled.
-
-    shift_rad is the phase shift of a phase kick: a number, or one for each wheel if their signs
-    differ; None for other modes.
+    Attributes:
+        mode: The kick's mode.
+        ticks: Its length, control periods.
+        shift_rad: The shift of a phase kick: a number, or one for each wheel if their signs differ;
+            None for other modes.
+        wheel: left, right or both.
+        applied_tick: The tick in which the kick began.
+        before: The heading of each wheel before the kick.
+        after: The heading of each wheel once it has settled.
+        reversed: Whether each kicked wheel reversed.
+        settling_s: How long the slower kicked wheel took to settle, s; None if one never did.
     """
 
     mode: str
@@ -53,7 +56,7 @@ class Outcome:
 
 
 def is_settled(records: list[Record], side: str) -> bool:
-    """Whether a wheel turns evenly, or rests, at the end of these records."""
+    """Whether a wheel turns evenly or rests at the end of these records."""
     return settled(
         [getattr(record, side + "_phi_rad") for record in records],
         [record.t_s for record in records],
@@ -69,7 +72,7 @@ def all_settled(robot: Robot) -> bool:
 
 
 def wait_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> bool:
-    """Wait until both wheels have settled, up to patience_s of the robot's time.
+    """Wait until both wheels have settled, at most patience_s of the robot's time.
 
     Returns whether they have.
     """
@@ -77,10 +80,7 @@ def wait_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> bool:
 
 
 def require_running(robot: Robot) -> None:
-    """Raises NotDone if the robot does not run, with how to start it.
-
-    RobotFault if it is in fault.
-    """
+    """Raise NotDone if the robot does not run, and RobotFault if it is in fault."""
     status = robot.status()
     if status["state"] == "fault":
         raise RobotFault(
@@ -99,9 +99,15 @@ def kick_and_watch(
 ) -> Outcome:
     """Kick now and watch the wheels until they have settled.
 
-    `log` must be tapping the robot since before; it then holds it all.
+    Args:
+        robot: A robot that runs.
+        log: A log that records the robot already. In the end it holds the whole kick.
+        mode: The kick's mode.
+        wheel: left, right or both.
+        details: The kick's other fields, as robot.kicks.parse takes them.
 
-    details: as robot.kicks.parse takes them. Raises KickctlError.
+    Raises:
+        KickctlError: The robot does not run, refuses the kick, or cannot be reached.
     """
     robot.wait(WATCH_S, until=lambda: len(log) > DIRECTION_TICKS)
     tick = robot.kick(mode, wheel=wheel, **details)
@@ -138,7 +144,7 @@ def _shift(kick: dict[str, Any]) -> float | dict[str, float] | None:
 
 
 def title(outcome: Outcome) -> str:
-    """The outcome as a figure's title."""
+    """The title of a figure of the outcome."""
     length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
     settling = (
         ""
@@ -152,13 +158,13 @@ def title(outcome: Outcome) -> str:
 
 
 def advice(outcome: Outcome) -> str:
-    """What may help after a kick that did not reverse the robot; empty if nothing general does."""
+    """What may help after a kick that did not reverse the robot; empty if that is not clear."""
     kicked = WHEELS if outcome.wheel == "both" else (outcome.wheel,)
     resting = [side for side in kicked if outcome.before[side] == STOPPED]
     if resting:
         return (
-            f": the {' and '.join(resting)} wheel rested before the kick, and there was nothing to"
-            " reverse; `kickctl drive` sets it going"
+            f": the {' and '.join(resting)} wheel rested before the kick, so there was nothing to"
+            " reverse; `kickctl drive forward` makes it roll"
         )
     if outcome.mode in (PHASE, POSITION) and not 3 <= outcome.ticks <= 5:
         return f": {outcome.mode} kicks work best at 3 to 5 ticks"

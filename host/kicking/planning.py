@@ -31,8 +31,8 @@ from host.util.provenance import sources
 from robot.params import Params
 
 SURE = 0.99
-# The wheels of a plan's own map: enough to tell 99 % from 97 % in one direction. They are computed in
-# small batches, between which the link to the robot is kept alive.
+# The wheels of a plan's own map: enough to tell 99 % from 97 % in one direction. Between small
+# batches the link to the robot is kept alive.
 _WHEELS, _WINDOW_WHEELS, _BATCH = 300, 4800, 300
 _WINDOW_CANDIDATES = 3
 _MAP_SEED = 1
@@ -105,9 +105,9 @@ def _is_sure(rows: Iterable[Row]) -> bool:
 def choose(rows: Iterable[Row], before: int) -> Plan | None:
     """The kick that reverses a wheel of this direction most safely.
 
-    If some kicks are sure at any phase, it is the one whose length is farthest from lengths that are
-    not sure, because no robot is exactly its model; of several the shortest. Otherwise it is the
-    kick with the widest window of sure phases.
+    If some kicks are sure at any phase, it is the one whose length is farthest from lengths that
+    are not sure, because no robot is exactly its model; of several the shortest. Otherwise it is
+    the kick with the widest window of sure phases.
 
     Args:
         rows: The rows of a kick map.
@@ -209,9 +209,7 @@ def reversal(
     key = json.dumps([sources(), before, *chosen])
     kept = _kept()
     if key not in kept:
-        say(
-            "computing which kicks reverse a wheel at these parameters; this takes some seconds, once"
-        )
+        say("computing which kicks reverse a wheel at these parameters: some seconds, only once")
         plan = _compute_plan(before, *chosen)
         _keep({**_kept(), key: plan and asdict(plan)})
         return plan

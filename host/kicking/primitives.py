@@ -1,12 +1,13 @@
-"""Motion primitives and how to reach them from each other.
+"""Motion primitives, and how to reach them from each other.
 
-By kicks alone, and standing still by the spring constant k.
+Kicks alone lead from locomotion to locomotion. A wheel that turns the wrong way gets the quenched
+kick that is planned for the robot's parameters. If there is no plan, or planned kicks fail several
+times, it gets a membrane inversion, which always reverses it. A wheel that rests gets a phase kick
+with the sign that makes it roll the right way.
 
-A wheel that turns the wrong way gets the quenched kick that is planned for the robot's parameters;
-if there is none, or it fails again and again, a membrane inversion, which always reverses it. One
-that rests gets a phase kick of the sign that sets it going the right way. A pulse of k to zero lets
-the robot come to rest, and it stays there where rest coexists with locomotion; where it does not, k
-is halved and the pulse repeated until it stays, and k stays lowered.
+A pulse of the spring constant k to zero brings the robot to rest. It stays there where rest
+coexists with locomotion. Elsewhere k is halved, and the pulse is repeated, until the robot stays at
+rest; k then stays low.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ PRIMITIVES = {
 UNSETTLED = "unsettled"
 MAX_KICKS = 6
 PLANNED_KICKS = 3
-# For the moment of a planned kick: some turns of a slow wheel.
+# How long to wait for the moment of a planned kick: some turns of a slow wheel.
 MOMENT_PATIENCE_S = 3.0
 # Long enough for the wheels to brake (0.3 s) and for the membrane potentials to forget the motion
 # (four tau).
@@ -58,9 +59,9 @@ SHIFT_TOWARD = {FORWARD: -DEFAULT_SHIFT_RAD, BACKWARD: DEFAULT_SHIFT_RAD}
 
 
 def headings(robot: Robot, log: Log) -> dict[str, str]:
-    """Each wheel's heading once both have settled.
+    """The heading of each wheel once both have settled.
 
-    UNSETTLED for both if they do not, as when they roll forth and back.
+    It is UNSETTLED for both if they do not settle, as when they roll forth and back.
     """
     if not wait_settled(robot):
         return dict.fromkeys(WHEELS, UNSETTLED)
@@ -69,15 +70,24 @@ def headings(robot: Robot, log: Log) -> dict[str, str]:
 
 
 def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
-    """Bring a running robot into a primitive. `log` must be tapping it.
+    """Bring a robot that runs into a primitive.
 
-    Returns {primitive, reached, before, after, kicks: [Outcome as plain data], k, k_before}. Raises
-    KickctlError.
+    Args:
+        robot: The robot.
+        log: A log that records it already.
+        primitive: A key of PRIMITIVES.
+
+    Returns:
+        {primitive, reached, before, after, kicks, k, k_before}: whether the robot reached it, the
+        headings of the wheels before and after, each kick's Outcome as plain data, and k.
+
+    Raises:
+        KickctlError: The robot does not run, or cannot be reached.
     """
     wanted = dict(zip(WHEELS, PRIMITIVES[primitive], strict=True))
     before = headings(robot, log)
     k_before = float(robot.status()["params"]["k"])
-    kicks = _stop(robot, log) if primitive == "stopped" else _head(robot, log, wanted)
+    kicks = _stop(robot, log) if primitive == "stopped" else _roll(robot, log, wanted)
     after = headings(robot, log)
     return {
         "primitive": primitive,
@@ -90,8 +100,8 @@ def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
     }
 
 
-def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
-    """Kick whichever wheels do not head as wanted until they do."""
+def _roll(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
+    """Kick the wheels that do not head as wanted until they do."""
     _restore_k(robot, log)
     kicks: list[Outcome] = []
     while len(kicks) < MAX_KICKS:
@@ -111,9 +121,13 @@ def _head(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
 
 
 def plan(robot: Robot, present: str, wanted: str, params: dict[str, Any] | None) -> Plan:
-    """The kick for a wheel of this heading that should have another, at a robot's parameters.
+    """The kick that turns a wheel from one heading to another.
 
-    Without them, the one that needs no map.
+    Args:
+        robot: The robot, which hears a message if a map must be computed.
+        present: The wheel's heading.
+        wanted: The other heading.
+        params: The robot's parameters by name; None for a kick that needs no map.
     """
     if present == STOPPED:
         return Plan(PHASE, DEFAULT_TICKS[PHASE], SHIFT_TOWARD[wanted])
@@ -126,10 +140,7 @@ def plan(robot: Robot, present: str, wanted: str, params: dict[str, Any] | None)
 
 
 def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
-    """Kick these wheels, each by its plan: both at once if that is the same, at any phase.
-
-    Else the first.
-    """
+    """Kick both wheels at once if they have the same plan, at any phase; else kick the first."""
     side, chosen = next(iter(plans.items()))
     if chosen.window_rad is not None:
         _await_moment(robot, side, chosen)
@@ -141,16 +152,16 @@ def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
 
 
 def _await_moment(robot: Robot, side: str, chosen: Plan) -> None:
-    """Wait until the wheel will be in the plan's window in the next tick.
+    """Wait until the wheel will be in the plan's window in the next tick, but not for ever.
 
-    A kick at any moment is better than none, if that never comes.
+    A kick at any moment is better than none.
     """
-    robot.lease()  # asked for only with the kick, it would cost a tick
+    robot.lease()  # to take it together with the kick would cost a tick
     robot.wait(MOMENT_PATIENCE_S, until=lambda: chosen.meets(sum(course(robot, side))))
 
 
 def course(robot: Robot, side: str) -> tuple[float, float]:
-    """A wheel's latest angle (rad), and its turn in a tick (rad) over the last DIRECTION_TICKS ticks."""
+    """The latest angle of a wheel (rad), and its mean turn in a tick (rad) over DIRECTION_TICKS."""
     angles = [
         float(getattr(record, side + "_phi_rad"))
         for record in robot.recent()[-1 - DIRECTION_TICKS :]
@@ -159,9 +170,9 @@ def course(robot: Robot, side: str) -> tuple[float, float]:
 
 
 def _restore_k(robot: Robot, log: Log) -> None:
-    """Near k_c and below it nothing rolls for long, whatever the kick.
+    """Raise k to its default if an earlier stop has lowered it and the robot does not roll.
 
-    Undo what an earlier stop has lowered.
+    Near k_c and below, no kick makes a wheel roll for long.
     """
     k = robot.status()["params"]["k"]
     default = {row["name"]: row["default"] for row in robot.describe("params")}["k"]
@@ -170,7 +181,7 @@ def _restore_k(robot: Robot, log: Log) -> None:
 
 
 def _stop(robot: Robot, log: Log) -> list[Outcome]:
-    """A quenched pulse of k brings the robot to rest.
+    """Bring the robot to rest by a pulse of k to zero.
 
     While it starts again by itself, halve k and repeat the pulse.
     """

@@ -1,4 +1,4 @@
-"""The paper's claims about the robot, as far as one log or a count of kicks settles them."""
+"""The paper's claims about the robot that one log or a count of kicks decides."""
 
 from __future__ import annotations
 
@@ -13,35 +13,45 @@ from host.logs.log import Log
 from host.runs.claims import Claim, too_few
 from host.util.intervals import bootstrap_interval, fraction, wilson
 from robot.kicks import WHEELS
+from robot.params import TABLE
 
+# The parameters of the paper's robot, for which its claims are made.
+PAPER = {
+    name: TABLE[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")
+}
 # The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
 WHEEL_RADIUS_M = 0.028
-# Slower is no locomotion.
+# A wheel that turns more slowly does not roll.
 MOVING_HZ = 0.1
-# What the paper's 'always' was tried.
+# How often a kick must reverse the robot to show the paper's 'always'.
 ALWAYS = 50
-# What 'reliable' and 'fails' are of a quenched kick, for which lengths (ticks) it is to be
-# reliable, and the trials that it takes to tell.
+# The rates at which a quenched kick is reliable, and fails; the lengths (ticks) at which it should
+# be reliable; and the trials that it takes to decide.
 RELIABLE, FAILS = 0.95, 0.1
 SURE_LENGTHS = (3, 4, 5)
 LEAST_TRIALS = 20
 # Starts after which both directions have occurred almost surely.
 LEAST_STARTS = 10
+# The least step of a ramp; a torque that still settles changes by less.
+_LEAST_STEP = 1e-3
 
 
 @dataclass(frozen=True)
 class Span:
-    """The rows of a log from `first` to before `end`.
-
-    A stretch of steady motion, or one attempt at something.
-    """
+    """The rows of a log from `first` to before `end`, such as a stretch of steady motion."""
 
     first: int
     end: int
 
 
 class Steady(NamedTuple):
-    """A wheel in steady motion: turns per second (forward positive), mean |duty cycle| in %, and std(M) / mean(|M|)."""
+    """A wheel in steady motion.
+
+    Attributes:
+        hz: Turns per second, forward positive.
+        duty_pct: The mean of |duty cycle|, %.
+        ripple: std(M) / mean(|M|) of the torque M.
+    """
 
     hz: float
     duty_pct: float
@@ -61,9 +71,10 @@ def steady(log: Log, span: Span) -> list[Steady]:
 
 
 def coexistence(wheels: Sequence[Steady]) -> Claim:
-    """R1: from random starts both directions are reached, equally fast.
+    """R1: from random starts wheels roll in both directions, equally fast.
 
-    Each wheel comes from a start of its own.
+    Args:
+        wheels: Wheels that started from random potentials.
     """
     speeds = np.array([wheel.hz for wheel in wheels])
     forward, backward = speeds[speeds > 0.0], -speeds[speeds < 0.0]
@@ -77,7 +88,7 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
         "1",
         None,
         both and asymmetry <= 0.03,
-        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} forward,"
+        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} roll forward,"
         f" {len(backward)} backward",
     )
     return claim.doubted(too_few(len(speeds), LEAST_STARTS, "wheels that started"))
@@ -120,16 +131,18 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
             "1",
             None,
             ripple < 0.1 and min(hertz) > MOVING_HZ,
-            f"the greatest of {len(wheels)} wheels, the slowest of which makes {min(hertz):.2f}"
-            " turns a second",
+            f"the greatest of {len(wheels)} wheels; the slowest makes {min(hertz):.2f} turns a"
+            " second",
         ),
     ]
 
 
 def break_away(log: Log, span: Span) -> Claim:
-    """R5: at rest, the torque is raised slowly until each wheel moves.
+    """R5: a wheel at rest does not move until the torque rises above 0.1.
 
-    The span begins at rest and holds the whole ramp.
+    Args:
+        log: The log of a robot whose torque rises slowly.
+        span: From rest until both wheels have moved.
     """
     rows = slice(span.first, span.end)
     stalls, moves = [], []
@@ -162,12 +175,12 @@ def break_away(log: Log, span: Span) -> Claim:
     )
 
 
-# A ramp's steps stand out from the last bits of a torque that is settling.
-_LEAST_STEP = 1e-3
-
-
 def inversions(reversals: Sequence[bool]) -> Claim:
-    """R8: inverting the membrane potentials always reverses the robot, and that was tried often enough to say so."""
+    """R8: inverting the membrane potentials always reverses the robot.
+
+    Args:
+        reversals: Whether each inversion reversed it.
+    """
     done, tried = sum(reversals), len(reversals)
     claim = Claim(
         "R8",
@@ -179,14 +192,15 @@ def inversions(reversals: Sequence[bool]) -> Claim:
         tried == done,
         f"{done} of {tried}",
     )
-    # One kick that fails disproves 'always', however few there were.
+    # One inversion that fails disproves 'always', even among few.
     return claim.doubted(too_few(tried, ALWAYS, "inversions")) if claim.holds else claim
 
 
 def surest(found: Mapping[int, tuple[int, int]]) -> int:
-    """The one of SURE_LENGTHS with the highest rate, of (reversed, tried) by length.
+    """The length in SURE_LENGTHS at which most kicks reverse; of equal ones the shortest.
 
-    The shortest of equals.
+    Args:
+        found: (reversed, tried) for each length (ticks).
     """
     return max(SURE_LENGTHS, key=lambda ticks: fraction(*found[ticks]))
 
@@ -200,13 +214,17 @@ def quenched(
     fewest: int,
     of_what: str,
 ) -> Claim:
-    """R9 and R10: a kick is reliable for one of SURE_LENGTHS even `where` it is least sure.
+    """R9 and R10: a quenched kick is reliable at one of SURE_LENGTHS, and fails if short or long.
 
-    It fails for 1 tick, and when long.
-
-    least_sure: (reversed, tried) there, by length. rates: what part reverses, by length, from which
-    it is told where the kick fails. fewest: how many trials this rests on where there are fewest;
-    of_what: what these are, in words.
+    Args:
+        number: The claim's id.
+        claim: The claim in words.
+        where: Where the kick is least sure, in words.
+        least_sure: (reversed, tried) there, for each length (ticks). Here it must be reliable.
+        rates: The part that reverses, for each length. The kick must fail here at 1 tick and at
+            some length above SURE_LENGTHS.
+        fewest: The least number of trials that the claim rests on.
+        of_what: What these trials are, in words.
     """
     best = surest(least_sure)
     rate = fraction(*least_sure[best])
@@ -219,7 +237,7 @@ def quenched(
         "1",
         wilson(*least_sure[best]),
         rate >= RELIABLE and rates[1] <= FAILS and long <= FAILS,
-        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; of {SURE_LENGTHS[-1] + 1} to"
-        f" {max(rates)} ticks the least sure reverses {long:.0%}",
+        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; {long:.0%} at the worst length from"
+        f" {SURE_LENGTHS[-1] + 1} to {max(rates)} ticks",
     )
     return found.doubted(too_few(fewest, LEAST_TRIALS, of_what))

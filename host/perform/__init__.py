@@ -1,4 +1,1 @@
-"""Runs experiments and studies by name.
-
-Finds them with their figures, does their work, reproduces the paper's claims.
-"""
+"""Runs experiments and studies by name, and reproduces the paper's claims."""

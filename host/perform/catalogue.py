@@ -1,4 +1,4 @@
-"""Everything that can be run by a name: its entry, its module and its figure."""
+"""Finds an experiment or study by its name: its entry, its module and its figure."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ from host.runs.registry import Entry, entry_of
 from host.runs.runner import Draw
 from host.theory.studies.registry import TABLE as STUDIES
 
-# The kinds: what people call them, their entries, and the packages of their modules and of their
-# figures.
+# The kinds by the name that people know: entries, the package of the modules, that of the figures.
 EXPERIMENT, BODY, STUDY = "experiment", "experiment on bodies", "study"
 KINDS = {
     EXPERIMENT: (ROBOT, "host.experiments.robot", "host.figures.robot"),
@@ -22,9 +21,13 @@ KINDS = {
 
 
 class Found(NamedTuple):
-    """Something that can be run: its kind, a key of KINDS; its entry; its module.
+    """An experiment or study.
 
-    And what draws its figure.
+    Attributes:
+        kind: A key of KINDS.
+        entry: Its options and claims.
+        work: Its module.
+        draw: The function that draws its figure.
     """
 
     kind: str
@@ -34,7 +37,7 @@ class Found(NamedTuple):
 
 
 def find(name: str) -> Found:
-    """What has this name. Raises WrongUse if nothing has."""
+    """The experiment or study of this name. Raises WrongUse if there is none."""
     entry = entry_of("experiment or study", {**ROBOT, **BODIES, **STUDIES}, name)
     kind = next(kind for kind, (table, _, _) in KINDS.items() if name in table)
     _, works, figures = KINDS[kind]

@@ -1,7 +1,4 @@
-"""All of the paper's claims in one go, about the robot and about the model.
-
-What settles them, and a report.
-"""
+"""Measures all of the paper's claims, about the robot and about the model, and writes a report."""
 
 from __future__ import annotations
 
@@ -20,7 +17,7 @@ from host.runs.registry import Entry
 from host.theory.studies.registry import TABLE as STUDIES
 from host.util.installation import install_command
 
-# What a robot on a table does not have around it; asked for by name, it is taken to be there.
+# What a claim needs around a real robot. If someone asks for the claim by name, it is there.
 NEEDS = {
     "R13": (
         "needs two walls, a robot's length and more apart: build them, and ask for it by name"
@@ -28,16 +25,19 @@ NEEDS = {
     )
 }
 
-OF_MODEL = "is about the paper's model and needs no robot: ask for it by name, or without --brick"
-OF_BODIES = "is about simulated cars and needs no robot: ask for it by name, without --brick"
+OF_MODEL = "is about the paper's model, not about a robot: ask for it by name, or without --brick"
+OF_BODIES = "is about simulated cars, not about a robot: ask for it by name, without --brick"
 NO_BODIES = f"needs mujoco, which is not installed: {install_command('bodies')}"
 _ELSEWHERE = {"M": OF_MODEL, "B": OF_BODIES}
 
 
 class Reproduction(NamedTuple):
-    """claims: in the order of their numbers; skipped: why a claim was not tried; page.
+    """The outcome of a reproduction.
 
-    The report.
+    Attributes:
+        claims: The claims, in the order of their numbers.
+        skipped: Why a claim was not measured, by its id.
+        page: The path of the report.
     """
 
     claims: list[Claim]
@@ -45,11 +45,8 @@ class Reproduction(NamedTuple):
     page: Path
 
 
-def known() -> list[str]:
-    """The ids of all claims that are settled here.
-
-    R of the robot, M of the model, B of simulated bodies.
-    """
+def claim_ids() -> list[str]:
+    """The ids of all claims: R of the robot, M of the model, B of simulated bodies."""
     return sorted(
         (number for entry in (*TABLE.values(), *STUDIES.values()) for number in entry.claims),
         key=_place,
@@ -69,26 +66,37 @@ def reproduce(
     out: str | Path = RESULTS,
     say: Callable[[str], None] = lambda words: None,
 ) -> Reproduction:
-    """Run what settles the claims `only`, by default all that the robot can do, and write OUT/report.html.
+    """Run what decides the claims, or resume it, and write a report.
 
-    The report of some claims has their names in its own, as report-R5-R6.html. Each piece of work
-    goes on where it was cut short. Raises KickctlError.
+    Args:
+        uri: The robot's address, as `connect` takes it.
+        seed: The random seed; by default 1.
+        only: The ids of the claims; by default all that this robot can decide.
+        token: The path of the robot's token file.
+        out: The folder for results. The report is report.html there, or for some claims only a name
+            such as report-R5-R6.html.
+        say: Called with messages for people.
+
+    Raises:
+        KickctlError: A run ended early. The cells that are complete are kept.
     """
-    unknown = [number for number in only if number not in known()]
+    unknown = [number for number in only if number not in claim_ids()]
     if unknown:
-        raise WrongUse(f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(known()))
+        raise WrongUse(
+            f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(claim_ids())
+        )
     uri = address(uri)
     simulated = sim_options(uri) is not None
     skipped = (
         {}
         if simulated or only
         else NEEDS
-        | {number: _ELSEWHERE[number[0]] for number in known() if number[0] in _ELSEWHERE}
+        | {number: _ELSEWHERE[number[0]] for number in claim_ids() if number[0] in _ELSEWHERE}
     )
     if not only and find_spec("mujoco") is None:
         skipped |= {number: NO_BODIES for entry in BODIES.values() for number in entry.claims}
     wanted = [
-        number for number in known() if number not in skipped and (not only or number in only)
+        number for number in claim_ids() if number not in skipped and (not only or number in only)
     ]
     summaries: list[dict[str, Any]] = []
     claims: dict[str, Claim] = {}

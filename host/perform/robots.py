@@ -14,6 +14,7 @@ from urllib.parse import urlencode
 
 from host.client.robot import Robot, connect
 from host.errors import NoLink, NotDone, RobotFault
+from host.kicking.robot_claims import PAPER
 from host.link.addresses import SIM, sim_options
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
@@ -21,16 +22,11 @@ from host.runs.contract import Cell, Experiment, Row, Setting
 from host.runs.folder import digest
 from host.runs.runner import Outcome, Work
 from host.util.installation import deploy_command
-from robot.params import TABLE
 from robot.sources import of_robot
 
-# How often a real robot tries a cell if a fault or a stop disturbs it, and how long it waits between.
+# How often a real robot tries a cell if a fault or a stop disturbs it, and the wait between tries.
 TRIES = 3
 PAUSE_S = 1.0
-# The paper's parameters. Every trial begins with them; a real robot gets its own back in the end.
-PAPER = {
-    name: TABLE[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")
-}
 
 
 @contextmanager
@@ -104,6 +100,7 @@ def _trial(
     """Try a cell once. The log of the try replaces that of an earlier one."""
     path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
+    # Every trial begins with the paper's parameters; a real robot gets its own back in the end.
     _set(robot, PAPER)
     if robot.status()["state"] != "running":
         robot.start()

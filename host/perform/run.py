@@ -75,7 +75,7 @@ def perform(
     else:
         uri = address(uri)
         simulated = _simulated(name, found.kind, uri)
-        setting = _setting(options, simulated, seed)
+        setting = setting_of(options, simulated, seed)
         settings["brick"] = uri
         if simulated is not None:
             # By value: your own motor of this name may have other constants tomorrow.
@@ -137,9 +137,16 @@ def _simulated(name: str, kind: str, uri: str) -> dict[str, str] | None:
     return simulated
 
 
-def _setting(
+def setting_of(
     options: dict[str, Any], simulated: dict[str, str] | None, seed: int | None
 ) -> Setting:
+    """The setting of a run on a robot.
+
+    Args:
+        options: The run's own options.
+        simulated: The options in the address of a simulated robot; None for a real one.
+        seed: The random seed; None for that of the address, or the default.
+    """
     if seed is None:
         seed = int((simulated or {}).get("seed", DEFAULT_SEED))
     if simulated is None:

@@ -1,9 +1,9 @@
-"""What an experiment is: a module with these functions, and one among the figures with draw(rows, findings), which returns a Figure.
+"""What an experiment is, and what its cells share.
 
-Its work is a list of cells, each of which can be done by itself.
-
-A cell is plain data that says what to do, a row plain data that came of it; both survive JSON
-unchanged, and what is unknown is None.
+An experiment is a module with the functions of `Experiment`, and a module in figures/ with
+draw(rows, findings), which returns a Figure. Its work is a list of independent cells. A cell is
+plain data that says what to do; a row is plain data that results from it. Both survive JSON
+unchanged, and None stands for what is unknown.
 """
 
 from __future__ import annotations
@@ -26,9 +26,13 @@ Options = dict[str, Any]
 
 @dataclass(frozen=True)
 class Setting:
-    """What all cells of a run share; plain data, which can go to another process.
+    """What all cells of a run share: plain data, which can go to another process.
 
-    motor, battery_v: of the simulated brick, as in sim://?motor=NAME&battery=V.
+    Attributes:
+        seed: The random seed of the run.
+        options: The run's own options by name.
+        motor: The motor of the simulated brick, as in sim://?motor=NAME.
+        battery_v: The open-circuit voltage of its battery, V; None for the motor's nominal one.
     """
 
     seed: int
@@ -37,12 +41,12 @@ class Setting:
     battery_v: float | None = None
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
-        """A cell's own seed: the same whatever else is done before it, or by whom."""
+        """The random seed of a cell. It does not depend on other cells or on the machine."""
         text = json.dumps([self.seed, cell], sort_keys=True)
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], "big")
 
     def elsewhere(self, **own: Any) -> str:
-        """Why this run cannot decide a claim: it is not at the parameters that the claim is made for.
+        """Why this run cannot decide a claim: the claim is made for other parameters.
 
         Args:
             own: The options at which the claim is made. A claim about a simulated robot is made for
@@ -85,9 +89,12 @@ def _word(value: Any) -> str:
 
 @dataclass(frozen=True)
 class Findings:
-    """What an experiment found: the paper's claims it speaks to, other numbers worth telling, and texts to keep as files by name.
+    """What an experiment found.
 
-    numbers: a dictionary, or a list of them, of plain data.
+    Attributes:
+        claims: The paper's claims that it measured.
+        numbers: Other numbers: a dictionary of plain data, or a list of dictionaries.
+        files: Texts to keep as files, by the name of the file.
     """
 
     claims: list[Claim]
@@ -98,27 +105,29 @@ class Findings:
 class Experiment(Protocol):
     """The module of an experiment.
 
-    simulate is None if the experiment runs through a robot's whole loop on the simulated brick too.
-    An experiment on simulated bodies, and a study of the analytic model, is for no robot and has
-    neither world nor trial.
+    `simulate` computes a cell. It is None if the experiment runs a robot's whole loop on the
+    simulated brick too. An experiment on simulated bodies and a study of the analytic model need no
+    robot: they have neither `world` nor `trial`.
     """
 
     simulate: Callable[[Cell, Setting], list[Row]] | None
 
     def cells(self, options: Options, *, batch: bool) -> list[Cell]:
-        """The work in pieces, in the order of the table. batch.
+        """The cells, in the order of the table.
 
-        For `simulate`, whose pieces may be larger than a robot's.
+        Args:
+            options: The run's own options.
+            batch: Whether `simulate` does them; its cells may be larger than those of a robot.
         """
 
     def world(self, cell: Cell) -> dict[str, str]:
-        """What a simulated brick needs for this cell: options of sim://.
+        """What surrounds the robot in this cell, as options of sim://.
 
-        What a person has to see to on a real one.
+        A person has to provide it for a real robot.
         """
 
     def trial(self, cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
-        """Do one cell on a robot that runs; `log` taps it meanwhile. Raises KickctlError."""
+        """Do one cell on a robot that runs. `log` records it meanwhile. Raises KickctlError."""
 
     def report(self, rows: list[Row], setting: Setting) -> Findings:
-        """What the rows, each with its cell's fields, come to."""
+        """The findings from all rows, each with the fields of its cell."""

@@ -1,4 +1,4 @@
-"""The results of a run in a folder, kept cell by cell, so that an interrupted run can be resumed."""
+"""The results of a run in a folder, cell by cell, so that an interrupted run can be resumed."""
 
 from __future__ import annotations
 

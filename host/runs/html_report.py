@@ -1,7 +1,4 @@
-"""The report of a reproduction.
-
-One HTML file with the table of claims and, inside it, every experiment's figure.
-"""
+"""The report of a reproduction: one HTML file with the claims and the figures inside."""
 
 from __future__ import annotations
 
@@ -14,9 +11,11 @@ from typing import Any
 from host.runs.claims import FAILS, HOLDS, UNDECIDED, Claim
 
 _STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; }
+body { padding: 0 1rem; color: #222; }
 table { border-collapse: collapse; width: 100%; }
-th, td { text-align: left; vertical-align: top; padding: 0.4rem 0.8rem 0.4rem 0; border-bottom: 1px solid #ccc; }
+th, td { text-align: left; vertical-align: top; }
+th, td { padding: 0.4rem 0.8rem 0.4rem 0; border-bottom: 1px solid #ccc; }
 .holds { color: #00694d; font-weight: bold; }
 .fails { color: #b04000; font-weight: bold; }
 .undecided { color: #666; }
@@ -34,9 +33,16 @@ def write(
     summaries: Sequence[dict[str, Any]],
     skipped: dict[str, str],
 ) -> Path:
-    """Write the file. summaries: of the experiments, as host.perform.run returns them; skipped.
+    """Write the report.
 
-    Why a claim was not tried.
+    Args:
+        path: The file to write.
+        claims: The claims that were measured.
+        summaries: The summaries of experiments and studies, as host.perform.run returns them.
+        skipped: Why a claim was not measured, by its id.
+
+    Returns:
+        The path.
     """
     first = summaries[0] if summaries else {"seed": "none", "version": ""}
     robots = sorted({summary["brick"] for summary in summaries if "brick" in summary})
@@ -83,13 +89,13 @@ def _table(claims: Sequence[Claim], skipped: dict[str, str]) -> str:
         )
         for claim in claims
     ]
-    rows += [_row(number, "", "", "", "not tried", reason) for number, reason in skipped.items()]
+    rows += [_row(number, "", "", "", "not measured", reason) for number, reason in skipped.items()]
     head = "".join(f"<th>{name}</th>" for name in ("", "claim", "paper", "measured", "", "note"))
     return f"<table>\n<tr>{head}</tr>\n{''.join(rows)}</table>\n"
 
 
 def _row(number: str, claim: str, paper: str, measured: str, verdict: str, note: str) -> str:
-    """verdict is HTML, all else text."""
+    """A row of the table. The verdict is HTML, all else is text."""
     cells = [escape(number), escape(claim), escape(paper), escape(measured), verdict, escape(note)]
     return "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>\n"
 

@@ -27,7 +27,7 @@ class Option(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """An experiment or study: a help text, its options, and the ids of the claims that it decides."""
+    """An experiment or study: its help text, its options, and the ids of the claims it decides."""
 
     help: str
     options: tuple[Option, ...]

@@ -27,7 +27,10 @@ Draw = Callable[[list[Row], Findings], "Figure"]
 def open_study(
     results: Path, settings: dict[str, Any], cells: list[Cell], say: Callable[[str], None]
 ) -> Iterator[Study]:
-    """Yields the study of a run. Says how many cells are complete, now and if the run ends early."""
+    """Yields the study of a run.
+
+    Says how many cells are complete, at first and if the run ends early.
+    """
     study = Study(results, settings)
     name = settings["experiment"]
     say(

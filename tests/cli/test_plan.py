@@ -75,7 +75,7 @@ def test_drive_reverses_by_quenched_kicks_of_which_none_fails_where_blind_ones_d
 
 @pytest.fixture
 def only_a_kick_that_dips(monkeypatch):
-    """Nothing to choose but 12 ticks of a negative shift, of which half fail to reverse a wheel that runs forward."""
+    """The only kick is 12 ticks of a negative shift, which fails on half of the forward wheels."""
     monkeypatch.setattr(planning, "KINDS", ((PHASE, -1),))
     monkeypatch.setattr(planning, "lengths", lambda tick_s: [12])
     for kept in (planning._kick_map, planning._compute_plan):
@@ -165,7 +165,7 @@ def test_a_resting_wheel_is_set_going_and_a_window_is_told(kickctl, monkeypatch)
     with monkeypatch.context() as rested:
         rested.setattr("host.logs.motion.heading_of", lambda phi: "stopped")
         out = kickctl("plan", "--to", "forward", "--seed", "1")[1]
-    assert "phase kick by -135° of 4 ticks, at any phase; sets a resting wheel going forward" in out
+    assert "phase kick by -135° of 4 ticks, at any phase; makes a resting wheel roll forward" in out
     monkeypatch.setattr(
         "host.kicking.primitives.reversal",
         lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99),

@@ -1,4 +1,4 @@
-"""Results belong to the sources that computed them: other code computes again, the same code resumes."""
+"""Changed code computes its results again; the same code resumes."""
 
 import os
 import shutil

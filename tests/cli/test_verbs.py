@@ -22,6 +22,26 @@ def test_the_demo_kicks_the_robot_and_the_claims_hold_in_its_log(kickctl):
     assert json.loads(kickctl("log", "replay", result["log"], "--json")[1])["exact"] is True
 
 
+@pytest.mark.parametrize(
+    ("robot", "undecided", "words"),
+    [
+        ("sim://?seed=4", {"R1", "R8"}, "too few"),
+        ("sim://?seed=4&k=7", {"R1", "R2", "R3", "R4", "R5", "R8"}, "made for k = 8 (here 7)"),
+        ("sim://?seed=4&battery=7", {"R1", "R2", "R3", "R4", "R5", "R8"}, "battery = 7.5 V"),
+    ],
+)
+def test_a_demo_with_few_trials_or_of_another_robot_leaves_claims_undecided_and_succeeds(
+    kickctl, monkeypatch, robot, undecided, words
+):
+    monkeypatch.setattr("host.commands.demo.STARTS", 1)
+    monkeypatch.setattr("host.commands.demo.INVERSIONS", 1)
+    status, out, _ = kickctl("demo", "--brick", robot, "--json")
+    claims = json.loads(out)["claims"]
+    assert status == 0
+    assert {claim["id"] for claim in claims if claim["holds"] is None} == undecided
+    assert all(words in claim["note"] for claim in claims if claim["holds"] is None)
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("primitive", ["forward", "backward", "spin-left", "spin-right"])
 def test_drive_reaches_every_primitive(kickctl, primitive, seed):

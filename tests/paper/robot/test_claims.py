@@ -1,4 +1,7 @@
-"""The paper's claims about kicks, over many seeds, through the robot's whole loop in virtual time (R8 to R10 of the claims)."""
+"""The paper's claims about kicks (R1, R8 to R10), over many seeds.
+
+Each trial goes through the robot's whole loop in virtual time.
+"""
 
 from math import pi
 
@@ -14,9 +17,9 @@ OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
 def trial(seed, **kick):
-    """Start, settle, kick both wheels and watch them.
+    """Start a robot, let it settle, kick both wheels and watch them.
 
-    [(heading before, heading after)] of left and right.
+    Returns [(heading before, heading after)] of the left and the right wheel.
     """
     brick = SimBrick(seed)
     loop = Loop(brick.motors, brick.battery, brick.clock, seed)

@@ -1,4 +1,4 @@
-"""The robot's claims from counted kicks: what holds, what does not, and what too few trials leave open."""
+"""The robot's claims from counted kicks: holds, does not hold, or undecided."""
 
 import pytest
 

@@ -8,7 +8,7 @@ from host.runs.claims import Claim
 
 
 def test_the_claims_come_after_those_of_robot_and_model():
-    known = reproduce.known()
+    known = reproduce.claim_ids()
     assert known[-3:] == ["B1", "B2", "B3"]
     assert known[0] == "R1"
 
@@ -32,7 +32,7 @@ def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(
     def entry(name):
         return {**TABLE, **reproduce.STUDIES}[name]
 
-    known = reproduce.known()
+    known = reproduce.claim_ids()
     monkeypatch.setattr(reproduce, "find_spec", lambda module: library or None)
     monkeypatch.setattr(reproduce, "perform", perform)
     monkeypatch.setattr(reproduce.report, "write", lambda path, *_: path)

@@ -96,7 +96,7 @@ def test_a_robot_in_fault_has_a_program_that_is_well(capsys, monkeypatch, tmp_pa
 
 def test_a_program_that_takes_connections_and_says_nothing_hangs(monkeypatch):
     monkeypatch.setattr(health, "PATIENCE_S", 0.1)
-    words = r"it hangs, without a word for 0\.1 s"
+    words = r"it hangs: it has not answered for 0\.1 s"
     with listening() as listener, pytest.raises(Unwell, match=words):
         examine(listener.getsockname()[1], TOKEN)
 

@@ -1,4 +1,4 @@
-"""What is kept of an experiment, cell by cell, in whatever order, and whatever cuts it short."""
+"""What a run keeps, cell by cell, in any order, if anything interrupts it."""
 
 import csv
 from contextlib import closing
@@ -23,13 +23,13 @@ def keep(study, *numbers):
 
 @pytest.fixture
 def study(tmp_path):
-    made = Study(tmp_path, SETTINGS)
-    yield made
-    made.close()
+    study = Study(tmp_path, SETTINGS)
+    yield study
+    study.close()
 
 
 def again(study):
-    """The same folder, opened anew; to be closed by with."""
+    """Open the same folder again; `with` closes it."""
     study.close()
     return closing(Study(study.folder.parent, SETTINGS))
 
@@ -67,7 +67,7 @@ def test_a_line_that_was_cut_short_was_not_kept_and_harms_nothing(study):
         assert journal.read_bytes() == whole
 
 
-def test_a_damaged_journal_is_told_in_words(study):
+def test_a_damaged_journal_is_reported_in_words(study):
     keep(study, 0, 1)
     study.close()
     journal = study.folder / "cells.jsonl"
@@ -89,7 +89,7 @@ def test_two_runs_do_not_work_in_one_folder(study, tmp_path):
     Study(tmp_path, SETTINGS).close()
 
 
-def test_a_folder_that_cannot_be_written_is_told_in_words(tmp_path):
+def test_a_folder_that_cannot_be_written_is_reported_in_words(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(WrongUse, match="cannot hold results"):
         Study(tmp_path / "file", SETTINGS)

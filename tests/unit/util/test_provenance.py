@@ -1,4 +1,4 @@
-"""The fingerprint of all sources that can change a result: which changes count, and which do not."""
+"""The fingerprint of the sources that can change a result: which changes count."""
 
 import os
 import shutil
