@@ -1,15 +1,12 @@
-"""Kick control: the kick as data, and its effect on a wheel as pure functions.
+"""Kick control: the kick as data, and what it does to a wheel as pure functions.
 
 A frozen kick jumps the neurons' variables once; a quenched kick changes one parameter for some
 ticks (section 'Kick control' of the paper). Position inversion is a pulse of beta, the phase shift
-a pulse of the shift that multiplies gamma; both alter only what the neurons see. The numeric
+a pulse of the shift that multiplies gamma; both change only what the neurons see. The numeric
 functions use nothing but `math` and scalars, so that numba compiles them unchanged.
 """
 
-from math import cos, isfinite, pi, sin
-
-from robot.errors import Refused
-from robot.params import TABLE, check_step, check_value
+from math import cos, pi, sin
 
 MEMBRANE, POSITION, PHASE, PULSE, JUMP = "membrane", "position", "phase", "pulse", "jump"
 MODES = (MEMBRANE, POSITION, PHASE, PULSE, JUMP)
@@ -17,7 +14,9 @@ FROZEN_MODES = (MEMBRANE, JUMP)
 WHEELS = ("left", "right")
 RECTANGULAR, SMOOTH = "rectangular", "smooth"
 
-# What a quenched kick may pulse. The numbers are what compiled code carries in place of the names.
+# What a kick does. The numbers are what compiled code carries in place of the names.
+NO_ACTION, INVERT, JUMP_X1, JUMP_X2, QUENCH = range(5)
+# What a quenched kick may pulse.
 NO_PULSE, PULSE_A, PULSE_TAU, PULSE_K, PULSE_BETA, PULSE_SHIFT = range(6)
 PULSED = {
     "a": PULSE_A,
@@ -26,6 +25,8 @@ PULSED = {
     "beta": PULSE_BETA,
     "shift_rad": PULSE_SHIFT,
 }
+# No kick, in the numbers of Kick.numbers.
+NO_KICK = (NO_ACTION, 0, 0, NO_PULSE, False, 0.0)
 
 DEFAULT_SHIFT_RAD = 3 * pi / 4
 DEFAULT_TICKS = {MEMBRANE: 1, POSITION: 3, PHASE: 4, PULSE: 4, JUMP: 1}
@@ -40,7 +41,14 @@ REST_TRAVEL_RAD = 2.5 * pi / 180
 
 
 def direction(travel_rad):
-    """1 forward, -1 backward, 0 at rest, from a wheel's travel over the last DIRECTION_TICKS ticks."""
+    """Which way a wheel turns.
+
+    Args:
+        travel_rad: Its travel over the last DIRECTION_TICKS ticks, rad.
+
+    Returns:
+        1 forward, -1 backward, 0 at rest.
+    """
     if travel_rad > REST_TRAVEL_RAD:
         return 1
     if travel_rad < -REST_TRAVEL_RAD:
@@ -49,40 +57,89 @@ def direction(travel_rad):
 
 
 def reversing_shift(wheel_direction):
-    """The phase shift (rad) that turns a wheel around: positive takes forward to backward.
+    """The phase shift that turns a wheel around. Caption of fig. resultsKickControl.
 
-    Caption of fig. resultsKickControl.
+    Args:
+        wheel_direction: 1, -1 or 0, see `direction`.
+
+    Returns:
+        The shift, rad. A positive one takes forward to backward.
     """
     return -DEFAULT_SHIFT_RAD if wheel_direction < 0 else DEFAULT_SHIFT_RAD
 
 
 def invert_membrane(x1, x2):
-    """x_i -> -x_i. Eq. kickControl_membrane_inversion."""
+    """x_i -> -x_i. Eq. kickControl_membrane_inversion.
+
+    Args:
+        x1: First membrane potential, 1.
+        x2: Second membrane potential, 1.
+
+    Returns:
+        Both potentials after the kick.
+    """
     return -x1, -x2
 
 
-def seen_positions(phi, beta, shift_rad):
-    """What the neurons see of a wheel at angle phi: (1 - 2 beta) (cos, sin)(phi + shift).
+def jump(x, delta):
+    """x -> x + delta, within the range where the neurons' exponential is finite.
 
-    Eqs. kickControl_xa_inversion and kickControl_delta_phi in one; with beta = shift = 0 these are
-    the actual positions.
+    Eq. frozen_kick_kontrol.
+
+    Args:
+        x: A membrane potential, 1.
+        delta: How far it jumps, 1.
+
+    Returns:
+        The potential after the kick.
+    """
+    return max(-X_LIMIT, min(X_LIMIT, x + delta))
+
+
+def seen_positions(phi, beta, shift_rad):
+    """What the neurons see of a wheel: (1 - 2 beta) (cos, sin)(phi + shift).
+
+    Eqs. kickControl_xa_inversion and kickControl_delta_phi in one.
+
+    Args:
+        phi: The wheel's angle, rad.
+        beta: 0 to 1; at 1 the positions are inverted.
+        shift_rad: The phase shift, rad.
+
+    Returns:
+        The two positions, 1. With beta = shift = 0 they are the actual ones.
     """
     sign = 1.0 - 2.0 * beta
     return sign * cos(phi + shift_rad), sign * sin(phi + shift_rad)
 
 
 def pulse_weight(age, ticks, smooth):
-    """How much of a pulse acts in its tick number age = 0 .. ticks - 1.
+    """How much of a pulse acts in one of its ticks.
 
-    1 if rectangular, sin^2 shaped (up to 1) if smooth.
+    Args:
+        age: The number of the tick, 0 to ticks - 1.
+        ticks: How many ticks the pulse lasts.
+        smooth: Whether it is sin^2 shaped, else it is rectangular.
+
+    Returns:
+        0 to 1; always 1 if rectangular.
     """
     return sin(pi * (age + 0.5) / ticks) ** 2 if smooth else 1.0
 
 
 def pulsed(pulse, value, weight, a, tau_s, k):
-    """(a, tau_s, k, beta, shift_rad) while the parameter numbered `pulse` is on its way to value.
+    """The parameters of a wheel during a quenched kick. Eq. quenched_kick_kontrol.
 
-    Eq. quenched_kick_kontrol.
+    Args:
+        pulse: The number of the parameter that is pulsed, NO_PULSE to PULSE_SHIFT.
+        value: That parameter at the pulse's height.
+        weight: How much of the pulse acts, see `pulse_weight`.
+        a: Gain without the kick, 1.
+        tau_s: Time constant without the kick, s.
+        k: Spring constant without the kick, 1.
+
+    Returns:
+        (a, tau_s, k, beta, shift_rad); beta and the shift are 0 without the kick.
     """
     beta = 0.0
     shift_rad = 0.0
@@ -99,19 +156,54 @@ def pulsed(pulse, value, weight, a, tau_s, k):
     return a, tau_s, k, beta, shift_rad
 
 
-def jump(x, delta):
-    """x -> x + delta, kept within the range in which the neurons' exponential is finite. Eq.
+def kicked(kick, tick, x1, x2, a, tau_s, k):
+    """What a kick does to a wheel in a tick, before the neurons step.
 
-    frozen_kick_kontrol.
+    Args:
+        kick: The numbers of a kick on this wheel, see Kick.numbers.
+        tick: The number of the tick.
+        x1: First membrane potential, 1.
+        x2: Second membrane potential, 1.
+        a: Gain, 1.
+        tau_s: Time constant, s.
+        k: Spring constant, 1.
+
+    Returns:
+        (x1, x2, a, tau_s, k, beta, shift_rad) in this tick; beta and the shift, rad, are for
+        `seen_positions`. In a tick in which the kick does not act, all is as before and these are
+        0.
     """
-    return max(-X_LIMIT, min(X_LIMIT, x + delta))
+    action, begin, ticks, pulse, smooth, value = kick
+    beta = 0.0
+    shift_rad = 0.0
+    age = tick - begin
+    if 0 <= age < ticks:
+        if action == QUENCH:
+            weight = pulse_weight(age, ticks, smooth)
+            a, tau_s, k, beta, shift_rad = pulsed(pulse, value, weight, a, tau_s, k)
+        elif action == INVERT:
+            x1, x2 = invert_membrane(x1, x2)
+        elif action == JUMP_X1:
+            x1 = jump(x1, value)
+        elif action == JUMP_X2:
+            x2 = jump(x2, value)
+    return x1, x2, a, tau_s, k, beta, shift_rad
 
 
 class Kick(object):
-    """One kick, checked and complete: nothing about it is left to be decided when it acts.
+    """One kick, checked and complete: nothing about it is left to decide when it acts.
 
-    `values` are the pulse's target on the left and the right wheel; `variable` and `delta` belong
-    to a jump.
+    Attributes:
+        id: The name that the request gave it.
+        mode: One of MODES.
+        wheels: The names of the wheels that it acts on.
+        ticks: How many ticks it lasts.
+        smooth: Whether a pulse is sin^2 shaped, else it is rectangular.
+        pulse: The number of the parameter that is pulsed, or NO_PULSE.
+        values: That parameter at the pulse's height, on the left and the right wheel.
+        variable: "x1" or "x2" if the kick is a jump, else None.
+        delta: How far that jumps, 1.
+        begin: The number of its first tick.
     """
 
     __slots__ = (
@@ -155,130 +247,24 @@ class Kick(object):
         """Whether the kick acts in this tick."""
         return self.begin <= tick < self.begin + self.ticks
 
+    def numbers(self, index):
+        """The kick on one of its wheels, as `kicked` takes it.
+
+        Args:
+            index: 0 for a left wheel, 1 for a right one.
+
+        Returns:
+            (action, begin, ticks, pulse, smooth, value). The value is a pulse's height or how far a
+            potential jumps.
+        """
+        if self.pulse:
+            action, value = QUENCH, self.values[index]
+        elif self.mode == MEMBRANE:
+            action, value = INVERT, 0.0
+        else:
+            action, value = (JUMP_X1 if self.variable == "x1" else JUMP_X2), self.delta
+        return action, self.begin, self.ticks, self.pulse, self.smooth, value
+
     def as_dict(self):
         """The kick as plain data, from which `Kick(**data)` is the same kick."""
         return {name: getattr(self, name) for name in self.__slots__}
-
-
-def _number(request, name, limit):
-    value = request.get(name)
-    if value is None:
-        raise Refused(
-            "usage",
-            "{} is missing".format(name),
-            "give a number from {:g} to {:g}".format(-limit, limit),
-        )
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float))
-        or not abs(value) <= limit
-        or not isfinite(value)
-    ):
-        raise Refused(
-            "range",
-            "{} cannot be {!r}".format(name, value),
-            "give a number from {:g} to {:g}".format(-limit, limit),
-        )
-    return float(value)
-
-
-def _choice(request, name, choices, default):
-    value = request.get(name, default)
-    if value is None:
-        raise Refused("usage", "{} is missing".format(name), "it is one of " + ", ".join(choices))
-    if value not in choices:
-        raise Refused(
-            "usage", "{} cannot be {!r}".format(name, value), "it is one of " + ", ".join(choices)
-        )
-    return value
-
-
-def parse(request, directions, params, begin):
-    """The Kick that a request asks for, to begin in tick `begin`.
-
-    request: id, mode and, as the mode needs them, wheel, ticks, shape, shift (rad), param and
-    value, variable and delta. directions: the present direction of the left and the right wheel,
-    from which a phase kick takes its sign if none is given. Raises Refused if anything in the
-    request is unknown, missing or out of range.
-    """
-    known = (
-        "id",
-        "mode",
-        "wheel",
-        "ticks",
-        "shape",
-        "shift",
-        "param",
-        "value",
-        "variable",
-        "delta",
-    )
-    for name in request:
-        if name not in known:
-            raise Refused("usage", "a kick has no '{}'".format(name), "it has " + ", ".join(known))
-    identity = request.get("id")
-    if not isinstance(identity, str) or not 0 < len(identity) <= 64:
-        raise Refused(
-            "usage", "a kick needs an id of 1 to 64 characters", "any text that was not used before"
-        )
-    mode = _choice(request, "mode", MODES, None)
-    wheel = _choice(request, "wheel", WHEELS + ("both",), "both")
-    smooth = _choice(request, "shape", (RECTANGULAR, SMOOTH), RECTANGULAR) == SMOOTH
-    ticks = request.get("ticks", DEFAULT_TICKS[mode])
-    if isinstance(ticks, bool) or not isinstance(ticks, int) or not 1 <= ticks <= MAX_TICKS:
-        raise Refused(
-            "range",
-            "ticks cannot be {!r}".format(ticks),
-            "give a whole number from 1 to {}".format(MAX_TICKS),
-        )
-    kick = Kick(identity, mode, WHEELS if wheel == "both" else (wheel,), ticks, smooth, begin=begin)
-    if mode in FROZEN_MODES and (ticks != 1 or smooth):
-        raise Refused(
-            "usage", "a {} kick is one jump in one tick".format(mode), "leave out ticks and shape"
-        )
-    _reject_foreign(request, mode)
-    if mode == POSITION:
-        kick.pulse, kick.values = PULSE_BETA, (1.0, 1.0)
-    elif mode == PHASE:
-        kick.pulse = PULSE_SHIFT
-        if request.get("shift") is None:
-            kick.values = tuple(reversing_shift(sign) for sign in directions)
-        else:
-            kick.values = (_number(request, "shift", 2 * pi),) * 2
-    elif mode == PULSE:
-        kick.pulse, kick.values = _parse_pulse(request, params)
-    elif mode == JUMP:
-        kick.variable = _choice(request, "variable", ("x1", "x2"), None)
-        kick.delta = _number(request, "delta", MAX_JUMP)
-    return kick
-
-
-_OWN_FIELDS = {PHASE: ("shift",), PULSE: ("param", "value"), JUMP: ("variable", "delta")}
-
-
-def _reject_foreign(request, mode):
-    for owner in sorted(_OWN_FIELDS):
-        for name in _OWN_FIELDS[owner]:
-            if owner != mode and request.get(name) is not None:
-                raise Refused(
-                    "usage",
-                    "{} does not belong to a {} kick".format(name, mode),
-                    "it belongs to mode " + owner,
-                )
-
-
-def _parse_pulse(request, params):
-    name = _choice(request, "param", tuple(sorted(PULSED)), None)
-    if request.get("value") is None:
-        raise Refused(
-            "usage",
-            "value is missing",
-            "give the value that {} takes at the pulse's height".format(name),
-        )
-    if name in TABLE:
-        value = check_value(name, request.get("value"))
-        if name == "tau_s":
-            check_step(params.tick_s, value)
-    else:
-        value = _number(request, "value", 2 * pi if name == "shift_rad" else 1.0)
-    return PULSED[name], (value, value)

@@ -10,7 +10,8 @@ from math import cos, pi, sin
 
 from robot.blackbox import BlackBox
 from robot.errors import Refused
-from robot.kicks import DIRECTION_TICKS, MODES, WHEELS, direction, parse
+from robot.kick_requests import parse
+from robot.kicks import DIRECTION_TICKS, MODES, WHEELS, direction
 from robot.motors import MotorFault
 from robot.params import LONGEST_STEP_TICKS, Params
 from robot.power import Power
@@ -22,6 +23,19 @@ SHORTEST_STEP_TICKS = 0.1
 LATENESS_EDGES_S = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05)
 BATTERY_TICKS = 300
 KICKS_REMEMBERED = 256
+
+
+def clamp_step(dt_s, tick_s):
+    """The time step that the neurons take for a measured time between two ticks.
+
+    Args:
+        dt_s: The measured time, s.
+        tick_s: The control period, s.
+
+    Returns:
+        The same time, but from SHORTEST_STEP_TICKS to LONGEST_STEP_TICKS control periods, s.
+    """
+    return max(SHORTEST_STEP_TICKS * tick_s, min(LONGEST_STEP_TICKS * tick_s, dt_s))
 
 
 class Side(namedtuple("Side", "wheel motor travel")):
@@ -113,10 +127,9 @@ class Loop(object):
         period = self.params.tick_s
         dt_s = now - self._before if self.blackbox.next_tick else period
         self._before = now
-        if SHORTEST_STEP_TICKS * period <= dt_s <= LONGEST_STEP_TICKS * period:
-            return dt_s
-        self.clamped += 1
-        return max(SHORTEST_STEP_TICKS * period, min(LONGEST_STEP_TICKS * period, dt_s))
+        step_s = clamp_step(dt_s, period)
+        self.clamped += step_s != dt_s
+        return step_s
 
     def _control(self, dt_s):
         """Both wheels' duty cycles in %, as written. Raises MotorFault."""

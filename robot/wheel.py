@@ -1,24 +1,21 @@
-"""One wheel's neurons from tick to tick.
-
-The controller's equations under the kick that acts, if one does.
-"""
+"""One wheel's neurons from tick to tick: the controller's equations under a kick, if one acts."""
 
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import (
-    MEMBRANE,
-    WHEELS,
-    invert_membrane,
-    jump,
-    pulse_weight,
-    pulsed,
-    seen_positions,
-)
+from robot.kicks import WHEELS, kicked, seen_positions
 
 
 class Wheel(object):
-    """The membrane potentials of a wheel ('left' or 'right'), and the force and torque of the latest tick.
+    """The membrane potentials of a wheel, and the force and torque of its latest tick.
 
-    phi (rad) is the wheel's angle at the beginning of a tick; whoever reads it sets it.
+    Args:
+        side: 'left' or 'right'.
+
+    Attributes:
+        phi: The wheel's angle at the beginning of a tick, rad. Set by the caller who reads it.
+        x1: First membrane potential, 1.
+        x2: Second membrane potential, 1.
+        force: F_tan of the latest tick, 1.
+        torque: M of the latest tick, in (-1, 1).
     """
 
     __slots__ = ("index", "side", "phi", "x1", "x2", "force", "torque")
@@ -29,20 +26,26 @@ class Wheel(object):
         self.phi = self.x1 = self.x2 = self.force = self.torque = 0.0
 
     def step(self, tick, dt_s, params, kick):
-        """Advance by one tick of dt_s; `kick` acts in it, or is None. Returns the torque M."""
+        """Advance by one tick.
+
+        Args:
+            tick: Its number.
+            dt_s: How long it lasts, s.
+            params: A robot.params.Params.
+            kick: The robot.kicks.Kick of the robot, which may be over or act on the other wheel
+                only, or None.
+
+        Returns:
+            The torque M, in (-1, 1).
+        """
         a, tau_s, k = params.a, params.tau_s, params.k
         actual_1, actual_2 = seen_1, seen_2 = actual_positions(self.phi)
-        if kick is not None and self.side in kick.wheels and kick.acts_at(tick):
-            if kick.pulse:
-                weight = pulse_weight(tick - kick.begin, kick.ticks, kick.smooth)
-                a, tau_s, k, beta, shift_rad = pulsed(
-                    kick.pulse, kick.values[self.index], weight, a, tau_s, k
-                )
-                seen_1, seen_2 = seen_positions(self.phi, beta, shift_rad)
-            elif kick.mode == MEMBRANE:
-                self.x1, self.x2 = invert_membrane(self.x1, self.x2)
-            else:
-                setattr(self, kick.variable, jump(getattr(self, kick.variable), kick.delta))
+        if kick is not None and self.side in kick.wheels:
+            numbers = kick.numbers(self.index)
+            self.x1, self.x2, a, tau_s, k, beta, shift_rad = kicked(
+                numbers, tick, self.x1, self.x2, a, tau_s, k
+            )
+            seen_1, seen_2 = seen_positions(self.phi, beta, shift_rad)
         self.x1, self.x2, self.force, self.torque = step_wheel(
             self.x1, self.x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, params.rods
         )

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from robot import kicks
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import DIRECTION_TICKS, JUMP, MEMBRANE, NO_PULSE, Kick
-from robot.loop import SHORTEST_STEP_TICKS
-from robot.params import LONGEST_STEP_TICKS, Params
+from robot.kicks import DIRECTION_TICKS, NO_KICK, Kick
+from robot.loop import clamp_step
+from robot.params import Params
 from robot.safety import limit_duty
 from sim_motor.brick import lateness_s
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
@@ -34,15 +34,10 @@ _actual_positions, _step_wheel, _limit_duty = (
 )
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 _settling_s = compiled(settling_s)
-_invert_membrane, _jump = compiled(kicks.invert_membrane), compiled(kicks.jump)
-_seen_positions, _pulse_weight, _pulsed = (
-    compiled(kicks.seen_positions),
-    compiled(kicks.pulse_weight),
-    compiled(kicks.pulsed),
-)
+_kicked, _seen_positions = compiled(kicks.kicked), compiled(kicks.seen_positions)
+_clamp_step = compiled(clamp_step)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
-NO_KICK, FROZEN_MEMBRANE, FROZEN_JUMP_1, FROZEN_JUMP_2, QUENCHED = range(5)
 ParamNumbers = tuple[float, float, float, int, float, float]
 KickNumbers = tuple[int, int, int, int, bool, float]
 PHASE_SHIFT = nan  # a kick's value that stands for: the shift that turns this wheel around
@@ -166,7 +161,7 @@ def run(
         start.potentials,
         times,
         (params.a, params.tau_s, params.k, params.rods, params.max_duty_pct, params.tick_s),
-        _kick_numbers(kick),
+        NO_KICK if kick is None else kick.numbers(0),
         tables,
         np.stack([motor.scalars() for motor in motors]),
         (
@@ -181,55 +176,6 @@ def run(
         result.records,
     )
     return result
-
-
-def _kick_numbers(kick: Kick | None) -> KickNumbers:
-    """(action, begin, ticks, pulse, smooth, value) of a kick, as compiled code wants it."""
-    if kick is None:
-        return NO_KICK, 0, 0, NO_PULSE, False, 0.0
-    if kick.mode == MEMBRANE:
-        return FROZEN_MEMBRANE, kick.begin, kick.ticks, NO_PULSE, False, 0.0
-    if kick.mode == JUMP:
-        return (
-            (FROZEN_JUMP_1 if kick.variable == "x1" else FROZEN_JUMP_2),
-            kick.begin,
-            kick.ticks,
-            NO_PULSE,
-            False,
-            kick.delta,
-        )
-    return QUENCHED, kick.begin, kick.ticks, kick.pulse, kick.smooth, kick.values[0]
-
-
-@jit
-def _under_kick(
-    tick: int,
-    x1: float,
-    x2: float,
-    a: float,
-    tau_s: float,
-    k: float,
-    kick: KickNumbers,
-    value: float,
-) -> tuple[float, float, float, float, float, float, float]:
-    """(x1, x2, a, tau_s, k, beta, shift_rad) of a tick, as robot.wheel has them. value.
-
-    The kick's value or jump for this wheel.
-    """
-    action, begin, ticks, pulse, smooth, _ = kick
-    beta, shift_rad = 0.0, 0.0
-    if action != NO_KICK and begin <= tick < begin + ticks:
-        if action == QUENCHED:
-            a, tau_s, k, beta, shift_rad = _pulsed(
-                pulse, value, _pulse_weight(tick - begin, ticks, smooth), a, tau_s, k
-            )
-        elif action == FROZEN_MEMBRANE:
-            x1, x2 = _invert_membrane(x1, x2)
-        elif action == FROZEN_JUMP_1:
-            x1 = _jump(x1, value)
-        else:
-            x2 = _jump(x2, value)
-    return x1, x2, a, tau_s, k, beta, shift_rad
 
 
 @jit
@@ -255,7 +201,7 @@ def _run_wheel(
 ) -> None:
     """Run one wheel, note its angle (rad) in each tick in `phis`, and its CHANNELS in `record` unless that is empty."""
     a_set, tau_set, k_set, rods, max_duty_pct, tick_s = params
-    value = kick[5]
+    action, begin, ticks, pulse, smooth, value = kick
     battery_v, latency_s, counts = hardware
     state = (start[0], start[1], start[2], start[3], start[4], start[5])
     substep, duty = 0, 0
@@ -268,18 +214,11 @@ def _run_wheel(
         substep, duty = present, next_duty
         phi = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts) * pi / 180
         phis[tick] = phi
-        dt_s = (
-            max(
-                SHORTEST_STEP_TICKS * tick_s,
-                min(LONGEST_STEP_TICKS * tick_s, now - times[tick - 1]),
-            )
-            if tick
-            else tick_s
-        )
-        if tick == kick[1] and isnan(value):
+        dt_s = _clamp_step(now - times[tick - 1], tick_s) if tick else tick_s
+        if tick == begin and isnan(value):
             value = _reversing_shift(_direction(_travel(phis, tick - 1)))
-        x1, x2, a, tau_s, k, beta, shift_rad = _under_kick(
-            tick, x1, x2, a_set, tau_set, k_set, kick, value
+        x1, x2, a, tau_s, k, beta, shift_rad = _kicked(
+            (action, begin, ticks, pulse, smooth, value), tick, x1, x2, a_set, tau_set, k_set
         )
         actual_1, actual_2 = _actual_positions(phi)
         seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)

@@ -11,7 +11,8 @@ import numpy as np
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
 from robot.errors import Refused
-from robot.kicks import FROZEN_MODES, Kick, parse
+from robot.kick_requests import parse
+from robot.kicks import FROZEN_MODES, Kick
 from robot.params import Params
 
 if TYPE_CHECKING:

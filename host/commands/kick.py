@@ -6,7 +6,8 @@ from host.commands._terminal import recorded, robot_of, say, show
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
 from robot.errors import Refused
-from robot.kicks import DEFAULT_TICKS, MODES, PULSED, RECTANGULAR, SMOOTH, WHEELS, parse
+from robot.kick_requests import parse
+from robot.kicks import DEFAULT_TICKS, MODES, PULSED, RECTANGULAR, SMOOTH, WHEELS
 from robot.params import Params
 
 HELP = "kick the robot, and say whether it reversed"

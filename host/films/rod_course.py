@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from host.errors import NotDone
 from host.logs.log import Log
 from robot.controller import actual_positions, target_position
-from robot.kicks import WHEELS, pulse_weight, pulsed, seen_positions
+from robot.kicks import WHEELS, Kick, kicked, seen_positions
 from sim_motor.mathematics import with_mathematics
 
 Array = NDArray[np.float64]
@@ -80,12 +80,10 @@ def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) ->
     potentials = np.array([log.column(f"{side}_x{number}")[held] for number in (1, 2)])
     acting = [(place, log.records[place].tick - kick["begin"]) for place in range(row, len(log))]
     acting = [(place, age) for place, age in acting if 0 <= age < kick["ticks"]]
+    numbers = Kick(**kick).numbers(WHEELS.index(side))
     seen = np.full((2, len(t_s)), nan)
     for place, age in acting:
-        weight = pulse_weight(age, kick["ticks"], kick["smooth"])
-        _, _, _, beta, shift_rad = pulsed(
-            kick["pulse"], kick["values"][WHEELS.index(side)], weight, 0.0, 0.0, 0.0
-        )
+        *_, beta, shift_rad = kicked(numbers, kick["begin"] + age, 0.0, 0.0, 0.0, 0.0, 0.0)
         if beta or shift_rad:
             for number in np.flatnonzero(held == place):
                 seen[:, number] = seen_positions(float(phi[number]), beta, shift_rad)

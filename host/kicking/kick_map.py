@@ -13,7 +13,8 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION, parse
+from robot.kick_requests import parse
+from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION
 from robot.params import Params
 from sim_motor.batch import run
 from sim_motor.constants import load
@@ -75,7 +76,7 @@ _SPECIMENS, _WHEELS_OF_A_SPECIMEN = 64, 20
 
 
 def request(mode: str, ticks: int, shift_rad: float | None) -> dict[str, Any]:
-    """A kick as robot.kicks.parse takes it, without its id."""
+    """A kick as robot.kick_requests.parse takes it, without its id."""
     return {"mode": mode, "ticks": ticks} | ({} if shift_rad is None else {"shift": shift_rad})
 
 

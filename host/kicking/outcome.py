@@ -104,7 +104,7 @@ def kick_and_watch(
         log: A log that records the robot already. In the end it holds the whole kick.
         mode: The kick's mode.
         wheel: left, right or both.
-        details: The kick's other fields, as robot.kicks.parse takes them.
+        details: The kick's other fields, as robot.kick_requests.parse takes them.
 
     Raises:
         KickctlError: The robot does not run, refuses the kick, or cannot be reached.

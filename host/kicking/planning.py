@@ -67,7 +67,7 @@ class Plan:
     reversed: int = 0
 
     def request(self) -> dict[str, Any]:
-        """The kick, as robot.kicks.parse takes it."""
+        """The kick, as robot.kick_requests.parse takes it."""
         return request(self.mode, self.ticks, self.shift_rad)
 
     def window_deg(self) -> list[float] | None:

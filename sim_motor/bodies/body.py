@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot.controller import target_position
-from robot.kicks import MEMBRANE, Kick, invert_membrane, jump
+from robot.kicks import Kick, kicked
 from sim_motor.bodies.drive import Wheels, drive
 from sim_motor.bodies.model import SIDES, car_name
 from sim_motor.bodies.presets import Preset
@@ -185,18 +185,13 @@ class Body:
         own = self.neurons
         for name in kick.wheels:
             wheel = self.wheels.index(name)
+            numbers = kick.numbers(wheel % len(SIDES))
             if kick.pulse:
-                own.begin[wheel], own.ticks[wheel], own.pulse[wheel] = (
-                    kick.begin,
-                    kick.ticks,
-                    kick.pulse,
-                )
-                own.value[wheel], own.smooth[wheel] = kick.values[wheel % len(SIDES)], kick.smooth
-            elif kick.mode == MEMBRANE:
-                own.x1[wheel], own.x2[wheel] = invert_membrane(own.x1[wheel], own.x2[wheel])
+                _, *own.whole[:, wheel], own.value[wheel] = numbers
             else:
-                potential = getattr(own, kick.variable)
-                potential[wheel] = jump(potential[wheel], kick.delta)
+                own.x1[wheel], own.x2[wheel], *_ = kicked(
+                    numbers, kick.begin, own.x1[wheel], own.x2[wheel], 0.0, 0.0, 0.0
+                )
 
     def _note(self) -> None:
         data = self.data

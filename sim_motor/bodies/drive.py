@@ -1,6 +1,6 @@
 """The controllers of all wheels of a body, compiled together.
 
-Robot/controller.py with one rod, and the kicks of robot/kicks.py.
+They are those of robot/controller.py with one rod, under the kicks of robot/kicks.py.
 """
 
 from __future__ import annotations
@@ -8,46 +8,32 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from robot import kicks
 from robot.controller import actual_positions, step_wheel
+from robot.kicks import QUENCH, kicked, seen_positions
 from sim_motor.compiled import compiled, jit
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 _actual_positions, _step_wheel = compiled(actual_positions), compiled(step_wheel)
-_seen_positions, _pulse_weight, _pulsed = (
-    compiled(kicks.seen_positions),
-    compiled(kicks.pulse_weight),
-    compiled(kicks.pulsed),
-)
-NEVER = -1
+_kicked, _seen_positions = compiled(kicked), compiled(seen_positions)
 
 
 class Wheels:
     """All wheels of a body: potentials, constants, and the quenched kick that each is under.
 
-    Each name stands for (wheels,).
-
-    x2 is a potential without a rod. begin, ticks: of the kick, in steps; begin is NEVER where there
-    is none. All stand in two arrays, `floats` (7, wheels) and `whole` (4, wheels), which compiled
-    code gets faster than eleven.
+    Each name stands for an array, (wheels,). x2 is a potential without a rod. begin, ticks: of the
+    kick, in steps; ticks is 0 where there is none. All stand in two arrays, `floats` (7, wheels)
+    and `whole` (4, wheels), which compiled code gets faster than eleven.
     """
 
     def __init__(self, wheels: int, a: float, tau_s: float, k: float, radius_m: float) -> None:
-        """So many equal wheels, not kicked, with potentials 0."""
+        """Equal wheels, not kicked, with potentials 0."""
         self.floats = np.zeros((7, wheels))
         self.whole = np.zeros((4, wheels), dtype=np.int64)
         self.x1, self.x2, self.a, self.tau_s, self.k, self.radius_m, self.value = self.floats
         self.begin, self.ticks, self.pulse, self.smooth = self.whole
-        self.a[:], self.tau_s[:], self.k[:], self.radius_m[:], self.begin[:], self.pulse[:] = (
-            a,
-            tau_s,
-            k,
-            radius_m,
-            NEVER,
-            kicks.NO_PULSE,
-        )
+        self.a[:], self.tau_s[:], self.k[:], self.radius_m[:] = a, tau_s, k, radius_m
 
 
 @jit
@@ -64,10 +50,11 @@ def drive(
     velocity: Array,
     pull: Array,
 ) -> None:
-    """Step all neurons by dt_s, and set the motors' torques (N m), R k sin(phi) (x_t - cos phi), and the drag of bodies (N).
+    """Step all neurons by dt_s, and set the torques of the motors and the drag of the bodies.
 
-    floats, whole: of Wheels. angles: where in qpos the wheels' angles stand; bodies: which rows of
-    `pull`, (bodies, 6), are the cars'; velocity: theirs, 3 each.
+    Torques, in N m, are R k sin(phi) (x_t - cos phi); drags are in N. floats, whole: of Wheels.
+    angles: where in qpos the wheels' angles stand. bodies: the rows of `pull`, (bodies, 6), that
+    are the cars'. velocity: theirs, 3 each.
     """
     x1, x2, gain, time_constant, spring, radius_m, value = floats
     begin, ticks, pulse, smooth = whole
@@ -75,12 +62,9 @@ def drive(
         phi = qpos[angles[i]]
         a, tau_s, k = gain[i], time_constant[i], spring[i]
         actual_1, actual_2 = _actual_positions(phi)
-        seen_1, seen_2 = actual_1, actual_2
-        age = step - begin[i]
-        if begin[i] != NEVER and 0 <= age < ticks[i]:
-            weight = _pulse_weight(age, ticks[i], smooth[i])
-            a, tau_s, k, beta, shift_rad = _pulsed(pulse[i], value[i], weight, a, tau_s, k)
-            seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
+        kick = (QUENCH, begin[i], ticks[i], pulse[i], smooth[i], value[i])
+        x1[i], x2[i], a, tau_s, k, beta, shift_rad = _kicked(kick, step, x1[i], x2[i], a, tau_s, k)
+        seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
         x1[i], x2[i], force, _ = _step_wheel(
             x1[i], x2[i], actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, 1
         )

@@ -16,7 +16,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from robot.kicks import MAX_TICKS, MEMBRANE, PHASE, POSITION, parse
+from robot.kick_requests import parse
+from robot.kicks import MAX_TICKS, MEMBRANE, PHASE, POSITION
 from robot.params import Params
 from sim_motor.bodies.body import OF_A_CAR, Body, Unstable
 from sim_motor.bodies.measures import STILL_RAD_S, summary

@@ -23,7 +23,8 @@ from host.logs.motion import settling_s
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction
-from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS, parse
+from robot.kick_requests import parse
+from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS
 from robot.params import Params
 from sim_motor.batch import run
 from sim_motor.constants import load

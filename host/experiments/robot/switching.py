@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from host.experiments.robot import unattended
 from host.logs.motion import directions
 from host.runs.contract import Setting
-from robot.kicks import DIRECTION_TICKS, JUMP, parse
+from robot.kick_requests import parse
+from robot.kicks import DIRECTION_TICKS, JUMP
 from robot.loop import Loop
 from robot.params import Params
 from sim_motor.batch import CHANNELS, run

@@ -17,13 +17,13 @@ from host.theory.engine.ensemble import FINE, Averages
 from host.theory.engine.sampled import Clock, Seen, ticks_in
 from host.theory.model.wheel import OMEGA, Array, Wheel, seen_rates
 from robot.controller import actual_positions
+from robot.kick_requests import parse
 from robot.kicks import (
     DEFAULT_SHIFT_RAD,
     MEMBRANE,
     PHASE,
     POSITION,
     invert_membrane,
-    parse,
     pulsed,
     seen_positions,
 )

@@ -34,7 +34,8 @@ from host.theory.engine.sampled import PLAIN, Clock, Seen
 from host.theory.model.wheel import OMEGA, PHI, Wheel, seen_rates
 from host.theory.studies import basins
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import MEMBRANE, PHASE, POSITION, parse
+from robot.kick_requests import parse
+from robot.kicks import MEMBRANE, PHASE, POSITION
 from robot.params import Params
 
 WHEEL = Wheel(k=8.0)

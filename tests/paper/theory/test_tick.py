@@ -22,7 +22,8 @@ from host.theory.model.wheel import OMEGA, PHI, Wheel
 from host.theory.studies import tick as study
 from host.theory.studies.tick_rows import ORDERS, growth_of
 from robot.controller import target_position
-from robot.kicks import PHASE, POSITION, parse
+from robot.kick_requests import parse
+from robot.kicks import PHASE, POSITION
 from robot.params import Params
 
 WHEEL = Wheel()

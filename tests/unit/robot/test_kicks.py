@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.errors import Refused
+from robot.kick_requests import parse
 from robot.kicks import (
     MODES,
     PULSED,
@@ -15,7 +16,6 @@ from robot.kicks import (
     WHEELS,
     Kick,
     direction,
-    parse,
     pulse_weight,
     reversing_shift,
 )

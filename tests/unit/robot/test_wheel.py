@@ -9,7 +9,8 @@ from math import cos, pi, sin
 import pytest
 
 from robot.controller import step_wheel
-from robot.kicks import Kick, parse
+from robot.kick_requests import parse
+from robot.kicks import Kick
 from robot.params import Params
 from robot.wheel import Wheel
 
