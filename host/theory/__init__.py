@@ -1,4 +1,1 @@
-"""The paper's analytic model of one wheel (eq. dot_x_phi).
-
-What mathematics and numbers say about it.
-"""
+"""The paper's analytic model of one wheel (eq. dot_x_phi), by mathematics and in numbers."""

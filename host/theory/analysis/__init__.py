@@ -1,1 +1,1 @@
-"""The mathematics: fixpoints, bifurcations, cycles, continuation, growth rates, attractors."""
+"""Analysis of the model: fixpoints, bifurcations, cycles, growth rates and attractors."""

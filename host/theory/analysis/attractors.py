@@ -23,20 +23,26 @@ REST, BACK, ROLL, CHAOS = range(4)
 
 # Two windows agree if their averages differ by less than this part of the motion's size.
 AGREE = 3e-4
-# Slower (rad/s) is rest. A wheel keeps its direction if omega is this much steadier than its mean.
-# A wheel in its well has a mean sin^2(2 phi) below the last number: it is 1 at the saddles between
+# A slower wheel (rad/s) rests.
+STILL = 1e-3
+# A wheel rolls one way if the mean of omega is more than this many of its standard deviations.
+STEADY = 2.0
+# A wheel is in its well if the mean of sin^2(2 phi) is below this. It is 1 at the saddles between
 # wells, and above 0.4 for a wheel that goes to and fro over them.
-STILL, STEADY, IN_WELL = 1e-3, 2.0, 0.25
+IN_WELL = 0.25
 _MEAN_SIN_6 = 5.0 / 16.0
 
 
 class Watched(NamedTuple):
-    """What wheels did in the later of two windows.
+    """What wheels did in the later of two windows of time.
 
-    Mean and standard deviation of omega (rad/s), mean of sin^2(2 phi), (wheels,).
-
-    apart: by how much, in parts of the motion's size, the earlier window's averages differ. states:
-    in which the wheels ended, (4, wheels).
+    Attributes:
+        omega_mean: mean of omega, rad/s, (wheels,).
+        omega_std: standard deviation of omega, rad/s, (wheels,).
+        off_well: mean of sin^2(2 phi), (wheels,): how far from the middle of a well.
+        apart: greatest difference to the averages of the earlier window, relative to the size of
+            the motion, (wheels,).
+        states: where the wheels ended, (4, wheels).
     """
 
     omega_mean: Array
@@ -46,9 +52,9 @@ class Watched(NamedTuple):
     states: Array
 
     def kinds(self) -> NDArray[np.int64]:
-        """Indices of KINDS, (wheels,).
+        """The attractor of each wheel, as an index of KINDS, (wheels,).
 
-        What still settles within its well, or without turning round, is no chaos.
+        A wheel that still settles within its well, or rolls one way, is not chaotic.
         """
         regular, mean = self.apart < AGREE, np.abs(self.omega_mean)
         size = np.hypot(mean, self.omega_std)
@@ -64,9 +70,10 @@ class Watched(NamedTuple):
 
 @vectorised
 def _windowed_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of wheels; of what part of the window is over, row 4, with its own rate below.
+    """The rates of wheels, and of weighted averages over a window.
 
-    And of the averages, rows 6 to 8.
+    Rows 0 to 3 are the wheel, row 4 is the part of the window that is over, row 5 its rate; rows 6
+    to 8 are the averages.
     """
     wheel_rates(states[:4], parameters, out[:4])
     for i in range(states.shape[1]):
@@ -82,9 +89,20 @@ def _windowed_rates(states: Array, parameters: Array, out: Array) -> None:
 def window(
     states: Array, parameters: Array, seconds: float, fineness: float = FINE
 ) -> tuple[Array, Array]:
-    """(averages of omega, omega^2 and sin^2(2 phi), (3, wheels).
+    """Averages over a window of time that opens and closes smoothly.
 
-    Last states) over a smooth window of so many seconds.
+    Args:
+        states: Where the wheels start, (4, wheels).
+        parameters: Their constants, (6, wheels).
+        seconds: Length of the window, s.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+
+    Returns:
+        The averages of omega, omega^2 and sin^2(2 phi), (3, wheels), and the last states,
+        (4, wheels).
+
+    Raises:
+        WrongUse: Wheels are too stiff to be followed.
     """
     extra = np.zeros((5, states.shape[1]))
     extra[1] = 1.0 / seconds
@@ -93,9 +111,19 @@ def window(
 
 
 def watch(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Watched:
-    """Watch wheels, (4, wheels), for so many seconds, in two windows.
+    """Watch wheels that have settled, in two windows of time.
 
-    They should have settled before; raises WrongUse as `advance`.
+    Args:
+        states: Where the wheels start, (4, wheels).
+        parameters: Their constants, (6, wheels).
+        seconds: Length of both windows together, s.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+
+    Returns:
+        What the wheels did.
+
+    Raises:
+        WrongUse: Wheels are too stiff to be followed.
     """
     first, between = window(states, parameters, seconds / 2, fineness)
     last, ended = window(between, parameters, seconds / 2, fineness)
@@ -105,15 +133,26 @@ def watch(states: Array, parameters: Array, seconds: float, fineness: float = FI
 
 
 def settle(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:
-    """The states of wheels after some time.
+    """The states of wheels after some time, (4, wheels).
 
-    As `advance`, with less to compile for those that watch them too.
+    Does what `advance` does, with the function that `watch` compiles anyway. Raises WrongUse if
+    wheels are too stiff to be followed.
     """
     return window(states, parameters, seconds, fineness)[1]
 
 
 def random_starts(count: int, rng: np.random.Generator, fastest: float = 20.0) -> Array:
-    """Random states: any angle, any speed (rad/s) up to `fastest`, and potentials that remember another angle, (4, count)."""
+    """Random states.
+
+    Args:
+        count: How many.
+        rng: The source of chance.
+        fastest: The greatest speed, rad/s.
+
+    Returns:
+        Any angle, any speed up to `fastest`, and the potentials of rest at another angle,
+        (4, count).
+    """
     remembered, phi = rng.uniform(-pi, pi, (2, count))
     return np.array(
         [np.cos(remembered), np.sin(remembered), phi, rng.uniform(-fastest, fastest, count)]

@@ -1,9 +1,9 @@
 """Curves of solutions followed around folds.
 
-Pseudo-arclength continuation (Keller), and the points on them where something vanishes.
-
-A problem is a function of n + 1 unknowns, the last of which is the followed constant, that gives n
-residuals and their Jacobian (n, n + 1).
+Pseudo-arclength continuation (Keller 1977; Kuznetsov, Elements of Applied Bifurcation Theory,
+section 10.2), and the points of a curve where a function vanishes. A problem is a function of n + 1
+unknowns, the last of them the followed constant; it gives n residuals and their Jacobian,
+(n, n + 1).
 """
 
 from __future__ import annotations
@@ -27,14 +27,24 @@ _GROWTH = 1.4
 
 
 class Point(NamedTuple):
-    """A solution (n + 1,), and the direction in which its curve goes on, of length 1 in the scaled unknowns."""
+    """A solution.
+
+    Attributes:
+        unknowns: (n + 1,).
+        tangent: the direction in which the curve goes on, (n + 1,), of length 1 in scaled unknowns.
+    """
 
     unknowns: Array
     tangent: Array
 
 
 class Curve(NamedTuple):
-    """A problem with its unknowns' scales (n + 1,), in which lengths are measured."""
+    """A curve of solutions.
+
+    Attributes:
+        problem: the residuals and their Jacobian.
+        scales: of the unknowns, (n + 1,); lengths are measured in them.
+    """
 
     problem: Problem
     scales: Array
@@ -44,9 +54,17 @@ class Curve(NamedTuple):
         return residual, jacobian * self.scales
 
     def solve(self, guess: Array, direction: Array) -> Point:
-        """The solution on the plane through a guess at right angles to a direction.
+        """The solution on a plane, by Newton's method.
 
-        Raises NotDone if Newton's method finds none.
+        Args:
+            guess: A point of the plane, (n + 1,).
+            direction: The normal of the plane, in scaled unknowns, (n + 1,).
+
+        Returns:
+            The solution.
+
+        Raises:
+            NotDone: Newton's method does not converge.
         """
         unknowns = guess.copy()
         for _ in range(_MOST_ITERATIONS):
@@ -65,19 +83,34 @@ class Curve(NamedTuple):
         raise NotDone("no solution was found near a guess", "try shorter steps")
 
     def tangent(self, unknowns: Array, like: Array) -> Array:
-        """The direction of the curve, of its two the one that is like another."""
+        """The direction of the curve at a solution, (n + 1,).
+
+        The curve has two; this one has a positive product with `like`, (n + 1,).
+        """
         _, jacobian = self._jacobian(unknowns)
         along: Array = np.linalg.svd(jacobian)[2][-1]
         return along if along @ like >= 0.0 else -along
 
     def ahead(self, point: Point, length: float) -> Point:
-        """The point of the curve at this distance along another's tangent. Raises NotDone."""
+        """The solution at this distance along a point's tangent. Raises NotDone."""
         return self.solve(point.unknowns + length * self.scales * point.tangent, point.tangent)
 
     def follow(
         self, first: Point, shortest: float, longest: float
     ) -> Iterator[tuple[float, Point]]:
-        """Yields the points of the curve from the first on, each with its distance from the one before. Raises NotDone where it is lost."""
+        """Follow the curve with steps that adapt to how it turns.
+
+        Args:
+            first: Where to start, and in which direction.
+            shortest: Shortest step, in scaled unknowns.
+            longest: Longest step, in scaled unknowns.
+
+        Yields:
+            The length of the step and the point after it; first a length of 0 and the first point.
+
+        Raises:
+            NotDone: The curve is lost.
+        """
         yield 0.0, first
         point, length = first, 10 * shortest
         while True:
@@ -103,9 +136,18 @@ class Curve(NamedTuple):
             length = min(longest, length * (_GROWTH if turn < _MOST_TURN / 3 else 1.0))
 
     def locate(self, point: Point, length: float, vanishing: Callable[[Point], float]) -> Point:
-        """The point up to this distance from another where a function vanishes.
+        """The point of the curve where a function vanishes.
 
-        Raises NotDone if it has one sign at both ends.
+        Args:
+            point: A point before it.
+            length: The distance of a point behind it.
+            vanishing: The function, with different signs at both.
+
+        Returns:
+            The point.
+
+        Raises:
+            NotDone: The function has the same sign at both.
         """
 
         def at(distance: float) -> float:

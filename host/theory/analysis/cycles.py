@@ -21,8 +21,8 @@ from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 
 # The coordinates on the section phi = 0.
 SECTION = [0, 1, OMEGA]
-# A wheel has settled in a rotation if its state changes less than this (relative) in a quarter turn,
-# or after this many quarter turns.
+# A wheel has settled in a rotation if its state changes less than this (relative) in a quarter
+# turn, or after this many quarter turns.
 _SETTLED, _QUARTERS = 1e-4, 60
 # It is integrated in chunks of steps, at most this many.
 _CHUNK, _MOST_CHUNKS = 100, 20_000
@@ -53,8 +53,8 @@ ROTATION = Family("LLM", _UNDO_QUARTER, pi / 2, 4.0)
 class Shooting:
     """The cycles of a family as a problem (see host.theory.analysis.continuation).
 
-    The unknowns are (x1, x2, omega, time, constant), (5,): the state at phi = 0, the duration of the
-    reduced map in s, and the wheel's constant that is followed.
+    The unknowns are (x1, x2, omega, time, constant), (5,): the state at phi = 0, the duration of
+    the reduced map in s, and the wheel's constant that is followed.
     """
 
     def __init__(

@@ -1,9 +1,7 @@
-"""The eight angles at which a wheel can rest (eq.
+"""The eight angles at which a wheel can rest (eq. trivial_fixpoints), and their eigenvalues.
 
-trivial_fixpoints), their eigenvalues, and the resting states of two wheels.
-
-That there are no others: at rest the rods balance if g(cos phi) = g(sin phi), or if one of the two
-is 0, where g(u) = x_t(u) / u is even and falls with |u|.
+There are no others: at rest the rods balance if g(cos phi) = g(sin phi), or if one of the two is 0;
+g(u) = x_t(u) / u is even and falls with |u|.
 """
 
 from __future__ import annotations
@@ -22,13 +20,19 @@ NDComplex = NDArray[np.complex128]
 Kind = Literal["saddle", "stable focus", "stable node", "unstable focus", "unstable node"]
 
 ANGLES = tuple(n * pi / 4 for n in range(8))
-# The time course that is held against the eigenvalues begins so near to the fixpoint, and grows or
-# shrinks by this factor.
+# A time course starts NEAR the fixpoint (relative), and grows or shrinks by FACTOR.
 NEAR, FACTOR = 1e-6, e
 
 
 class Fixpoint(NamedTuple):
-    """A resting wheel: its angle (rad), state (4,), eigenvalues (4,) in 1/s, the greatest real part first, and their vectors (4, 4)."""
+    """A resting wheel.
+
+    Attributes:
+        phi: angle, rad.
+        state: (4,).
+        eigenvalues: 1/s, (4,), in descending order of the real part.
+        eigenvectors: one column for each eigenvalue, (4, 4).
+    """
 
     phi: float
     state: Array
@@ -58,7 +62,15 @@ class Fixpoint(NamedTuple):
 def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
     """The fixpoint at one of ANGLES.
 
-    Raises WrongUse if the rods do not pull, so that a wheel can rest anywhere.
+    Args:
+        phi: The angle, rad.
+        wheel: The wheel; with dry friction, one that begins to roll forward.
+
+    Returns:
+        The fixpoint.
+
+    Raises:
+        WrongUse: The rods do not pull: the wheel can rest at any angle.
     """
     for name in ("k", "a"):
         if getattr(wheel.checked(), name) == 0.0:
@@ -73,12 +85,20 @@ def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
 
 
 def fixpoints(wheel: Wheel) -> list[Fixpoint]:
-    """All eight, in the order of their angles."""
+    """All eight, in the order of their angles. Raises WrongUse as `fixpoint` does."""
     return [fixpoint(phi, wheel) for phi in ANGLES]
 
 
 def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
-    """The rate (1/s) of the fixpoint's leading eigenvalue, measured in a run of the equations that begins NEAR it."""
+    """The growth rate close to a fixpoint, from a time course: a check of its eigenvalues.
+
+    Args:
+        found: The fixpoint.
+        wheel: The wheel that it belongs to.
+
+    Returns:
+        The real part of the leading eigenvalue, 1/s, as measured.
+    """
     leading, vector = found.eigenvalues[0], found.eigenvectors[:, 0]
     left = np.linalg.inv(found.eigenvectors)[0]
     seconds = np.log(FACTOR) / abs(leading.real) if leading.real else 1.0 / abs(leading)

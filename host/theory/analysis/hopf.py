@@ -1,10 +1,9 @@
-"""Where a resting wheel begins to swing.
+"""Where a resting wheel begins to swing: the Hopf bifurcation of the even fixpoints.
 
-The Hopf bifurcation of the even fixpoints, exactly, and what the paper's expansion says of it.
-
-At phi = 0 the potential x1 decouples; with S = x_t(1) the others have the characteristic polynomial
-I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S), from which `hopf` follows by Routh and
-Hurwitz.
+Exactly, and by the paper's expansion. At phi = 0 the potential x1 decouples; with S = x_t(1) the
+others have the characteristic polynomial
+    I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S),
+from which `hopf` follows by the criterion of Routh and Hurwitz.
 """
 
 from __future__ import annotations
@@ -23,12 +22,17 @@ from robot.controller import target_position
 
 
 class Hopf(NamedTuple):
-    """A Hopf bifurcation. k: where; omega: of the swinging (rad/s).
+    """A Hopf bifurcation in k.
 
-    l1: the first Lyapunov coefficient (1; Kuznetsov, Elements of Applied Bifurcation Theory,
-    section 5.4, with eigenvectors of length 1); cycles are born stable, supercritically, if it is
-    negative. Above k, while mu is the real part of the eigenvalues there, they are states z q + its
-    conjugate with |z|^2 = mu / (-l1 omega).
+    Above k, cycles are states z q + conjugate with |z|^2 = mu / (-l1 omega); mu is the real part of
+    the leading eigenvalues there, q their eigenvector.
+
+    Attributes:
+        k: the spring constant at which it happens.
+        omega: angular frequency of the cycles, rad/s.
+        l1: first Lyapunov coefficient (Kuznetsov, Elements of Applied Bifurcation Theory, section
+            5.4, with eigenvectors of length 1). If it is negative, cycles are born stable: the
+            bifurcation is supercritical.
     """
 
     k: float
@@ -37,10 +41,17 @@ class Hopf(NamedTuple):
 
 
 def hopf(wheel: Wheel) -> Hopf:
-    """The Hopf bifurcation of the even fixpoints in k, whatever the wheel's own k.
+    """The Hopf bifurcation of the even fixpoints in k.
 
-    Raises WrongUse if there is none: without friction every resting wheel is unstable, and with a =
-    0 the rods do not pull.
+    Args:
+        wheel: The wheel; its own k does not matter.
+
+    Returns:
+        The bifurcation.
+
+    Raises:
+        WrongUse: There is none: without friction every resting wheel is unstable, and with a = 0
+            the rods do not pull.
     """
     if wheel.checked().friction == 0.0 or wheel.a == 0.0:
         why = (
@@ -65,7 +76,7 @@ def hopf(wheel: Wheel) -> Hopf:
 def critical_k(wheel: Wheel) -> float:
     """The k above which rest is unstable, in closed form.
 
-    0 without friction, infinite with a = 0.
+    0 without friction; infinite with a = 0.
     """
     tau_s, inertia, friction = wheel.tau_s, wheel.inertia, wheel.friction
     pull = tau_s * (target_position(1.0, wheel.a) * friction * tau_s + inertia * wheel.a / 2)
@@ -104,9 +115,8 @@ def estimate(wheel: Wheel) -> float:
 def adaptive_friction(phi: float, wheel: Wheel) -> float:
     """gamma(phi), the coefficient of omega in the paper's expansion for slow wheels.
 
-    A resting wheel swings where it is positive.
-
-    Eq. friction_gamma, in which 4 y (1 - y) = 1 - x_t^2.
+    A resting wheel swings where it is positive. Eq. friction_gamma, in which 4 y (1 - y) =
+    1 - x_t^2.
     """
     slopes = [1.0 - target_position(x, wheel.a) ** 2 for x in (cos(phi), sin(phi))]
     return float(
@@ -120,9 +130,9 @@ def adaptive_friction(phi: float, wheel: Wheel) -> float:
 
 
 def by_eigenvalues(wheel: Wheel) -> float:
-    """The same k by searching where the eigenvalues of the 4-D Jacobian cross the imaginary axis.
+    """The k of the Hopf bifurcation from eigenvalues of the Jacobian: a check.
 
-    A check.
+    Searched between half and twice the closed form. Raises WrongUse as `hopf` does.
     """
     k = hopf(wheel).k
 

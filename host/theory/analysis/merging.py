@@ -1,10 +1,9 @@
-"""Where forth-and-back cycles and rotations merge.
+"""Where forth-and-back cycles and rotations merge: a heteroclinic connection of saddles.
 
-A heteroclinic connection of neighbouring saddles, found by bisection.
-
-The wheel leaves the saddle near -pi/4 along its unstable manifold. On one side of the merging it
-turns back before the saddle a quarter turn on, and swings; on the other it passes, and rolls. At
-the merging it ends in the saddle, and the four saddles are joined in a ring.
+A wheel leaves the saddle near -pi/4 along its unstable manifold. On one side of the merging it
+turns back before the next saddle, and swings; on the other side it passes, and rolls. At the
+merging it ends in that saddle, and the four saddles are joined in a ring (Kuznetsov, Elements of
+Applied Bifurcation Theory, chapter 6). Mergings are found by bisection.
 """
 
 from __future__ import annotations
@@ -26,28 +25,31 @@ from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 from robot.controller import actual_positions
 
 SADDLE = -pi / 4
-# Where on the manifold a wheel begins; the straight line leaves the manifold by about the square of
-# this.
+# Distance from the saddle (rad) at which a wheel starts on the tangent of the manifold. It is off
+# the manifold by about the square of this.
 NEAR = 1e-6
-# A wheel that does neither for so many times of the saddle's growth settles in between: it does not
-# pass.
+# A wheel that neither passes nor turns back within _PATIENCE times of the saddle's growth has
+# settled in between: it does not pass. It is integrated in chunks of _CHUNK times.
 _PATIENCE, _CHUNK = 60.0, 2.0
-# In units of the k of the Hopf bifurcation. Mergings lie at 0.9 to 1.5, with steep neurons (a =
-# 100) at 11.
+# In units of the k of the Hopf bifurcation: below _RESTS no wheel passes; mergings of least k are
+# searched in _SEARCHED. They lie at 0.9 to 1.5, with steep neurons (a = 100) at 11.
 _RESTS, _SEARCHED = 0.3, (0.5, 20.0)
-# Of mergings along a constant those are found that are wider apart than a step of so many.
+# Values of the constant that are tried.
 GRID = 160
 # Bisection ends at neighbouring floats.
 _BISECTIONS = 60
 
 
 class Merging(NamedTuple):
-    """The wheel at a merging.
+    """A merging.
 
-    eigenvalues: the saddle's, (4,), in 1/s, the greatest real part first. saddle_quantity: the sum
-    of the first and of the real part of the second, 1/s. If it is negative, cycles near the merging
-    are stable; if positive, they are unstable, and each branch has a fold before it. passes_above:
-    whether wheels roll above it, not below.
+    Attributes:
+        wheel: the wheel at it.
+        saddle_quantity: the sum of the two leading real parts of the saddle's eigenvalues, 1/s. If
+            it is negative, cycles close to the merging are stable; if it is positive, they are
+            unstable, and each branch has a fold before.
+        eigenvalues: the saddle's, 1/s, (4,), in descending order of the real part.
+        passes_above: whether wheels roll above the merging, not below.
     """
 
     wheel: Wheel
@@ -62,7 +64,18 @@ class Merging(NamedTuple):
 
 
 def saddle(wheel: Wheel) -> Fixpoint | None:
-    """The saddle at -pi/4, or the one to which dry friction moves it, as a wheel feels it that rolls forward; None if it cannot roll."""
+    """The saddle that a wheel leaves forward.
+
+    Args:
+        wheel: The wheel.
+
+    Returns:
+        The saddle at -pi/4, or where dry friction moves it for a wheel that rolls forward; None if
+        dry friction leaves none.
+
+    Raises:
+        WrongUse: The wheel can rest at any angle.
+    """
     if wheel.dry_friction == 0.0:
         return fixpoint(SADDLE, wheel)
 
@@ -81,12 +94,18 @@ def saddle(wheel: Wheel) -> Fixpoint | None:
 def course(
     wheel: Wheel, near: float = NEAR, fineness: float = FINENESS
 ) -> tuple[bool, Array, float]:
-    """A wheel that leaves the saddle forward: whether it passes the next one before it turns back.
+    """The course of a wheel that leaves the saddle forward, until it passes the next or turns back.
 
-    And its course until then.
+    Args:
+        wheel: The wheel.
+        near: The distance from the saddle at which it starts, rad.
+        fineness: Steps per unit of the wheel's rate (see host.theory.engine.flow).
 
-    The course is (4, times), in steps of the third (s). Raises WrongUse of a wheel that cannot be
-    followed, or can rest anywhere.
+    Returns:
+        Whether it passes, its states, (4, times), and the time between them, s.
+
+    Raises:
+        WrongUse: The wheel is too stiff to be followed, or can rest at any angle.
     """
     left = saddle(wheel)
     if left is None:
@@ -110,7 +129,7 @@ def course(
 def passes(wheel: Wheel, near: float = NEAR, fineness: float = FINENESS) -> bool:
     """Whether a wheel that leaves the saddle forward passes the next one before it turns back.
 
-    Raises WrongUse as `course`.
+    Raises WrongUse as `course` and `hopf` do.
     """
     return wheel.k > _RESTS * hopf(wheel).k and course(wheel, near, fineness)[0]
 
@@ -125,7 +144,23 @@ def mergings(
     near: float = NEAR,
     fineness: float = FINENESS,
 ) -> Iterator[Merging]:
-    """Yields the mergings along a constant, a field of Wheel, from low to high, to the last digits. Raises WrongUse as `course`."""
+    """The mergings along a constant, each to the last digits.
+
+    Args:
+        wheel: The wheel; its own value of the constant does not matter.
+        low: Least value of the constant, above 0.
+        high: Greatest value of the constant.
+        along: The field of Wheel.
+        points: How many values are tried; two mergings between neighbours are not seen.
+        near: The distance from the saddle at which wheels start, rad.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.flow).
+
+    Yields:
+        The mergings, ascending in the constant.
+
+    Raises:
+        WrongUse: As `course` and `hopf` do.
+    """
 
     def rolls(value: float) -> bool:
         return passes(wheel._replace(**{along: value}), near, fineness)
@@ -151,9 +186,17 @@ def mergings(
 
 
 def merging(wheel: Wheel) -> Merging:
-    """The merging of least k, whatever the wheel's own k.
+    """The merging of least k.
 
-    Raises NotDone if there is none, WrongUse as `course` and `hopf`.
+    Args:
+        wheel: The wheel; its own k does not matter.
+
+    Returns:
+        The merging.
+
+    Raises:
+        NotDone: There is none up to 20 times the k of the Hopf bifurcation.
+        WrongUse: As `course` and `hopf` do.
     """
     begin = hopf(wheel).k
     found = next(mergings(wheel, _SEARCHED[0] * begin, _SEARCHED[1] * begin, points=48), None)
@@ -166,7 +209,15 @@ def merging(wheel: Wheel) -> Merging:
 
 
 def merging_line(wheel: Wheel, taus_s: Any) -> list[tuple[float, Merging]]:
-    """(tau, merging) at these time constants, without those at which the wheel is too stiff to be followed."""
+    """The merging of least k over tau.
+
+    Args:
+        wheel: The wheel; its own tau and k do not matter.
+        taus_s: Time constants, s.
+
+    Returns:
+        (tau, merging), without time constants at which there is none or the wheel is too stiff.
+    """
     found = []
     for tau_s in map(float, taus_s):
         with suppress(NotDone, WrongUse):
@@ -175,9 +226,19 @@ def merging_line(wheel: Wheel, taus_s: Any) -> list[tuple[float, Merging]]:
 
 
 def neutral_tau_s(wheel: Wheel, low: float, high: float) -> float | None:
-    """The time constant where the saddle quantity at the merging changes its sign.
+    """The time constant at which the saddle quantity at the merging changes its sign.
 
-    None if both ends have the same.
+    Args:
+        wheel: The wheel; its own tau and k do not matter.
+        low: Least time constant, s.
+        high: Greatest time constant, s.
+
+    Returns:
+        The time constant, s; None if the sign is the same at both ends.
+
+    Raises:
+        NotDone: There is no merging.
+        WrongUse: As `course` and `hopf` do.
     """
 
     def quantity(tau_s: float) -> float:

@@ -1,11 +1,10 @@
-"""The largest Lyapunov exponent: from one measured series as Rosenstein et al.
+"""The largest Lyapunov exponent from one measured series, and from pairs of runs.
 
-And Kantz (1993, 1994) do, and from twins that part.
-
-A wheel's encoder counts whole degrees and its duty cycle whole percents. What is smaller than these
-steps does not reach the loop, and a difference between two wheels dies with the neurons' time
-constant; what is larger can grow. Exponents are those of differences of finite size: larger than
-the steps, smaller than the motion.
+From a series by the methods of Rosenstein et al. (Physica D 65, 1993) and Kantz (Phys. Lett. A 185,
+1994). A wheel's encoder counts whole degrees and its duty cycle whole percents. Differences below
+these steps do not reach the loop, and die out with the neurons' time constant; larger ones can
+grow. The exponents here are those of differences of finite size: larger than the steps, smaller
+than the motion.
 """
 
 from __future__ import annotations
@@ -21,47 +20,62 @@ from host.util.intervals import bootstrap_interval
 
 Array = NDArray[np.float64]
 
-# A neighbour is false if the next coordinate takes it this many times farther away (Kennel et al.,
-# 1992); few enough of these will do.
+# A neighbour is false if the next coordinate takes it this many times farther away. A dimension
+# with less than FALSE_SHARE of false neighbours is enough.
 FALSE_RATIO, FALSE_SHARE, MOST_DIMENSIONS = 15.0, 0.01, 10
-# Neighbours are followed for so long: first they turn into the fastest direction, in the end they
-# are as far apart as any two moments.
+# Rates are fitted between these times (s): before, neighbours turn into the fastest direction;
+# after, they are as far apart as any two moments.
 FIT_S = (0.5, 1.5)
 BLOCKS = 5
 
 
 def of_noise(fit_s: tuple[float, float] = FIT_S) -> float:
-    """The rate (1/s) that `from_series` may find where only noise drives neighbours apart, with the root of time as in a random walk.
+    """The rate (1/s) that `from_series` may find where only noise drives neighbours apart.
 
-    An exponent speaks of chaos only beyond this.
+    Their distance then grows like the square root of time, as in a random walk. Only a larger
+    exponent is a sign of chaos.
     """
     first, last = fit_s
     return 0.5 * log(last / first) / (last - first)
 
 
 class Embedding(NamedTuple):
-    """A series' delay coordinates: `dimension` values, each `lag` samples after the one before."""
+    """Delay coordinates of a series.
+
+    Attributes:
+        lag: samples between two coordinates.
+        dimension: how many coordinates.
+    """
 
     lag: int
     dimension: int
 
 
 class Exponent(NamedTuple):
-    """A rate (1/s) with its interval (95 %); positive if near states part."""
+    """A growth rate.
+
+    Attributes:
+        rate: 1/s; positive if close states part.
+        interval: of the rate, 1/s, with a confidence of 95 %; None if it is not known.
+    """
 
     rate: float
     interval: tuple[float, float] | None
 
 
 def _delayed(values: Array, embedding: Embedding) -> Array:
-    """The states, (samples, dimension)."""
+    """The states in delay coordinates, (samples, dimension)."""
     lag, dimension = embedding
     rows = len(values) - (dimension - 1) * lag
     return np.stack([values[i * lag : i * lag + rows] for i in range(dimension)], axis=1)
 
 
 def _neighbours(states: Array, apart: int) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
-    """(index, index of its nearest neighbour more than `apart` samples before or after, distance), of those that do not coincide."""
+    """The nearest neighbour of each state that has one.
+
+    A neighbour is more than `apart` samples earlier or later, and does not coincide. Returns the
+    indices of the states, the indices of their neighbours and the distances, (pairs,) each.
+    """
     distances, indices = cKDTree(states).query(states, k=min(2 * apart + 2, len(states)))
     fit = (np.abs(indices - np.arange(len(states))[:, None]) > apart) & (distances > 0)
     rows = np.flatnonzero(fit.any(axis=1))
@@ -70,9 +84,16 @@ def _neighbours(states: Array, apart: int) -> tuple[NDArray[np.int64], NDArray[n
 
 
 def embedding(values: Array, apart: int) -> Embedding:
-    """A lag after which the autocorrelation has fallen below 1/e, and the fewest dimensions with fewer false neighbours than 1 %.
+    """Delay coordinates in which few neighbours are false (Kennel et al., Phys. Rev. A 45, 1992).
 
-    apart: neighbours less than so many samples apart are of one passage, and do not count.
+    Args:
+        values: The series, (samples,).
+        apart: Neighbours closer in time than this many samples belong to one passage and do not
+            count.
+
+    Returns:
+        A lag after which the autocorrelation has fallen below 1/e, and the least dimension with
+        less than 1 % of false neighbours.
     """
     deviation = values - values.mean()
     fallen = float(deviation @ deviation) * exp(-1)
@@ -90,9 +111,17 @@ def embedding(values: Array, apart: int) -> Embedding:
 
 
 def divergence(values: Array, embedded: Embedding, apart: int, steps: int) -> Array:
-    """The mean logarithm of how much the values of neighbours differ, 0, 1, ...
+    """How far neighbours part.
 
-    `steps` samples after the last by which they are near.
+    Args:
+        values: The series, (samples,).
+        embedded: Its delay coordinates.
+        apart: As of `embedding`.
+        steps: How many samples to follow neighbours.
+
+    Returns:
+        The mean logarithm of the difference of their values, 0 to `steps` samples after the last
+        value of their coordinates, (steps + 1,).
     """
     states = _delayed(values, embedded)
     rows, others, _ = _neighbours(states[: len(states) - steps], apart)
@@ -107,11 +136,17 @@ def divergence(values: Array, embedded: Embedding, apart: int, steps: int) -> Ar
 def from_series(
     values: Array, step_s: float, apart_s: float, fit_s: tuple[float, float] = FIT_S
 ) -> tuple[Exponent, Embedding] | None:
-    """The exponent of a series sampled every step_s, as the mean over BLOCKS parts of it, and how it was embedded.
+    """The largest exponent of a series.
 
-    apart_s: as `apart`, about a period of the motion. fit_s: from when to when the mean logarithm
-    of distances is taken as a straight line. None of a series that is too short for that, or of
-    which a part has no motion in it.
+    Args:
+        values: The series, (samples,).
+        step_s: Time between samples, s.
+        apart_s: Neighbours closer in time do not count, s; about a period of the motion.
+        fit_s: Start and end of the time in which the logarithm of distances is fitted by a line, s.
+
+    Returns:
+        The mean over BLOCKS parts of the series, and the delay coordinates; None for a series that
+        is too short, or with a part in which nothing moves.
     """
     apart, (first, last) = round(apart_s / step_s), (round(edge / step_s) for edge in fit_s)
     blocks = np.array_split(values, BLOCKS)
@@ -127,6 +162,15 @@ def from_series(
 
 
 def from_twins(first: Array, last: Array, span_s: float) -> Exponent:
-    """The mean rate at which twins' distances went from `first` to `last` (one each) within span_s."""
+    """The rate at which pairs of runs part.
+
+    Args:
+        first: Distances of the pairs, (pairs,).
+        last: Distances of the same pairs later, (pairs,).
+        span_s: The time between, s.
+
+    Returns:
+        The mean growth rate of distances.
+    """
     rates = (np.log(last / first) / span_s).tolist()
     return Exponent(float(np.mean(rates)), bootstrap_interval(rates))

@@ -1,8 +1,8 @@
-"""Where in k a wheel's rest loses its stability, and where swinging turns into rolling and rolling back: sampled, or continuous.
+"""Where in k rest loses its stability, and where swinging turns into rolling and back.
 
-Rest is a fixpoint of the sampled wheel's map; in a Neimark-Sacker bifurcation, the twin of the
-flow's Hopf, two of its multipliers leave the unit circle. Swinging and rolling are followed from k
-to k by what wheels do.
+Rest is a fixpoint of the sampled wheel's map. In a Neimark-Sacker bifurcation, which corresponds to
+the flow's Hopf bifurcation, two of its multipliers leave the unit circle. Swinging and rolling are
+followed from k to k, in either model, by what wheels do.
 """
 
 from __future__ import annotations
@@ -19,28 +19,35 @@ from host.theory.engine.kicked import Model
 from host.theory.engine.sampled import Clock
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, resting
 
-# Times a wheel's own k, between which its rest is watched.
+# The values of k that are tried, in units of a wheel's stiffness.
 _SPAN = np.geomspace(1e-5, 1e5, 401)
-# So many values of k at once share an interval out, down to this part of k.
+# Values of k that are tried at once inside an interval, until it is shorter than CLOSE (relative).
 SECTIONS, CLOSE = 7, 1e-8
 _QUARTER = pi / 2
-# Nearly as far as the saddle at pi/4: a swing that is too large shrinks faster than a small one
+# Almost as far as the saddle at pi/4: a swing that is too large shrinks faster than a small one
 # grows.
 _PUSH_RAD = 0.7
 
 
 def multipliers(wheel: Wheel, clock: Clock) -> Any:
-    """The eigenvalues of a tick's Jacobian at rest, (5,), complex; one is 0 without latency."""
+    """The multipliers of rest: eigenvalues of a tick's Jacobian, (5,), one 0 without latency."""
     matrix: Any = sampled.jacobian(sampled.at_rest(), wheel, clock)
     return np.linalg.eigvals(matrix)
 
 
 def leading(wheel: Wheel, clock: Clock) -> complex:
-    """The largest multiplier of those that can leave the unit circle, 0 if there is none.
+    """The leading multiplier of rest among those that can leave the unit circle.
 
-    Of a pair the one that turns forward.
+    A positive multiplier cannot: for it to be 1, the pull k (a/2 - x_t(1)) of the rods would have
+    to vanish.
 
-    A positive one stays within: at 1 the pull k (a/2 - x_t(1)) of the rods would have to vanish.
+    Args:
+        wheel: The wheel.
+        clock: Tick and latency.
+
+    Returns:
+        The multiplier of greatest modulus, of a pair the one with positive imaginary part; 0 if
+        none can leave.
     """
     able = [
         complex(value)
@@ -52,10 +59,15 @@ def leading(wheel: Wheel, clock: Clock) -> complex:
 
 
 def critical_k(wheel: Wheel, clock: Clock) -> float | None:
-    """The least k at which rest loses its stability, to 1e-12 of it.
+    """The least k at which rest of the sampled wheel loses its stability.
 
-    0 if it is unstable however small k is, None if it is stable for every k, or the tick so long
-    that the potentials run away.
+    Args:
+        wheel: The wheel; its own k does not matter.
+        clock: Tick and latency.
+
+    Returns:
+        The k, to 1e-12 of it; 0 if rest is unstable for every k, None if it is stable for every k
+        or if potentials diverge because the tick is too long for the neurons.
     """
 
     def growth(k: float) -> float:
@@ -75,11 +87,22 @@ def critical_k(wheel: Wheel, clock: Clock) -> float | None:
 def rolling_ends(
     model: Model, wheel: Wheel, high: float, low: float, seconds: float
 ) -> float | None:
-    """Below which k a wheel that rolls stops rolling, followed from `high` down to `low`.
+    """The k below which a wheel that rolls stops rolling.
 
-    None if no such change is seen.
+    A wheel rolls if it covers three quarter turns in the second half of the time.
 
-    A wheel that still covers three quarter turns in the last half of `seconds` rolls.
+    Args:
+        model: The continuous or the sampled model.
+        wheel: The wheel; its own k does not matter.
+        high: The k to start from.
+        low: The k to go down to.
+        seconds: How long to follow it at each k, s.
+
+    Returns:
+        The k, to 1e-8 of it; None if the wheel does not roll at `high`, or still rolls at `low`.
+
+    Raises:
+        WrongUse: The wheel cannot be followed.
     """
     fast = model.begun(resting(np.zeros(1)))
     fast[OMEGA] = 2 * sqrt(high * (1 + wheel.a / 2) / wheel.inertia)
@@ -97,11 +120,23 @@ def rolling_ends(
 def swinging_ends(
     model: Model, wheel: Wheel, low: float, high: float, seconds: float
 ) -> float | None:
-    """Above which k a wheel that rests, or swings around a rest, no longer does.
+    """The k above which a wheel that rests, or swings around a rest, no longer does.
 
-    Followed from `low` up to `high`.
+    A wheel swings if it covers less than a quarter turn in the second half of the time. At `low` it
+    is pushed aside.
 
-    None if no such change is seen, or no swinging at `low`. There a wheel is pushed aside.
+    Args:
+        model: The continuous or the sampled model.
+        wheel: The wheel; its own k does not matter.
+        low: The k to start from.
+        high: The k to go up to.
+        seconds: How long to follow it at each k, s.
+
+    Returns:
+        The k, to 1e-8 of it; None if the wheel does not swing at `low`, or still swings at `high`.
+
+    Raises:
+        WrongUse: The wheel cannot be followed.
     """
     pushed = model.begun(resting(np.full(1, _PUSH_RAD)))
     return _narrowed(
@@ -124,9 +159,10 @@ def _narrowed(
     seconds: float,
     lasts: Callable[[Array, Array], Any],
 ) -> float | None:
-    """The k between `begin`, where a motion is, and `end`, where it is not, at which it ceases.
+    """The k between `begin`, where a motion lasts, and `end`, where it does not, at which it ends.
 
-    To CLOSE, in ever smaller steps.
+    `lasts` says it of the states after half and after the whole of the time. The interval is cut
+    into SECTIONS + 1 until it is shorter than CLOSE; wheels start in the state at the last k.
     """
     tried, reached, ceased = np.array([begin]), None, False
     while abs(end - begin) > CLOSE * abs(begin):

@@ -1,10 +1,8 @@
-"""How fast small differences between wheels grow, by two algorithms.
+"""How fast small differences between wheels grow, by tangent vectors and by close pairs.
 
-The variational equations, and pairs of near wheels.
-
-A wheel and one vector that its Jacobian drives are a column of eight rows, so that as many as one
-likes are followed at once (host.theory.engine.ensemble); for several vectors of a wheel there are
-several columns of it.
+A wheel and one tangent vector, which the wheel's Jacobian drives, are a column of eight rows. Any
+number of columns is followed at once (host.theory.engine.ensemble); a wheel with several vectors
+has several columns.
 """
 
 from __future__ import annotations
@@ -20,12 +18,11 @@ from host.theory.model.symbolic import jacobian_at, rates_of_vector
 from host.theory.model.wheel import Array, Wheel
 from sim_motor.mathematics import with_mathematics
 
-# Between two orthonormalisations all vectors turn towards the fastest, on average by a factor of
-# e^6 or less, of the 16 digits they have. One vector alone must only stay within what a float can
-# hold.
+# Between two orthonormalisations all vectors turn towards the fastest, by a factor of e^6 or less
+# on average: a float has 16 digits. A single vector must only stay within the range of floats.
 MOST_DECAY, MOST_GROWTH = 6.0, 100.0
 LONGEST_S, LONGEST_ALONE_S = 1.0, 2.0
-# Pairs of wheels begin so far apart: after a second that is still little, and well above the last
+# Distance of a pair at the start of an interval: still small after a second, and far above the last
 # digit.
 PAIR_DISTANCE = 1e-7
 
@@ -34,7 +31,7 @@ _both: Any = with_mathematics(rates_of_vector(), MATHEMATICS, inlined)
 
 @vectorised
 def tangent_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of all wheels, and of the vector below each, (8, wheels)."""
+    """The rates of all wheels and of the vector below each, (8, wheels)."""
     s, p, o = states, parameters, out
     for i in range(states.shape[1]):
         o[0, i], o[1, i], o[2, i], o[3, i], o[4, i], o[5, i], o[6, i], o[7, i] = _both(
@@ -45,9 +42,12 @@ def tangent_rates(states: Array, parameters: Array, out: Array) -> None:
 
 
 class Growth(NamedTuple):
-    """Logarithmic rates (1/s) in successive equal intervals, (intervals, vectors, wheels), and the last states, (4, wheels).
+    """How vectors grow.
 
-    vectors: orthonormal, (wheels, 4, vectors), to go on with.
+    Attributes:
+        rates: growth rates in successive equal intervals, 1/s, (intervals, vectors, wheels).
+        states: the last states, (4, wheels).
+        vectors: the last vectors, orthonormal, (wheels, 4, vectors).
     """
 
     rates: Array
@@ -56,7 +56,7 @@ class Growth(NamedTuple):
 
 
 def _intervals(parameters: Array, seconds: float, count: int) -> int:
-    """How many intervals, each so short that `count` vectors may be left alone."""
+    """How many intervals, so short that `count` vectors do not become parallel in one."""
     free = parameters.copy()
     free[Wheel._fields.index("k")] = 0.0
     longest = (
@@ -77,10 +77,24 @@ def growth(
     vectors: Array | None = None,
     fineness: float = FINE,
 ) -> Growth:
-    """How `count` vectors grow that are made orthonormal again and again (Benettin et al., Meccanica 15, 1980).
+    """How tangent vectors grow that are orthonormalised again and again.
 
-    In the long run their rates are the Lyapunov exponents, the greatest first. vectors: to begin
-    with; else some, always the same. Raises WrongUse as host.theory.engine.ensemble.advance does.
+    In the long run their rates are the Lyapunov exponents, the largest first (Benettin et al.,
+    Meccanica 15, 1980).
+
+    Args:
+        states: Where the wheels start, (4, wheels).
+        parameters: Their constants, (6, wheels).
+        seconds: How long to follow them, s.
+        count: How many vectors.
+        vectors: The first vectors, (wheels, 4, count); without them random ones, always the same.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+
+    Returns:
+        The rates, and what is needed to go on.
+
+    Raises:
+        WrongUse: Wheels are too stiff to be followed.
     """
     wheels, rounds = states.shape[1], _intervals(parameters, seconds, count)
     if vectors is None:
@@ -90,7 +104,7 @@ def growth(
     for step in range(rounds):
         both = np.vstack([np.tile(states, (1, count)), vectors.transpose(1, 2, 0).reshape(4, -1)])
         both = advance(both, columns, seconds / rounds, fineness, tangent_rates)
-        # Copies of a chaotic wheel would part in the end, from the last bit on.
+        # Copies of a chaotic wheel would part from the last bit on: all go on from the first.
         states = both[:4, :wheels]
         vectors, upper = np.linalg.qr(both[4:].reshape(4, count, wheels).transpose(2, 0, 1))
         rates[step] = np.log(np.abs(np.diagonal(upper, axis1=1, axis2=2))).T * (rounds / seconds)
@@ -98,10 +112,22 @@ def growth(
 
 
 def pair_growth(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:
-    """The rates (1/s) at which pairs of near wheels part, in successive equal intervals, (intervals, wheels); no Jacobian is used.
+    """How fast pairs of close wheels part. No Jacobian is used.
 
     After each interval the second wheel is put back to PAIR_DISTANCE from the first, in the
     direction in which it then is.
+
+    Args:
+        states: Where the wheels start, (4, wheels).
+        parameters: Their constants, (6, wheels).
+        seconds: How long to follow them, s.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+
+    Returns:
+        Growth rates in successive equal intervals, 1/s, (intervals, wheels).
+
+    Raises:
+        WrongUse: Wheels are too stiff to be followed.
     """
     wheels, rounds = states.shape[1], max(1, round(seconds / LONGEST_S))
     away = np.random.default_rng(1).normal(size=states.shape)
@@ -116,27 +142,32 @@ def pair_growth(states: Array, parameters: Array, seconds: float, fineness: floa
 
 
 def divergence(wheel: Wheel) -> float:
-    """The sum of the four exponents (1/s): the Jacobian's trace, the same in all states."""
+    """The sum of the four exponents, 1/s: the Jacobian's trace, the same in all states."""
     return float(np.trace(jacobian_at((0.0, 0.0, 0.0, 0.0), wheel)))
 
 
 def smooth_mean(rates: Array) -> Array:
-    """The mean over the first axis with a weight that opens and closes smoothly.
+    """The mean over the first axis, with a weight that opens and closes smoothly.
 
-    Of regular motion it is free of what depends on where in a period the time begins and ends, and
-    of the vectors' first turns.
+    For regular motion it does not depend on where in a period the time starts and ends, nor on how
+    the vectors turn at first.
     """
     weights = np.sin(np.pi * (np.arange(len(rates)) + 0.5) / len(rates)) ** 6
     return np.asarray(np.tensordot(weights / weights.sum(), rates, 1))
 
 
 def kaplan_yorke(exponents: Array, least: float = 0.0) -> float:
-    """The Lyapunov dimension of exponents, the greatest first.
+    """The Lyapunov dimension (Kaplan and Yorke 1979).
 
-    Those nearer to 0 than `least` are taken for 0.
+    The number of leading exponents with a sum of 0 or more, plus that sum divided by the modulus of
+    the next exponent.
 
-    Kaplan and Yorke: as many of the first as have no negative sum, and for the rest their sum in
-    parts of the next.
+    Args:
+        exponents: 1/s, in descending order.
+        least: Exponents closer to 0 count as 0, 1/s.
+
+    Returns:
+        The dimension.
     """
     own = np.where(np.abs(exponents) < least, 0.0, exponents)
     sums = np.cumsum(own)

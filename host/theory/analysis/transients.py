@@ -1,8 +1,8 @@
-"""Chaotic transients: how long wheels switch before they roll, and at which k chaos turns from a transient into an attractor.
+"""Chaotic transients: how long wheels switch before they roll, and where chaos begins to last.
 
-In a boundary crisis (Grebogi, Ott, Yorke, Physica D 7, 1983) the chaotic attractor touches the edge
-of its basin. On one side of it chaos is a transient whose lives are exponentially distributed, with
-a mean that grows as a power of the distance and has no bound.
+In a boundary crisis (Grebogi, Ott, Yorke, Physica D 7, 1983) the chaotic attractor touches the
+boundary of its basin. On one side of it chaos is a transient: lives are exponentially distributed,
+and their mean grows as a power of the distance, without bound.
 """
 
 from __future__ import annotations
@@ -18,27 +18,45 @@ from scipy.stats import expon, goodness_of_fit
 from host.theory.analysis.attractors import CHAOS, random_starts, settle, watch
 from host.theory.model.wheel import OMEGA, Array, Wheel
 
-# A wheel that has not turned round for so long has stopped switching: near the edge of its basin,
-# rolling may last for a minute and be no end. Reversals are noticed to within LOOK_S.
+# A wheel that has not turned round for QUIET_S (s) has stopped switching. Close to the boundary of
+# the basin, a chaotic wheel may roll for a minute. Reversals are noticed to within LOOK_S.
 QUIET_S, LOOK_S = 200.0, 1.0
-# The search for the least k with chaos: k in so many steps, then these again; of so many wheels
-# half must be chaotic.
+# The search for the least k with chaos: SEARCH_STEPS values of k, then again around the first with
+# chaos; SEARCH_WHEELS wheels at each, followed for SEARCH_S (s).
 SEARCH_STEPS, SEARCH_WHEELS, SEARCH_S = 64, 8, 200.0
-# Before, a wheel may be on its way to the chaotic set.
+# At first (s) a wheel may be on its way to the chaotic set.
 ENTRY_S = 20.0
 FEWEST = 20
 RESAMPLES = 200
 
 
 class Lives(NamedTuple):
-    """When each wheel turned round for the last time, s, and whether it was watched for QUIET_S after that, (wheels,)."""
+    """How long wheels switched.
+
+    Attributes:
+        life_s: when each wheel turned round for the last time, s, (wheels,).
+        ended: whether it was followed for QUIET_S after that, (wheels,).
+    """
 
     life_s: Array
     ended: NDArray[np.bool_]
 
 
 def lives(states: Array, parameters: Array, most_s: float, fineness: float) -> Lives:
-    """Follow wheels until all have stopped switching, at most for most_s."""
+    """Follow wheels until all have stopped switching.
+
+    Args:
+        states: Where the wheels start, (4, wheels).
+        parameters: Their constants, (6, wheels).
+        most_s: How long to follow them at most, s.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+
+    Returns:
+        Their lives, to LOOK_S.
+
+    Raises:
+        WrongUse: Wheels are too stiff to be followed.
+    """
     last, sign, now = np.zeros(states.shape[1]), np.sign(states[OMEGA]), 0.0
     while now < most_s and now - last.max() <= QUIET_S:
         states = settle(states, parameters, LOOK_S, fineness)
@@ -50,9 +68,18 @@ def lives(states: Array, parameters: Array, most_s: float, fineness: float) -> L
 
 @cache
 def least_chaotic_k(wheel: Wheel, most_k: float, fineness: float) -> float | None:
-    """The least k, up to most_k, at which half of the wheels are still chaotic after SEARCH_S.
+    """The least k at which half of the wheels are still chaotic after SEARCH_S.
 
-    None if there is none.
+    Args:
+        wheel: The wheel; its own k does not matter.
+        most_k: The greatest k to try.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+
+    Returns:
+        The k; None if there is none.
+
+    Raises:
+        WrongUse: Wheels are too stiff to be followed.
     """
     low, high = 0.0, most_k
     for _ in range(2):
@@ -73,11 +100,16 @@ def least_chaotic_k(wheel: Wheel, most_k: float, fineness: float) -> float | Non
 
 
 class Sample(NamedTuple):
-    """Lives of wheels at one k, beyond ENTRY_S.
+    """The lives of wheels at one k, beyond ENTRY_S.
 
-    wheels: that lived so long. mean_s: if ends are a matter of chance only; lives that did not end
-    count, too. likeness: the chance that so many exponentially distributed lives look less like it
-    than these (Anderson and Darling), if all have ended.
+    Attributes:
+        k: the spring constant.
+        wheels: how many lived longer than ENTRY_S.
+        ended: how many of them stopped switching.
+        mean_s: the mean life, s, if ends come by chance at a constant rate; the lives that did not
+            end count too. None if none ended.
+        likeness: probability that a sample of exponentially distributed lives fits worse
+            (Anderson and Darling); None if some did not end, or they are too few.
     """
 
     k: float
@@ -88,7 +120,16 @@ class Sample(NamedTuple):
 
 
 def sample(k: float, life_s: Array, ended: NDArray[np.bool_]) -> Sample:
-    """What the lives of wheels at this k come to."""
+    """The lives of wheels at one k.
+
+    Args:
+        k: The spring constant.
+        life_s: When each wheel turned round for the last time, s, (wheels,).
+        ended: Whether it has stopped switching, (wheels,).
+
+    Returns:
+        Mean and likeness of the lives.
+    """
     late = life_s > ENTRY_S
     own, over = life_s[late] - ENTRY_S, ended[late]
     mean = float(own.sum() / over.sum()) if over.any() else None
@@ -103,10 +144,16 @@ def sample(k: float, life_s: Array, ended: NDArray[np.bool_]) -> Sample:
 
 
 class Crisis(NamedTuple):
-    """The law of the mean life: factor (k_crisis - k)^-power, with 95 % intervals.
+    """The mean life near a crisis, factor (k - k')^-power at k', with 95 % intervals.
 
-    misfit: by how many standard errors (rms) the means are off. Where it is above 1, the intervals
-    are wider by it.
+    Attributes:
+        k: the spring constant of the crisis.
+        k_interval: of k.
+        power: the exponent of the law.
+        power_interval: of the power.
+        factor: s, for a distance of 1.
+        misfit: rms deviation of the means, in standard errors. If it is above 1, the intervals are
+            wider by it.
     """
 
     k: float
@@ -117,12 +164,19 @@ class Crisis(NamedTuple):
     misfit: float
 
     def mean_s(self, k: Array) -> Array:
-        """The mean life at these k, below the crisis."""
+        """The mean life, s, at these k below the crisis."""
         return np.asarray(self.factor * (self.k - k) ** -self.power)
 
 
 def crisis(samples: list[Sample]) -> Crisis | None:
-    """The power law through samples with enough ends. None of fewer than four of these."""
+    """Fit the law of a crisis.
+
+    Args:
+        samples: Lives at several k. Samples with fewer than FEWEST ends do not count.
+
+    Returns:
+        The law; None with fewer than four samples that count.
+    """
     fit = [sample for sample in samples if sample.ended >= FEWEST]
     if len(fit) < 4:
         return None
@@ -151,7 +205,10 @@ def crisis(samples: list[Sample]) -> Crisis | None:
 
 
 def _fit(ks: Array, means: Array, ended: Array) -> tuple[Array, float]:
-    """(k of the crisis, power, logarithm of the factor) by least squares of the logarithm, whose standard error is 1 / sqrt(ended)."""
+    """(k of the crisis, power, logarithm of the factor), (3,), and the misfit.
+
+    By least squares of the logarithm of the means, whose standard error is 1 / sqrt(ended).
+    """
     last, width = ks.max(), np.ptp(ks)
 
     def misses(unknowns: Array) -> Array:

@@ -76,7 +76,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
     steps = memory_s(wheel) * (SETTLE + 2 * WINDOW) * float(rate_per_s(wheel.columns(1))[0])
     if not steps <= MOST_STEPS:
         raise WrongUse(
-            f"to see what becomes of one such wheel takes {steps:.1e} steps: it is too stiff, or"
+            f"a wheel with these constants takes {steps:.1e} steps to settle: it is too stiff, or"
             " settles too slowly",
             "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
         )

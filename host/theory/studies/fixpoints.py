@@ -98,7 +98,7 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
         [
             Claim(
                 "M1",
-                "eight fixpoints omega = 0, phi = n pi/4, of which the odd n are always unstable",
+                "eight fixpoints omega = 0, phi = n pi/4; those with odd n are always unstable",
                 "odd n unstable; even n stable for small a k tau / (2 f)",
                 float(len(one)),
                 "fixpoints",

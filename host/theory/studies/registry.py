@@ -144,7 +144,7 @@ TABLE = {
                 0.0,
                 0.0,
                 1.0,
-                "how long after its tick's begin a torque acts, s; no longer than a tick",
+                "how long after the start of its tick a torque acts, s; at most a tick",
             ),
         ),
     ),
