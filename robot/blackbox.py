@@ -1,8 +1,7 @@
-"""The bounded record of the last minutes.
+"""The bounded record of the last minutes: each tick's values, and what changed the robot's course.
 
-Every tick's packed record, and the journal of what changed the robot's course.
-
-A client that lost its link catches up from here; one that was away for longer is told what is gone.
+A client that lost its link catches up from here; one that was away for too long learns how much is
+gone.
 """
 
 from collections import deque
@@ -14,9 +13,13 @@ JOURNAL_CAPACITY = 2000
 
 
 class Snapshot(object):
-    """What a tick's outcome depends on besides the wheels.
+    """The parameters in force and the kick that acts, as plain data.
 
-    The parameters in force and the kick that acts, as plain data.
+    Besides the wheels' states, a tick's outcome depends on these.
+
+    Args:
+        params: The values of the parameters by their names.
+        kick: A robot.kicks.Kick as a dict, or None.
     """
 
     def __init__(self, params, kick=None):
@@ -24,7 +27,11 @@ class Snapshot(object):
         self.kick = kick
 
     def take(self, event):
-        """Bring the snapshot past an event of the journal."""
+        """Bring the snapshot past an event.
+
+        Args:
+            event: A dict, from the journal.
+        """
         if event["event"] == "params":
             self.params.update(event["set"])
         elif event["event"] == "kick":
@@ -33,7 +40,14 @@ class Snapshot(object):
             self.kick = None
 
     def as_event(self, tick):
-        """The snapshot as an event that precedes the record of `tick`."""
+        """The snapshot as an event that precedes a tick's record.
+
+        Args:
+            tick: The tick's number.
+
+        Returns:
+            The event, a dict.
+        """
         kick = self.kick
         if kick is not None and kick["begin"] + kick["ticks"] <= tick:
             kick = None
@@ -41,7 +55,16 @@ class Snapshot(object):
 
 
 class BlackBox(object):
-    """Ring of the latest `capacity` records, found by tick number, and the journal of events that goes with it."""
+    """The latest records, found by their tick's number, and the journal of events beside them.
+
+    Args:
+        params: The values of the parameters by their names, before the first event.
+        capacity: How many records to hold.
+
+    Attributes:
+        next_tick: The number that the next record gets.
+        next_event: The number that the next event gets.
+    """
 
     def __init__(self, params, capacity=DEFAULT_CAPACITY):
         self.next_tick = 0
@@ -58,16 +81,25 @@ class BlackBox(object):
         return max(self.next_tick - self._capacity, self._base_tick, 0)
 
     def append(self, fields):
-        """Keep a tick's record, given as the fields of `robot.record.CHANNELS` after the tick's number, and number it."""
+        """Keep a tick's record under the next number.
+
+        Args:
+            fields: The values of `robot.record.CHANNELS` after the tick's number.
+        """
         STRUCT.pack_into(
             self._ring, self.next_tick % self._capacity * STRUCT.size, self.next_tick, *fields
         )
         self.next_tick += 1
 
     def note(self, event, **details):
-        """Put an event into the journal, with its number and the first tick that it concerns.
+        """Put an event into the journal.
 
-        The one about to run. Returns that tick.
+        Args:
+            event: Its name.
+            details: What else there is to say about it.
+
+        Returns:
+            The number of the first tick that it concerns, which is the next one to run.
         """
         entry = dict(details, event=event, tick=self.next_tick, number=self.next_event)
         self._journal.append((self.next_event, entry))
@@ -82,21 +114,41 @@ class BlackBox(object):
         return self.next_tick
 
     def read(self, tick, count):
-        """Packed records from `tick` on.
+        """Packed records in a row.
 
-        Up to `count`, fewer at the end of the ring or of the record.
+        Args:
+            tick: The number of the first.
+            count: How many at most; there are fewer at the end of the ring, and of the record.
+
+        Returns:
+            The records, bytes.
         """
         start = tick % self._capacity
         count = min(count, self.next_tick - tick, self._capacity - start)
         return bytes(self._ring[start * STRUCT.size : (start + count) * STRUCT.size])
 
     def event(self, number):
-        """The journal's event `number`, or None if it has not happened or is no longer kept."""
+        """An event of the journal.
+
+        Args:
+            number: Its number.
+
+        Returns:
+            The event, a dict, or None if it has not happened or is no longer kept.
+        """
         index = number - (self.next_event - len(self._journal))
         return self._journal[index][1] if 0 <= index < len(self._journal) else None
 
     def snapshot(self, tick):
-        """(number, event): the snapshot as of `tick`, and the number of the first event that comes after it."""
+        """What was in force before a tick.
+
+        Args:
+            tick: The tick's number.
+
+        Returns:
+            (number, event): the number of the first event that comes after the snapshot, and the
+            snapshot as an event.
+        """
         state = Snapshot(self._base.params, self._base.kick)
         for number, event in self._journal:
             if event["tick"] >= tick:

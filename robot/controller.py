@@ -1,8 +1,19 @@
 """The paper's controller: two neurons and two simulated transmission rods for each wheel.
 
-Equations are numbered by their labels in Sandor et al., Front. Neurorobot. 12:40 (2018). Every
-function is pure, takes and returns floats, uses nothing but `math`, and compiles unchanged under
-numba. This is the only place where they are written down.
+In every control period, `step_wheel` takes a wheel from its angle phi to a torque M:
+
+    dx_i/dt = (x_i_seen - x_i) / tau          the neurons follow the rods' positions
+    x_i_t   = 2 / (1 + exp(-a x_i)) - 1       and want the rods elsewhere,
+    F_i     = k (x_i_t - x_i_a)               to where simulated springs pull them;
+    F_tan   = F_1 sin phi - F_2 cos phi       that turns the wheel
+    M       = tanh(F_tan)                     with a bounded torque.
+
+Here (x_1_a, x_2_a) = (cos phi, sin phi), and a kick may change what the neurons see of it
+(robot/kicks.py).
+
+Equations have their labels in Sandor et al., Front. Neurorobot. 12:40 (2018). This is the only
+place where they stand. Every function is pure, takes and returns floats, uses nothing but `math`,
+and compiles unchanged under numba.
 
 Units: angles in rad, times in s; membrane potentials, positions, forces and torques are
 dimensionless, as in the paper.
@@ -12,57 +23,106 @@ from math import cos, exp, sin, tanh
 
 
 def actual_positions(phi):
-    """(x1_a, x2_a) = (cos phi, sin phi): the rods' actual positions at wheel angle phi. Eq.
+    """(x1_a, x2_a) = (cos phi, sin phi). Eq. actual_pos.
 
-    actual_pos.
+    Args:
+        phi: The wheel's angle, rad.
+
+    Returns:
+        The actual positions of both rods, 1.
     """
     return cos(phi), sin(phi)
 
 
 def target_position(x, a):
-    """x_t = 2 y(x) - 1 in (-1, 1): where a neuron of potential x and gain a wants its rod.
+    """x_t = 2 y(x) - 1, with the neuron's rate y = 1 / (1 + exp(-a x)). Eq. target_pos.
 
-    Its rate is y = 1 / (1 + exp(-a x)).
+    Args:
+        x: The neuron's membrane potential, 1.
+        a: Its gain, 1.
 
-    Eq. target_pos.
+    Returns:
+        Where the neuron wants its rod, in (-1, 1).
     """
     return 2.0 / (1.0 + exp(-a * x)) - 1.0
 
 
 def rod_force(x_target, x_actual, k):
-    """F_i = k (x_t - x_a): the spring of constant k that pulls a rod to its target. Eq. F_i."""
+    """F_i = k (x_t - x_a): a spring pulls the rod to its target. Eq. F_i.
+
+    Args:
+        x_target: Where the neuron wants the rod, 1.
+        x_actual: Where the rod is, 1.
+        k: The spring constant, 1.
+
+    Returns:
+        The force on the rod, 1.
+    """
     return k * (x_target - x_actual)
 
 
 def membrane_rate(x, x_seen, tau_s):
-    """dx/dt = (x_seen - x) / tau in 1/s.
+    """dx/dt = (x_seen - x) / tau: a potential follows the position its neuron sees. Eq. dot_x.
 
-    A membrane potential follows the position its neuron sees. Eq. dot_x.
+    Args:
+        x: The membrane potential, 1.
+        x_seen: The position that the neuron sees, 1.
+        tau_s: The time constant, s.
+
+    Returns:
+        The potential's rate, 1/s.
     """
     return (x_seen - x) / tau_s
 
 
 def tangential_force(force_1, force_2, actual_1, actual_2):
-    """F_tan = F_1 sin phi - F_2 cos phi.
+    """F_tan = F_1 sin phi - F_2 cos phi: what both rods do at the wheel's rim. Eq. F_tan.
 
-    What two perpendicular rods do together at the wheel's rim. Eq. F_tan.
+    Args:
+        force_1: The first rod's force, 1.
+        force_2: The second rod's force, 1.
+        actual_1: cos phi, the first rod's actual position.
+        actual_2: sin phi, the second rod's actual position.
 
-    (actual_1, actual_2) = (cos phi, sin phi) are the rods' actual positions.
+    Returns:
+        The force along the rim, 1; positive drives forward.
     """
     return force_1 * actual_2 - force_2 * actual_1
 
 
 def motor_torque(force):
-    """M = tanh(F_tan) in (-1, 1): the torque relative to the motor's maximum. Eq. torque."""
+    """M = tanh(F_tan). Eq. torque.
+
+    Args:
+        force: F_tan, 1.
+
+    Returns:
+        The torque relative to the motor's maximum, in (-1, 1).
+    """
     return tanh(force)
 
 
 def step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods):
-    """One tick of one wheel: (x1, x2, force, torque) after an Euler step of dt_s.
+    """One tick of one wheel, with an Euler step of the neurons.
 
-    The neurons step first, on the positions they see (seen_1, seen_2; a kick may have altered
-    these), and the rods act on the new potentials. The rods' forces are projected at the true angle
-    phi, kicked or not. With rods = 1 only the first rod exists.
+    The neurons step first, on the positions that they see, and the rods act on the new potentials.
+    The forces of the rods are projected at the true angle phi, kicked or not.
+
+    Args:
+        x1: First membrane potential, 1.
+        x2: Second membrane potential, 1.
+        actual_1: The first rod's actual position, 1.
+        actual_2: The second rod's actual position, 1.
+        seen_1: What the first neuron sees of it; the same without a kick.
+        seen_2: What the second neuron sees of it.
+        dt_s: The time step, s.
+        a: The neurons' gain, 1.
+        tau_s: Their time constant, s.
+        k: The rods' spring constant, 1.
+        rods: 2, or 1 if only the first rod exists.
+
+    Returns:
+        (x1, x2, force, torque) after the step: both potentials, F_tan and M.
     """
     x1 += dt_s * membrane_rate(x1, seen_1, tau_s)
     x2 += dt_s * membrane_rate(x2, seen_2, tau_s)

@@ -1,6 +1,6 @@
-"""The fixed tick. What runs in it, in order.
+"""The fixed tick, and what runs in it.
 
-Read the angles, step the neurons under a kick, limit, write the duties, record.
+In this order: read the angles, step the neurons under a kick, limit the duties, write them, record.
 """
 
 import random
@@ -39,7 +39,7 @@ def clamp_step(dt_s, tick_s):
 
 
 class Side(namedtuple("Side", "wheel motor travel")):
-    """A wheel, its motor, and the angles (rad) that tell where it goes."""
+    """A wheel, its motor, and its latest angles (rad), which show where it goes."""
 
     __slots__ = ()
 
@@ -49,11 +49,27 @@ class Side(namedtuple("Side", "wheel motor travel")):
 
 
 class Loop(object):
-    """A robot of two wheels: parts in, one tick at a time.
+    """A robot of two wheels, one tick at a time.
 
-    motors: the left and the right robot.motors.Motor; battery: a robot.motors.Battery or None;
-    clock: see robot.motors; seed: fixes the neurons' start values. Times are of the clock, record
-    times since the loop was made.
+    Args:
+        motors: The left and the right robot.motors.Motor.
+        battery: A robot.motors.Battery, or None.
+        clock: As robot.motors.MonotonicClock.
+        seed: Random seed of the neurons' start values.
+
+    Attributes:
+        params: The parameters in force, a robot.params.Params.
+        safety: The state: running, stopped, held or in fault.
+        lease: Who may drive the robot.
+        blackbox: The records and events of the last minutes.
+        lateness: How many ticks began how late, by LATENESS_EDGES_S.
+        missed: How many deadlines passed without a tick.
+        overruns: How many ticks ended after the next deadline.
+        clamped: How many time steps were outside of the allowed range, see `clamp_step`.
+        done: Set it to end `run`.
+        incurable: Why no fault can be cleared while this program runs; empty if one can.
+        epoch: When the loop was made, on the clock, s. Times in records count from here.
+        deadline: When the next tick is to begin, on the clock, s.
     """
 
     def __init__(self, motors, battery, clock, seed):
@@ -66,7 +82,7 @@ class Loop(object):
         self.lateness = [0] * (len(LATENESS_EDGES_S) + 1)
         self.missed = self.overruns = self.clamped = 0
         self.done = False
-        self.incurable = ""  # why no fault can be cleared while this program runs, if that is so
+        self.incurable = ""
         self._power = Power(battery)
         self._random = random.Random(seed)
         self._sides = [
@@ -80,9 +96,10 @@ class Loop(object):
         self.epoch = self._before = self.deadline = clock.now()
 
     def run(self, serve):
-        """Tick until `done`, serving links in between by serve(timeout_s).
+        """Tick until `done`. The motors are stopped however this ends.
 
-        Motors are stopped however this ends.
+        Args:
+            serve: Called between ticks with the time that is left, s, to serve links.
         """
         try:
             while not self.done:
@@ -109,9 +126,9 @@ class Loop(object):
             self.overruns += 1
 
     def _keep_schedule(self, now):
-        """(how late this tick is, how many deadlines passed without one).
+        """How late this tick is, s, and how many deadlines passed without one.
 
-        The grid of deadlines itself never moves.
+        The grid of deadlines never moves.
         """
         period = self.params.tick_s
         late_s = now - self.deadline
@@ -124,6 +141,7 @@ class Loop(object):
         return late_s, missed if missed < 65535 else 65535
 
     def _measure(self, now):
+        """The time step of this tick, s."""
         period = self.params.tick_s
         dt_s = now - self._before if self.blackbox.next_tick else period
         self._before = now
@@ -175,7 +193,7 @@ class Loop(object):
             self._watch_power()
 
     def _watch_power(self):
-        """Read the battery, say that it is low, stop when it is empty, and let the duties make up for its voltage if that is wanted."""
+        """Read the battery: warn when it is low, stop when it is empty, compensate if wanted."""
         power = self._power
         power.read()
         self.battery_v = power.latest_v
@@ -193,9 +211,13 @@ class Loop(object):
             self.set_params({"duty_scale": scale})
 
     def start(self):
-        """Set the neurons to random potentials and run from the next tick on. Returns that tick.
+        """Set the neurons to random potentials and run.
 
-        Raises Refused.
+        Returns:
+            The number of the first tick.
+
+        Raises:
+            Refused: The robot's state does not allow it, or the battery is empty.
         """
         self._power.read()
         exhaustion = self._power.exhaustion()
@@ -209,9 +231,13 @@ class Loop(object):
         return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in wheels])
 
     def stop(self, reason):
-        """Stop the motors at once. Returns the next tick.
+        """Stop the motors at once. A robot that is stopped already, or in fault, keeps its reason.
 
-        A robot that is stopped already, or in fault, keeps its reason.
+        Args:
+            reason: Why, in words.
+
+        Returns:
+            The number of the next tick.
         """
         self._stop_motors()
         if self.safety.state not in (STOPPED, FAULT):
@@ -220,14 +246,22 @@ class Loop(object):
         return self.blackbox.next_tick
 
     def fail(self, reason):
-        """Stop the motors and latch a fault, for a cause inside of a tick or outside."""
+        """Stop the motors and latch a fault.
+
+        Args:
+            reason: Why, in words.
+        """
         self._fail(reason)
         self._stop_motors()
 
     def clear(self):
-        """Leave a fault for the stopped state, once every motor is there. Returns the tick.
+        """Leave a fault for the stopped state, once every motor is there.
 
-        Raises Refused.
+        Returns:
+            The number of the next tick.
+
+        Raises:
+            Refused: There is no fault, or it lasts.
         """
         if self.safety.state == FAULT:
             if self.incurable:
@@ -247,13 +281,19 @@ class Loop(object):
     def kick(self, request):
         """Begin a kick in the next tick.
 
-        Returns the tick in which it begins, or began if its id is known. Raises Refused.
+        Args:
+            request: As robot.kick_requests.parse takes it.
+
+        Returns:
+            The number of the kick's first tick; that of the first time if the same id came before.
+
+        Raises:
+            Refused: The request is wrong, the robot does not run, or another kick still acts.
         """
-        begun = (
-            self._kick_begins.get(request.get("id")) if isinstance(request.get("id"), str) else None
-        )
-        if begun is not None:
-            return begun
+        identity = request.get("id")
+        known = self._kick_begins.get(identity) if isinstance(identity, str) else None
+        if known is not None:
+            return known
         tick = self.blackbox.next_tick
         directions = [side.direction() for side in self._sides]
         kick = parse(request, directions, self.params, tick)
@@ -277,15 +317,22 @@ class Loop(object):
         return self.blackbox.note("kick", kick=kick.as_dict())
 
     def set_params(self, changes):
-        """Change parameters from the next tick on. Returns that tick.
+        """Change parameters from the next tick on.
 
-        Raises Refused, and changes nothing then.
+        Args:
+            changes: New values by the parameters' names.
+
+        Returns:
+            The number of the next tick.
+
+        Raises:
+            Refused: A value is wrong, or cannot change now. Nothing has changed then.
         """
         checked = self.params.check(changes, at_rest=self.safety.state not in (RUNNING, HELD))
         if "tick_s" in checked and self._kick is not None:
             raise Refused(
                 "busy",
-                "tick_s cannot change while a kick of so many ticks acts",
+                "tick_s cannot change while a kick acts",
                 "set it when the kick is over",
             )
         self.params.apply(checked)
@@ -295,7 +342,15 @@ class Loop(object):
         return self.blackbox.note("params", set=dict(checked))
 
     def take_lease(self, holder, name):
-        """Give `holder` the lease and resume a held run. Raises Refused."""
+        """Give the lease to a client, and resume a held run.
+
+        Args:
+            holder: The client.
+            name: What to call it in words.
+
+        Raises:
+            Refused: Another client holds the lease.
+        """
         self.lease.take(holder, name, self.clock.now())
         if self.safety.state == HELD:
             self.safety.resume("'{}' took the lease".format(name))
@@ -316,13 +371,13 @@ class Loop(object):
                 self.blackbox.note("hold", reason=reason)
 
     def _fail(self, reason):
-        """Latch a fault; one that lasts, or follows from the first, is not told again."""
+        """Latch a fault. One that lasts, or follows from the first, is not recorded again."""
         if self.safety.state != FAULT:
             self.safety.fault(reason)
             self.blackbox.note("fault", reason=reason)
 
     def _stop_motors(self):
-        """Every motor is told to stop, whatever the others do."""
+        """Stop every motor, also if another one does not obey."""
         self._kick = None
         for side in self._sides:
             side.wheel.rest()

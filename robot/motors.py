@@ -1,9 +1,8 @@
-"""The seams to hardware: a motor, a battery, a clock. The brick and the simulator implement them.
+"""What the loop knows of hardware: a motor, a battery, a clock.
 
-The loop knows no more.
+The brick (robot/ev3.py) and the simulator (sim_motor/brick.py) implement them.
 """
 
-import select
 import time
 
 
@@ -18,45 +17,62 @@ class Motor:
     """
 
     def angle_rad(self):
-        """The tacho angle in rad since the motor was found; in whole degrees on the EV3.
+        """The tacho's angle.
 
-        Raises MotorFault.
+        Returns:
+            The angle since the motor was found, rad; in whole degrees on the EV3.
+
+        Raises:
+            MotorFault: The motor does not answer.
         """
         raise NotImplementedError
 
     def write_duty(self, duty_pct):
-        """Run at duty_pct, an int in -100 .. 100, percent of full PWM; 0 brakes.
+        """Run at a duty cycle.
 
-        Raises MotorFault.
+        Args:
+            duty_pct: A whole number from -100 to 100, percent of full PWM; 0 brakes.
+
+        Raises:
+            MotorFault: The motor does not obey.
         """
         raise NotImplementedError
 
     def stop(self):
-        """Stop and hold by the electrical brake. May be called at any time, any number of times.
+        """Stop and hold by the electrical brake. May be called at any time, as often as one likes.
 
-        Raises MotorFault if it failed.
+        Raises:
+            MotorFault: The motor does not obey.
         """
         raise NotImplementedError
 
     def find(self):
-        """Find a motor that failed again, braked, its angle going on from where it was.
+        """Find a motor that failed, and brake it; its angle goes on from where it was.
 
-        Nothing if it is well. Raises MotorFault.
+        Nothing happens if the motor is well. A motor that cannot be lost need not have this method
+        of its own.
 
-        What cannot be lost need not have this method of its own.
+        Raises:
+            MotorFault: The motor is not there.
         """
 
 
 class Battery:
     """Where the motors' power comes from.
 
-    Below warn_v (V) it should be charged, below stop_v it no longer can drive the robot.
+    Attributes:
+        warn_v: Below this voltage the battery should be charged, V.
+        stop_v: Below this voltage it can no longer drive the robot, V.
     """
 
     warn_v = stop_v = 0.0
 
     def voltage_v(self):
-        """The battery's voltage in V at this moment, or None if it cannot be told."""
+        """The battery's voltage at this moment.
+
+        Returns:
+            The voltage, V, or None if it cannot be read.
+        """
         raise NotImplementedError
 
 
@@ -64,18 +80,22 @@ class MonotonicClock:
     """Real time. A virtual clock has the same two methods and advances when it is waited for."""
 
     def now(self):
-        """Seconds on a clock that never jumps."""
+        """The time on a clock that never jumps.
+
+        Returns:
+            The time, s.
+        """
         return time.monotonic()
 
     def wait(self, deadline, serve):
-        """Return at `deadline` (s, of this clock), having called serve(timeout_s) in the time that was left, and once if none was."""
+        """Return at a time, and serve links until then.
+
+        Args:
+            deadline: The time on this clock, s.
+            serve: Called with the time that is left, s, at least once.
+        """
         while True:
             left = deadline - self.now()
             serve(max(0.0, left))
             if self.now() >= deadline:
                 return
-
-
-def sleep(timeout_s):
-    """A `serve` for a robot without any link: sleeps, to the resolution of select."""
-    select.select((), (), (), timeout_s)
