@@ -12,7 +12,8 @@ import sys
 
 from robot.motors import MonotonicClock
 from robot.program import choose_seed, parser, run
-from sim_motor.brick import SimBrick, VirtualClock
+from sim_motor.brick import SimBrick
+from sim_motor.clock import VirtualClock
 from sim_motor.mount import serve
 
 

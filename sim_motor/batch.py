@@ -21,7 +21,7 @@ from robot.kicks import DIRECTION_TICKS, NO_KICK, Kick
 from robot.loop import clamp_step
 from robot.params import Params
 from robot.safety import limit_duty
-from sim_motor.brick import lateness_s
+from sim_motor.clock import lateness_s
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
 from sim_motor.constants import SUBSTEP_S, Array, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE, advance, encoder, substep_at, substep_from

@@ -53,10 +53,6 @@ class Constants:
     wheel_radius: float
     spread: float
 
-    def bare(self) -> "Constants":
-        """The motor alone on a stiff supply: no wheel to speak of, no floor, no backlash."""
-        return replace(self, wheel_inertia=1e-9, rolling=0.0, backlash=0.0, source_resistance=0.0)
-
     def with_wheel(self, inertia: float) -> "Constants":
         """With a wheel of this moment of inertia (kg m2), which then carries nothing else."""
         return replace(self, wheel_inertia=inertia)
@@ -74,7 +70,7 @@ class Constants:
         )
 
     def specimens(self, count: int, rng: np.random.Generator) -> "tuple[Constants, ...]":
-        """So many specimens at random, within the published spread."""
+        """Specimens at random, within the published spread."""
         factors = rng.uniform(1 - self.spread, 1 + self.spread, (count, 2))
         return tuple(self.varied(*pair) for pair in factors.tolist())
 

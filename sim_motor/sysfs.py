@@ -14,8 +14,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from posixpath import dirname
 
-from sim_motor.brick import SimBrick, SimMotor
+from sim_motor.brick import SimBrick
 from sim_motor.tacho import BOTH, READ, Attribute, TachoMotor, failure, no_store, whole_number
+from sim_motor.wheel_motor import SimMotor
 
 PORTS = ("outB", "outC")
 SAMPLE_S = 0.002

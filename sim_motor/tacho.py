@@ -16,8 +16,8 @@ from functools import partial
 from math import floor, pi
 from typing import NamedTuple
 
-from sim_motor.brick import SimMotor
 from sim_motor.motor import ANGLE
+from sim_motor.wheel_motor import SimMotor
 
 LARGE = "lego-ev3-l-motor"
 MAX_SPEED = 1050

@@ -23,8 +23,10 @@ from robot.kicks import DIRECTION_TICKS, JUMP
 from robot.loop import Loop
 from robot.params import Params
 from sim_motor.batch import CHANNELS, run
-from sim_motor.brick import HIGHEST_BATTERY_V, LATE_MOST_S, SimMotor, VirtualClock
+from sim_motor.brick import HIGHEST_BATTERY_V
+from sim_motor.clock import LATE_MOST_S, VirtualClock
 from sim_motor.constants import SUBSTEP_S, Constants, load
+from sim_motor.wheel_motor import SimMotor
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,8 @@ import pytest
 
 from robot.loop import Loop
 from robot.motors import MonotonicClock, MotorFault
-from sim_motor.brick import LATE_MOST_S, SimBrick, VirtualClock
+from sim_motor.brick import SimBrick
+from sim_motor.clock import LATE_MOST_S, VirtualClock
 from sim_motor.constants import load
 
 

@@ -1,0 +1,186 @@
+"""A simulated motor behind robot's seam, on a clock that is virtual or real.
+
+Physics is lazy: whoever reads or writes first brings the motor up to the clock's present on its
+fixed grid of substeps. What comes out does not depend on how often anybody looks, and is the same
+in virtual and in real time.
+"""
+
+from collections import deque
+from math import inf, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from robot.motors import Motor, MotorFault
+from sim_motor.clock import Clock
+from sim_motor.constants import COAST, Constants
+from sim_motor.motor import (
+    ANGLE,
+    CURRENT,
+    GAP,
+    LAST_ANGLE,
+    advance_in_place,
+    encoder,
+    substep_at,
+    substep_from,
+)
+from sim_motor.world import Drive, World
+
+
+class Truth(NamedTuple):
+    """What no sensor measures of a wheel: forward positive, in rad, rad/s and A."""
+
+    motor_angle: float
+    motor_speed: float
+    current: float
+    wheel_angle: float
+    wheel_speed: float
+
+
+class SimMotor(Motor):
+    """One motor with its wheel, from rest.
+
+    Args:
+        name: What messages call it.
+        clock: Virtual or real.
+        constants: Those of its specimen.
+        battery_v: The battery's open-circuit voltage, V.
+        mount: -1 if it is mounted mirrored, else 1.
+        angle: The motor's angle, rad.
+        gap: How far the motor is ahead of its wheel, within the backlash, rad.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        clock: Clock,
+        constants: Constants,
+        battery_v: float,
+        mount: int = 1,
+        angle: float = 0.0,
+        gap: float = 0.0,
+    ) -> None:
+        if mount not in {1, -1}:
+            raise ValueError(f"a motor's mount is 1 or -1 (mirrored), not {mount!r}")
+        self.constants = constants
+        self.mount = mount
+        self.world: World | None = None
+        self.state = np.zeros(6)
+        self.state[[ANGLE, LAST_ANGLE]] = angle
+        self.state[GAP] = gap
+        self._name = name
+        self._clock = clock
+        self._epoch = clock.now()
+        self._battery_v = battery_v
+        self._tables = constants.tables()
+        self._scalars = constants.scalars()
+        self._counts = constants.encoder_counts
+        self._latency_s = constants.latency_s
+        self._substep = 0
+        self._duty = 0
+        self._load = 0.0
+        self._pending: deque[tuple[int, int]] = deque()  # (substep from which it acts, duty)
+        # No time passes in this; but compiled code is loaded here, where nobody waits for it, and
+        # not in the first tick.
+        advance_in_place(self.state, 0, 0, battery_v, 0.0, self._tables, self._scalars)
+        self.angle_rad()
+
+    def angle_rad(self) -> float:
+        self._catch_up()
+        return (
+            encoder(self._substep, self.state[ANGLE], self.state[LAST_ANGLE], self._counts)
+            * pi
+            / 180
+        )
+
+    def write_duty(self, duty_pct: int) -> None:
+        if (
+            not isinstance(duty_pct, int)
+            or isinstance(duty_pct, bool)
+            or not -100 <= duty_pct <= 100
+        ):
+            raise MotorFault(
+                f"{self._name} motor: the kernel refuses the duty cycle {duty_pct!r} (EINVAL) and"
+                " keeps the one before: write a whole number from -100 to 100"
+            )
+        self._command(duty_pct)
+
+    def stop(self) -> None:
+        self._command(0)
+
+    def coast(self) -> None:
+        """Let go: the motor turns freely, without current."""
+        self._command(COAST)
+
+    def set_load(self, torque: float) -> None:
+        """A torque (N m, forward positive) on the wheel from now on."""
+        self._catch_up()
+        self._load = self.mount * torque
+
+    def set_supply(self, open_v: float) -> None:
+        """Another open-circuit voltage (V) of the battery from now on."""
+        self._catch_up()
+        self._battery_v = open_v
+
+    def truth(self) -> Truth:
+        """The wheel's state now."""
+        self._catch_up()
+        angle, _, speed, current, gap, wheel_speed = (
+            self.mount * value for value in self.state.tolist()
+        )
+        return Truth(angle, speed, current, angle - gap, wheel_speed)
+
+    def draw_a(self) -> float:
+        """The current (A) that the motor draws from the battery now.
+
+        Negative while it feeds back.
+        """
+        self._catch_up()
+        return 0.0 if self._duty == COAST else float(self.state[CURRENT]) * self._duty / 100
+
+    def drive(self) -> Drive:
+        """What drives the motor now, in its own sense of turning.
+
+        Returns:
+            The duty cycle, % or COAST; the battery's voltage, V; and the load on its wheel, N m.
+        """
+        return self._duty, self._battery_v, self._load
+
+    def next_turn(self) -> float:
+        """The substep from which the next duty acts; inf if none waits."""
+        return self._pending[0][0] if self._pending else inf
+
+    def reach(self, substep: int) -> None:
+        """Note that the world has brought the state to a substep, and obey the duties due by then."""
+        self._substep = substep
+        while self.next_turn() <= substep:
+            self._duty = self._pending.popleft()[1]
+
+    def _command(self, duty: int) -> None:
+        now = self._clock.now() - self._epoch
+        self._catch_up()
+        self._pending.append((max(substep_from(now + self._latency_s), self._substep), duty))
+
+    def _catch_up(self) -> None:
+        present = substep_at(self._clock.now() - self._epoch)
+        if self.world is not None:
+            self.world.catch_up(present)
+            return
+        while self._pending and self._pending[0][0] <= present:
+            begin, duty = self._pending.popleft()
+            self._advance(begin)
+            self._duty = duty
+        self._advance(present)
+
+    def _advance(self, substep: int) -> None:
+        if substep > self._substep:
+            advance_in_place(
+                self.state,
+                substep - self._substep,
+                self._duty,
+                self._battery_v,
+                self._load,
+                self._tables,
+                self._scalars,
+            )
+            self._substep = substep
