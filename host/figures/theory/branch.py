@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from host.figures.style import COLOURS, styled
+from host.figures.style import COLOURS, share_legend, styled
 from host.figures.theory.branch_panels import DASHED, draw_line, draw_turning
 from host.runs.contract import Findings
 from host.theory.studies import branch_tables as tables
@@ -88,14 +88,9 @@ def draw(rows: list[BranchRow], findings: Findings) -> Figure:
         draw_turning(turning, tables.turned_at(rows))
         for axes in (wide, near, swing, period, line, turning):
             axes.tick_params(labelsize=11)
-        handles = {
-            label: handle
-            for axes in (wide, near, swing)
-            for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-        }
-        figure.legend(
-            handles.values(),
-            handles.keys(),
+        share_legend(
+            figure,
+            (wide, near, swing),
             loc="outside lower center",
             ncols=4,
             fontsize=11,

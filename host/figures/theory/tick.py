@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 from host.theory.studies.tick import RUNNING_K
 from host.theory.studies.tick_rows import (
@@ -88,12 +88,9 @@ def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
         for axes in (lines, growth, speed, latency):
             axes.title.set_fontsize(13)
             axes.margins(x=0.02)
-        handles: dict[str, Any] = {}
-        for axes in (lines, growth):
-            handles |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-        figure.legend(
-            handles.values(),
-            handles.keys(),
+        share_legend(
+            figure,
+            (lines, growth),
             loc="outside lower center",
             ncols=3,
             fontsize=11,

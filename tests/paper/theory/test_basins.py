@@ -37,6 +37,7 @@ from robot.controller import actual_positions, step_wheel
 from robot.kick_requests import parse
 from robot.kicks import MEMBRANE, PHASE, POSITION
 from robot.params import Params
+from tests.paper.theory.table import rows_of
 
 WHEEL = Wheel(k=8.0)
 OPTIONS = {"a": 4.0, "tau": 0.25, "k": 8.0, "f": 0.5, "I": 0.05, "points": 16}
@@ -288,11 +289,7 @@ def run():
         patch.setattr(basins, "PHASES", 30)
         patch.setattr(basins, "CHECKED", 40)
         setting = Setting(1, OPTIONS)
-        rows = [
-            {**cell, **row}
-            for cell in basins.cells(OPTIONS)
-            for row in basins.simulate(cell, setting)
-        ]
+        rows = rows_of(basins, setting)
         return rows, basins.report(rows, setting)
 
 

@@ -9,19 +9,11 @@ from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.theory.studies import branch
 from host.theory.studies.registry import TABLE
+from tests.paper.theory.table import rows_of
 
 
 def setting(**options):
     return Setting(1, complete_options("branch", TABLE["branch"], options))
-
-
-def rows_of(own, parts=None):
-    cells = [cell for cell in branch.cells(own.options) if parts is None or cell["part"] in parts]
-    return [
-        {**cell, **row}
-        for cell in cells
-        for row in json.loads(json.dumps(branch.simulate(cell, own), allow_nan=False))
-    ]
 
 
 PAPER = setting(to=3.0)
@@ -29,7 +21,7 @@ PAPER = setting(to=3.0)
 
 @pytest.fixture(scope="module")
 def rows():
-    return rows_of(PAPER, ("fixpoints", "merging", "FB", "LLM", "dry", "turning"))
+    return rows_of(branch, PAPER, ("fixpoints", "merging", "FB", "LLM", "dry", "turning"))
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +143,7 @@ def test_the_figure_shows_stable_and_unstable_parts(found, rows):
 
 def test_nothing_to_find_is_said_and_drawn():
     low = setting(to=1.0)
-    rows = rows_of(low, ("fixpoints", "merging", "FB", "LLM", "turning"))
+    rows = rows_of(branch, low, ("fixpoints", "merging", "FB", "LLM", "turning"))
     found = branch.report(rows, low)
     assert found.numbers["k_merge"] is None
     assert found.numbers["special_points"] == []
@@ -162,8 +154,8 @@ def test_nothing_to_find_is_said_and_drawn():
 
 def test_another_constant_is_followed_to_the_same_merging():
     along = setting(along="f", k=1.77731184665692)
-    rows = rows_of(along, ("merging",))
-    (point,) = branch.report([*rows, *rows_of(along, ("turning",))], along).numbers[
+    rows = rows_of(branch, along, ("merging",))
+    (point,) = branch.report([*rows, *rows_of(branch, along, ("turning",))], along).numbers[
         "special_points"
     ]
     assert (point["type"], point["f"], point["k"]) == (

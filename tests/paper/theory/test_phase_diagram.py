@@ -11,6 +11,7 @@ from host.theory.analysis.phases import STILL
 from host.theory.model.turning import begun_rolling, constant_velocity, turning
 from host.theory.model.wheel import OMEGA, Wheel
 from host.theory.studies import phase_diagram
+from tests.paper.theory.table import rows_of
 
 OPTIONS = {
     "a": 4.0,
@@ -29,11 +30,7 @@ OPTIONS = {
 def diagram():
     """A coarse diagram's rows, and what they come to."""
     setting = Setting(1, OPTIONS)
-    rows = [
-        {**cell, **row}
-        for cell in phase_diagram.cells(OPTIONS)
-        for row in phase_diagram.simulate(cell, setting)
-    ]
+    rows = rows_of(phase_diagram, setting)
     return rows, phase_diagram.report(rows, setting)
 
 
@@ -128,11 +125,7 @@ def test_a_cell_done_twice_is_the_same_bits():
 def test_degenerate_wheels_have_a_diagram_without_gaps(change):
     options = {**OPTIONS, **change, "points": 4, "start": "rest", "transient": 2.0, "seconds": 2.0}
     setting = Setting(1, options)
-    rows = [
-        {**cell, **row}
-        for cell in phase_diagram.cells(options)
-        for row in phase_diagram.simulate(cell, setting)
-    ]
+    rows = rows_of(phase_diagram, setting)
     found = phase_diagram.report(rows, setting)
     assert np.isfinite([row["omega_std"] for row in rows]).all()
     assert sum(found.numbers["shares"]["plane, rest"].values()) == pytest.approx(1.0)

@@ -25,6 +25,7 @@ from robot.controller import target_position
 from robot.kick_requests import parse
 from robot.kicks import PHASE, POSITION
 from robot.params import Params
+from tests.paper.theory.table import rows_of
 
 WHEEL = Wheel()
 OPTIONS = {"a": 4.0, "tau": 0.25, "f": 0.5, "I": 0.05, "tick": 0.03, "latency": 0.0}
@@ -277,11 +278,7 @@ def short_run():
         patch.setattr(study, "FOLLOWED", 100.0)
         patch.setattr(study, "PATIENCE", 300_000)
         setting = Setting(1, OPTIONS)
-        rows = [
-            {**cell, **row}
-            for cell in study.cells(OPTIONS)
-            for row in study.simulate(cell, setting)
-        ]
+        rows = rows_of(study, setting)
         return rows, study.report(rows, setting)
 
 
