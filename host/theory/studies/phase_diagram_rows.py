@@ -15,8 +15,10 @@ PANELS: tuple[Panel, ...] = ("plane", "inset")
 class BandCell(TypedDict):
     """A band of a panel.
 
-    panel: the diagram or its inset. first, end: the band holds the time constants number `first` to
-    `end` - 1 of the panel's axis.
+    Attributes:
+        panel: the diagram or its inset.
+        first: number of the band's first time constant on the panel's axis.
+        end: number of its last time constant, plus 1.
     """
 
     panel: Panel
@@ -33,9 +35,14 @@ class AccuracyCell(TypedDict):
 class Point(TypedDict):
     """A wheel at one point of the diagram.
 
-    way: the direction of the sweep in k, or the start if k is not swept. tau: time constant, s.
-    k: spring constant. omega_mean, omega_std: mean and standard deviation of omega, rad/s. chaotic:
-    1 in phase C, else 0. phase: S, FB, LLM or C.
+    Attributes:
+        way: direction of the sweep in k, or the start if k is not swept.
+        tau: time constant of the membrane potentials (s).
+        k: spring constant.
+        omega_mean: mean of omega (rad/s).
+        omega_std: standard deviation of omega (rad/s).
+        chaotic: 1 in phase C, else 0.
+        phase: S, FB, LLM or C.
     """
 
     way: Way
@@ -50,8 +57,13 @@ class Point(TypedDict):
 class StepCheck(TypedDict):
     """A wheel anywhere in the diagram, from rest.
 
-    tau, k, omega_mean, omega_std: as of a Point. mean_off_by, std_off_by: by how much |omega_mean|
-    and omega_std change with finer steps, rad/s.
+    Attributes:
+        tau: time constant of the membrane potentials (s).
+        k: spring constant.
+        omega_mean: mean of omega (rad/s).
+        omega_std: standard deviation of omega (rad/s).
+        mean_off_by: by how much |omega_mean| changes with finer steps (rad/s).
+        std_off_by: by how much omega_std changes with finer steps (rad/s).
     """
 
     tau: float

@@ -14,7 +14,8 @@ LinePart = Literal["unstable manifold", "limit cycle", "stable manifold", "traje
 class PortraitCell(TypedDict):
     """One portrait.
 
-    k: spring constant of the rods.
+    Attributes:
+        k: spring constant of the rods.
     """
 
     k: float
@@ -23,8 +24,11 @@ class PortraitCell(TypedDict):
 class Point(TypedDict):
     """A point of a portrait.
 
-    part: what the point is part of; a fixpoint has its kind here. line: which line of that part, or
-    which fixpoint. phi: angle, rad. omega: angular velocity, rad/s.
+    Attributes:
+        part: the line that the point belongs to; for a fixpoint its kind.
+        line: number of the line among those of its part, or of the fixpoint.
+        phi: angle (rad).
+        omega: angular velocity (rad/s).
     """
 
     part: Kind | LinePart
@@ -36,10 +40,12 @@ class Point(TypedDict):
 class Summary(TypedDict):
     """What a portrait shows.
 
-    kind: what the wheel does in the end: S it rests, FB it rolls forth and back, LLM it rolls one
-    way, C it is chaotic. fastest: the greatest speed shown, rad/s. manifold_off_by: by how much
-    (rad) the unstable manifolds change with half the step. crosses: whether the forward one passes
-    the next saddle.
+    Attributes:
+        kind: what the wheel does in the end: S it rests, FB it rolls forth and back, LLM it rolls
+            one way, C it is chaotic.
+        fastest: greatest speed shown (rad/s).
+        manifold_off_by: by how much the unstable manifolds change with half the step (rad).
+        crosses: whether the forward one passes the next saddle.
     """
 
     part: Literal["found"]
