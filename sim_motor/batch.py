@@ -7,8 +7,6 @@ arithmetic, same latency. It stands alone, which the motor's model allows (see s
 Only a link, a lease and a fault have no place here.
 """
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from math import isnan, nan, pi
 
@@ -23,7 +21,7 @@ from robot.params import Params
 from robot.safety import limit_duty
 from sim_motor.clock import lateness_s
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
-from sim_motor.constants import SUBSTEP_S, Array, Constants, load
+from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
 from sim_motor.motor import ANGLE, LAST_ANGLE, advance, encoder, substep_at, substep_from
 from sim_motor.settling import settling_s
 
@@ -153,16 +151,13 @@ def run(
         times=times,
         records=np.empty((min(record, wheels), ticks, len(CHANNELS))),
     )
-    # numpy multiplies matrices on several cores at once.
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        tables = np.stack(list(pool.map(Constants.tables, motors)))
     _run_all(
         start.states,
         start.potentials,
         times,
         (params.a, params.tau_s, params.k, params.rods, params.max_duty_pct, params.tick_s),
         NO_KICK if kick is None else kick.numbers(0),
-        tables,
+        tables(motors),
         np.stack([motor.scalars() for motor in motors]),
         (
             motors[0].battery_v if battery_v is None else battery_v,

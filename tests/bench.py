@@ -1,4 +1,4 @@
-"""`make bench`: how fast the things are that have to be fast, as ratios and rates measured in one run on this machine."""
+"""`make bench`: how fast the things are that have to be fast, as ratios and rates of one run."""
 
 import multiprocessing
 import os
@@ -14,6 +14,7 @@ from math import cos, exp, sin, tanh
 from pathlib import Path
 
 from tests.bench_io import reads_and_writes
+from tests.bench_starts import starts
 from tests.bench_stop import stop_beside_a_blocked_request
 
 REAL_TIME_S = 30.0
@@ -24,6 +25,7 @@ def main() -> None:
     """Print everything."""
     print(f"Python {sys.version.split()[0]}, {os.cpu_count()} cores", flush=True)
     for measure in (
+        starts,
         reads_and_writes,
         controller_tick,
         virtual_time,
@@ -145,7 +147,7 @@ def batch() -> None:
 
 
 def bodies() -> None:
-    """Cars in MuJoCo with the controllers of all wheels in the loop, against MuJoCo's bare stepping of the same motion."""
+    """Cars in MuJoCo with the controllers of all wheels, against MuJoCo alone in the same motion."""
     import mujoco
     import numpy as np
     from mujoco.rollout import rollout
@@ -198,7 +200,7 @@ def bodies() -> None:
 
 
 def real_time() -> None:
-    """How late ticks begin on the desk robot, idle and with all cores loaded, and how long a kick takes to its tick."""
+    """How late ticks begin on the desk robot, and how long a kick takes to its tick."""
     for title, busy in (("idle", 0), ("all cores loaded", os.cpu_count() or 1)):
         burners = [multiprocessing.Process(target=_burn, daemon=True) for _ in range(busy)]
         for burner in burners:
@@ -235,7 +237,7 @@ def _burn() -> None:
 
 
 def _desk_robot():
-    """(how late each tick began, command-to-tick times of kicks, missed deadlines), all times in s."""
+    """How late each tick began, how long each kick took to its tick, and missed deadlines, in s."""
     from host.client.robot import connect
     from host.logs.log import Log
 
@@ -269,7 +271,7 @@ def _desk_robot():
 
 
 def _kick_latency(robot, log) -> float:
-    """From sending a kick to the begin of its tick, by the robot's clock, which is this machine's."""
+    """From sending a kick to the begin of its tick, s, by this machine's clock."""
     asked = time.monotonic()
     clock_s = robot.status()["clock_s"]
     sent = time.monotonic()

@@ -124,6 +124,8 @@ class Study:
         paths = [self.folder / f"{name}.{kind}" for kind in ("png", "svg")]
         for path in paths:
             figure.savefig(path)
+            # The layout takes as long as the drawing, and is the same for both.
+            figure.set_layout_engine("none")
         return paths
 
     def write(self, name: str, text: str) -> Path:
