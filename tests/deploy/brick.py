@@ -84,7 +84,11 @@ class Brick:
         )
         for path in (self.home, self.etc, self.bin):
             path.mkdir(parents=True)
-        self.port = free_port()
+        # Kept for sshd, and from everybody else who asks for any port that is free.
+        self._port = socket.socket()
+        self._port.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._port.bind(("127.0.0.1", 0))
+        self.port = self._port.getsockname()[1]
         self.replace("python3", f'exec {sys.executable} "$@"')
         self.ssh_config = folder / "ssh_config"
         for key in ("host_key", "user_key"):
@@ -116,10 +120,10 @@ class Brick:
 
     def boot(self):
         """Start sshd, and wait until it answers."""
-        # A sshd of root insists on this empty folder, which only its own service would make.
-        self._made_folder = os.getuid() == 0 and not PRIVILEGE_SEPARATION.exists()
-        if self._made_folder:
-            PRIVILEGE_SEPARATION.mkdir(mode=0o755)
+        # A sshd of root insists on this empty folder, which its service makes. It stays, for other
+        # tests may run beside this one.
+        if os.getuid() == 0:
+            PRIVILEGE_SEPARATION.mkdir(mode=0o755, exist_ok=True)
         write(self.folder / "sshd_config", SSHD_CONFIG.format(port=self.port, folder=self.folder))
         with (self.folder / "sshd.log").open("w") as log:
             self._sshd = subprocess.Popen(
@@ -142,8 +146,7 @@ class Brick:
                 os.kill(pid, signal.SIGKILL)
         self._sshd.terminate()
         self._sshd.wait(10)
-        if self._made_folder:
-            PRIVILEGE_SEPARATION.rmdir()
+        self._port.close()
 
     def processes(self):
         """Numbers of all processes that live in the brick's home."""
