@@ -14,7 +14,7 @@ PEERS := build/peers
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak mutants lock clean
+.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak stress mutants lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
@@ -28,8 +28,10 @@ demo: $(STAMP) ## watch the simulated robot being kicked
 reproduce: $(STAMP) ## measure all of the paper's claims on the simulated robot and on the model, and write a report
 	$(BIN)/kickctl reproduce
 
+# On all cores. Tests in real time run after the others, so that nothing that computes slows them down.
 test: $(STAMP) ## run the tests
-	$(BIN)/python -m pytest tests --ignore=tests/lint
+	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal -m 'not realtime and not brick'
+	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist loadgroup -m 'realtime and not brick'
 
 # Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
 test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 or newer
@@ -64,6 +66,9 @@ faults: $(STAMP) ## try every fault twenty times on live motors, and print how l
 
 soak: $(STAMP) ## kick, cut and break a robot for an hour (SOAK_S=... seconds), and see whether it loses a tick or grows
 	$(BIN)/python -m tests.soak
+
+stress: $(STAMP) ## run the tests that need real time 20 times (STRESS_RUNS=...) while all cores are busy
+	$(BIN)/python -m tests.stress
 
 mutants: $(MUTANTS)/.complete ## see whether the tests notice every small change to robot/safety.py
 	$(MUTANTS)/bin/python -m tests.mutants

@@ -1,4 +1,8 @@
-"""What holds for every test: hypothesis counts no time, and nothing outside of the test's own folder is touched."""
+"""What holds for every test.
+
+Hypothesis counts no time, nothing outside of the test's own folder is touched, and tests that need
+real time are marked.
+"""
 
 import os
 
@@ -20,6 +24,31 @@ settings.load_profile("house")
 # and with everything else.
 CACHES = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
 os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
+
+# Tests with real sockets, sshd, mounted files, processes of their own or the watchdog. `make test`
+# runs them after all others, so that nothing that computes slows them down.
+REAL_TIME = (
+    "tests/api/test_listeners.py",
+    "tests/cli/test_desk.py",
+    "tests/contract/test_motor.py",
+    "tests/deploy/",
+    "tests/link/test_serial.py",
+    "tests/link/test_stop.py",
+    "tests/sysfs/",
+    "tests/unit/robot/test_watchdog.py",
+)
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "realtime: runs in real time, see REAL_TIME in conftest.py")
+
+
+# Before `-m` chooses by the marks.
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if item.nodeid.startswith(REAL_TIME):
+            item.add_marker("realtime")
 
 
 @pytest.fixture(autouse=True)

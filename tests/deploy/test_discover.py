@@ -13,6 +13,9 @@ from host.errors import NoLink, WrongUse
 from host.link import discovery
 from host.link.discovery import BRICK, ROBOT, USER, look_around
 
+# One at a time: each hears what the others announce.
+pytestmark = pytest.mark.xdist_group("multicast")
+
 LOOPBACK = ["127.0.0.1"]
 # Questions go out at once, after 1 s and after 3 s, and a record that was told within the last
 # second is not told again.
