@@ -23,3 +23,12 @@ def brick(tmp_path):
 @pytest.fixture
 def checkout(tmp_path, brick):
     return Checkout(tmp_path, brick)
+
+
+@pytest.fixture
+def deployed(brick, checkout):
+    """A brick with a release that runs, and a checkout with another."""
+    status, output = checkout.deploy()
+    assert status == 0, output
+    checkout.change()
+    return brick

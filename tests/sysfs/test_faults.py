@@ -7,8 +7,8 @@ from random import Random
 
 import pytest
 
-from tests.fault_rows import ROWS
-from tests.faults import Result, attempt, line
+from tests.faults.rows import ROWS
+from tests.faults.tries import Result, attempt, line
 from tests.live import impatient
 from tests.sysfs.mount import mounted, needs_mount
 
