@@ -8,7 +8,7 @@ from robot.button import BackButton
 from robot.lights import Lights
 from robot.motors import MonotonicClock, MotorFault
 from robot.notify import Notify
-from robot.program import choose_seed, parser, run
+from robot.program import choose_seed, parser, run, say
 from robot.watchdog import Watchdog
 
 # The host is another machine, and needs the token to command the robot.
@@ -28,11 +28,16 @@ def _claim(root):
     """
     claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
     try:
-        claim.bind("\0kickctl " + os.path.realpath(root)[-90:])
+        claim.bind(b"\0kickctl " + os.fsencode(os.path.realpath(root))[-90:])
     except OSError:
         claim.close()
         return None
     return claim
+
+
+def _give_up(message):
+    say(message, sys.stderr)
+    return 2
 
 
 def main():
@@ -62,25 +67,27 @@ def main():
         arguments.error("both motors cannot be at {}".format(options.left))
     try:
         from robot.ev3 import Ev3Battery, Ev3Motor
-    except ImportError as error:
-        print(
+    except Exception as error:  # noqa: BLE001 - so says python-ev3dev2 of an unknown machine
+        return _give_up(
             "{}: this program needs ev3dev's python3-ev3dev2; on another machine start a simulated"
-            " robot: python3 -m sim_motor".format(error),
-            file=sys.stderr,
+            " robot: python3 -m sim_motor".format(error)
         )
-        return 2
     # Before anything touches the motors. The watchdog, a fork of this process, keeps the claim for
     # as long as it may have to stop them.
     alone = _claim(options.sysfs)
     if alone is None:
-        print(
+        return _give_up(
             "another robot's program drives the motors under {}: end that one first".format(
                 options.sysfs
-            ),
-            file=sys.stderr,
+            )
         )
-        return 2
-    watchdog = Watchdog(options.sysfs)
+    try:
+        watchdog = Watchdog(options.sysfs)
+    except OSError as error:
+        return _give_up(
+            "the process that would watch the program cannot start ({}): end other programs, or"
+            " restart the brick".format(error.strerror)
+        )
     motors = (
         Ev3Motor("left", options.left, options.sysfs),
         Ev3Motor("right", options.right, options.sysfs),
@@ -91,11 +98,11 @@ def main():
         except MotorFault as fault:
             # The first tick turns this into a fault. The host sees it, and can clear it when the
             # motor is there.
-            print(fault, file=sys.stderr)
+            say(str(fault), sys.stderr)
     try:
         battery = Ev3Battery(options.sysfs)
     except OSError as error:
-        print("the battery cannot be watched: {}".format(error), file=sys.stderr)
+        say("the battery cannot be watched: {}".format(error), sys.stderr)
         battery = None
     panels = (watchdog, Lights(options.sysfs), BackButton(), Notify(os.environ))
     try:

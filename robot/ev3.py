@@ -37,8 +37,24 @@ _CAUSES = {
         "the kernel refuses a value (EINVAL)",
         "clear the fault; if it comes back, report it",
     ),
+    errno.ENODATA: (
+        "the kernel gives no number for it",
+        "clear the fault; if it comes back, check its cable",
+    ),
 }
+# Errors that may pass: the motor gets the command to stop again.
+_PASSING = (errno.EIO, errno.ENODATA)
 _NOT_READY = "wait a second and try again; if it stays so, add this user to the group ev3dev"
+
+
+def _number(error):
+    """The kernel's number for an error, None if it has none.
+
+    python-ev3dev2 turns EINVAL into a ValueError, and an empty file gives a ValueError too.
+    """
+    if isinstance(error, OSError):
+        return error.errno
+    return getattr(error.__cause__, "errno", errno.ENODATA)
 
 
 class Ev3Motor(Motor):
@@ -64,7 +80,7 @@ class Ev3Motor(Motor):
             self._angle = angle = (
                 self._zero + int(os.pread(self._position, READ_BYTES, 0)) * RAD_PER_DEGREE
             )
-        except OSError as error:
+        except (OSError, ValueError) as error:
             raise self._fault(error) from error
         return angle
 
@@ -91,8 +107,8 @@ class Ev3Motor(Motor):
                 os.pwrite(self._command, b"stop", 0)
                 if int(os.pread(self._applied, READ_BYTES, 0)) == 0:
                     return
-            except OSError as error:
-                if not left or error.errno != errno.EIO:
+            except (OSError, ValueError) as error:
+                if not left or _number(error) not in _PASSING:
                     raise self._fault(error) from error
         self._lost = "{}: it does not stop: pull its cable out".format(self._label)
         raise MotorFault(self._lost)
@@ -106,7 +122,7 @@ class Ev3Motor(Motor):
             self._set_up()
             self._lost = ""
             self.stop()
-        except (OSError, ev3dev2.DeviceNotFound) as error:
+        except (OSError, ValueError, ev3dev2.DeviceNotFound) as error:
             self._close()
             self._lost = self._missing(error)
             # The error's traceback would keep the library's frames, and their open files, until
@@ -150,10 +166,11 @@ class Ev3Motor(Motor):
 
     def _fault(self, error):
         """The MotorFault for an error of the kernel. From now on the motor counts as lost."""
+        number = _number(error)
         # EBADF: nothing is open, and the reason is known already.
-        if error.errno != errno.EBADF:
+        if number != errno.EBADF:
             cause, remedy = _CAUSES.get(
-                error.errno, ("the kernel reports: {}".format(error.strerror), "clear the fault")
+                number, ("the kernel reports: {}".format(error), "clear the fault")
             )
             self._lost = "{}: {}: {}".format(self._label, cause, remedy)
         return MotorFault(self._lost)
@@ -161,9 +178,10 @@ class Ev3Motor(Motor):
     def _missing(self, error):
         # python-ev3dev2 has one error for a motor that is not there or disappears just now, and one
         # without a number for files that udev has not opened to this user yet.
-        if isinstance(error, ev3dev2.DeviceNotFound) or error.errno in (errno.ENODEV, errno.ENOENT):
+        number = errno.ENODEV if isinstance(error, ev3dev2.DeviceNotFound) else _number(error)
+        if number in (errno.ENODEV, errno.ENOENT):
             return "{}: there is none: {}".format(self._label, _CABLE)
-        if error.errno in (None, errno.EACCES, errno.EPERM):
+        if number in (None, errno.EACCES, errno.EPERM):
             return "{}: it is there, but this user may not command it yet: {}".format(
                 self._label, _NOT_READY
             )
@@ -182,8 +200,8 @@ class Ev3Battery(Battery):
 
     def __init__(self, root=SYSFS):
         folder = os.path.join(root, "power_supply", "lego-ev3-battery")
-        with open(os.path.join(folder, "technology")) as file:
-            lithium = file.read().strip() == "Li-ion"
+        with open(os.path.join(folder, "technology"), "rb") as file:
+            lithium = file.read().strip() == b"Li-ion"
         self.warn_v = LITHIUM_WARN_V if lithium else OTHER_WARN_V
         self.stop_v = LITHIUM_STOP_V if lithium else OTHER_STOP_V
         self._voltage = os.open(os.path.join(folder, "voltage_now"), os.O_RDONLY)
@@ -191,5 +209,5 @@ class Ev3Battery(Battery):
     def voltage_v(self):
         try:
             return int(os.pread(self._voltage, READ_BYTES, 0)) / 1e6
-        except OSError:
+        except (OSError, ValueError):  # ValueError: the file is empty
             return None

@@ -11,9 +11,10 @@ import sys
 import time
 
 from robot import __version__, sources, token, wire
-from robot.program import PORT
+from robot.program import PORT, say
 
-HOST = "127.0.0.1"
+# Where a program that listens on every address of its machine is asked.
+LOOPBACK = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104
 # Patience with a slow machine that has just started the program.
 PATIENCE_S = 20.0
 # A program that ticks does so within this time.
@@ -26,14 +27,27 @@ class Unwell(Exception):
     """The program does not work as it should; the message says why."""
 
 
+# What no answer, or the answer of something that is no robot, may raise.
+_TROUBLE = (
+    OSError,
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    TypeError,
+    ValueError,
+    wire.BadMessage,
+    Unwell,
+)
+
+
 class Questioner(object):
-    """A conversation with the robot that listens on a port of this machine.
+    """A conversation with the robot that listens at an address of this machine.
 
     Raises OSError, BadMessage and Unwell.
     """
 
-    def __init__(self, port):
-        self._link = socket.create_connection((HOST, port), timeout=PATIENCE_S)
+    def __init__(self, host, port):
+        self._link = socket.create_connection((LOOPBACK.get(host, host), port), timeout=PATIENCE_S)
         self._decoder = wire.Decoder()
 
     def ask(self, kind, **message):
@@ -72,13 +86,13 @@ def _compare(what, its, ours):
         raise Unwell("it runs {} {}, not {}: another program answers".format(what, its, ours))
 
 
-def examine(port, secret):
-    """The status of the robot at a port.
+def examine(host, port, secret):
+    """The status of the robot that listens on a host and port, as its arguments name them.
 
     It has shown that it runs the release and the sources of this folder, has the token, and ticks.
     Raises OSError, BadMessage and Unwell.
     """
-    robot = Questioner(port)
+    robot = Questioner(host, port)
     try:
         nonce = os.urandom(wire.NONCE_BYTES)
         text = binascii.hexlify(nonce).decode("ascii")
@@ -111,21 +125,32 @@ def main():
     arguments = argparse.ArgumentParser(
         description="Asks the robot's program on this machine whether it is well."
     )
+    arguments.add_argument("--host", default="127.0.0.1")
     arguments.add_argument("--port", type=int, default=PORT)
     arguments.add_argument("--token", default=token.default_path())
     options = arguments.parse_args()
     try:
-        status = examine(options.port, token.load(options.token))
-    except (OSError, ValueError, KeyError, wire.BadMessage, token.TokenError, Unwell) as error:
-        print("the robot's program at port {} is not well: {}".format(options.port, error))
-        return UNWELL
-    battery = (
-        "" if status["battery_v"] is None else ", battery {:.1f} V".format(status["battery_v"])
-    )
+        words, fault = _describe(examine(options.host, options.port, token.load(options.token)))
+    except token.TokenError as error:
+        return _report("the robot's program cannot be asked: {}".format(error), UNWELL)
+    except _TROUBLE as error:
+        what = "the robot's program at port {} is not well: {}".format(options.port, error)
+        return _report(what, UNWELL)
+    return _report(words, IN_FAULT if fault else WELL)
+
+
+def _describe(status):
+    """(a robot's status in words, whether it is in fault)."""
+    volts = status["battery_v"]
+    battery = "" if volts is None else ", battery {:.1f} V".format(volts)
     fault = status["state"] == "fault"
     remedy = "; mend that, then `kickctl clear` and `kickctl start`" if fault else ""
-    print("{} ({}){}{}".format(status["state"], status["reason"], battery, remedy))
-    return IN_FAULT if fault else WELL
+    return "{} ({}){}{}".format(status["state"], status["reason"], battery, remedy), fault
+
+
+def _report(text, status):
+    say(text, sys.stdout)
+    return status
 
 
 if __name__ == "__main__":

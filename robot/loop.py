@@ -379,9 +379,14 @@ class Loop(object):
     def _stop_motors(self):
         """Stop every motor, also if another one does not obey."""
         self._kick = None
+        broken = None
         for side in self._sides:
             side.wheel.rest()
             try:
                 side.motor.stop()
             except MotorFault as fault:
                 self._fail(str(fault))
+            except Exception as error:  # noqa: BLE001 - the other motor has to stop too
+                broken = error
+        if broken is not None:
+            raise broken

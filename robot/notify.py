@@ -16,7 +16,8 @@ class Notify(object):
         # '@' stands for the zero byte of a name that is in no file system.
         self._address = "\0" + address[1:] if address.startswith("@") else address
         self._link = None
-        self._period_s = int(environment.get("WATCHDOG_USEC", "0")) / 2e6
+        microseconds = environment.get("WATCHDOG_USEC", "")
+        self._period_s = int(microseconds) / 2e6 if microseconds.isdigit() else 0.0
         self._due_s = None
         if address:
             self._link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)

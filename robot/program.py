@@ -11,10 +11,32 @@ import sys
 from robot import token
 from robot.errors import Refused
 from robot.loop import Loop
+from robot.serial_line import BAUD, SerialLine
 from robot.server import Server
 
 PORT = 5425  # KICK on a telephone's keys
-BAUD = 115200
+
+
+def say(text, stream):
+    """Print a line, if it can be printed.
+
+    A full card, a closed terminal or a letter that it does not know must not end the program.
+
+    Args:
+        text: The line.
+        stream: sys.stdout or sys.stderr; None if the program has none.
+    """
+    if stream is None:
+        return
+    encoding = stream.encoding or "ascii"
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
+    except (OSError, ValueError):
+        pass
+
+
+def _warn(text):
+    say(text, sys.stderr)
 
 
 def parser(description, host):
@@ -97,8 +119,10 @@ def run(options, motors, battery, clock, seed, panels=()):
             loop.set_params(settings)
         server = Server(loop, secret)
         port = _listen(server, options)
+        if options.serial is not None:
+            server.attach(SerialLine(options.serial, _warn).open)
         if new:
-            print("wrote a new token: {}".format(options.token), file=sys.stderr)
+            _warn("wrote a new token: {}".format(options.token))
         try:
             _serve(options, loop, server, port, panels)
         finally:
@@ -137,7 +161,8 @@ def _listen(server, options):
     """The port on which the server listens now. Raises Refused."""
     try:
         return server.listen(options.host, options.port)
-    except (OSError, OverflowError) as error:
+    # Of what is no machine's name, Python says UnicodeError, which is a ValueError, or TypeError.
+    except (OSError, OverflowError, TypeError, ValueError) as error:
         raise Refused(
             "usage",
             "cannot listen on {}:{}: {}".format(options.host, options.port, error),
@@ -147,8 +172,6 @@ def _listen(server, options):
 
 def _serve(options, loop, server, port, panels):
     """Run the loop and serve hosts until a signal ends it."""
-    if options.serial:
-        server.attach(_line_opener(options.serial))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, frame: setattr(loop, "done", True))
     if not options.idle:
@@ -156,8 +179,9 @@ def _serve(options, loop, server, port, panels):
             loop.start()
         except Refused as refusal:
             loop.stop(refusal.message)
-            print("not started: {}".format(refusal.message), file=sys.stderr)
-    print("READY tcp://{}:{}".format(options.host, port), flush=True)
+            _warn("not started: {}".format(refusal.message))
+    host = "[{}]".format(options.host) if ":" in options.host else options.host
+    say("READY tcp://{}:{}".format(host, port), sys.stdout)
 
     def serve(timeout_s):
         for panel in panels:
@@ -172,23 +196,13 @@ def _run(loop, server, serve):
     try:
         loop.run(serve)
     except Exception as error:
-        loop.fail("the robot's program failed ({!r}); start it again".format(error))
-        server.serve(0.0)
+        try:
+            loop.fail("the robot's program failed ({!r}); start it again".format(error))
+        finally:
+            server.serve(0.0)
         raise
 
 
 def _give_up(message):
-    print(message, file=sys.stderr)
+    _warn(message)
     return 2
-
-
-def _line_opener(argument):
-    """A function that opens the serial line 'DEVICE' or 'DEVICE@BAUD'. It raises OSError."""
-    device, _, baud = argument.partition("@")
-
-    def open_line():
-        import serial
-
-        return serial.Serial(device, int(baud or BAUD), timeout=0, write_timeout=0)
-
-    return open_line

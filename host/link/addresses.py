@@ -13,7 +13,8 @@ from host.errors import WrongUse
 from host.link.settings import parse_setting
 from host.link.transport import Link, SerialLink, TcpLink
 from host.util.interrupts import uninterrupted
-from robot.program import BAUD, PORT
+from robot.program import PORT
+from robot.serial_line import BAUD
 
 SIM = "sim://"
 

@@ -12,10 +12,11 @@ from types import SimpleNamespace
 from host.errors import NoLink
 from host.link.sim import SimLink
 from host.link.transport import TcpLink
-from robot import program, wire
+from robot import wire
 from robot.loop import Loop
 from robot.motors import MonotonicClock
 from robot.record import unpack
+from robot.serial_line import SerialLine
 from robot.server import Server
 from tests.rig import TOKEN, Clock, Motor
 
@@ -161,7 +162,7 @@ class Machine:
         self.loop = Loop((Motor(turn=0.1), Motor(turn=0.1)), None, MonotonicClock(), 1)
         self.loop.set_params({"tick_s": TICK_S})
         self.server = Server(self.loop, token)
-        self.server.attach(program._line_opener(str(path)))
+        self.server.attach(SerialLine(str(path), lambda text: None).open)
         self.loop.start()
         self._thread = threading.Thread(target=self.loop.run, args=(self.server.serve,))
         self._thread.start()

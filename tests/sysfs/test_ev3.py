@@ -13,6 +13,7 @@ import pytest
 from robot.ev3 import Ev3Battery, Ev3Motor
 from robot.motors import MotorFault
 from tests.sysfs.mount import inject, motor_folder, mounted, needs_mount
+from tests.sysfs.plain import plain_motor
 
 # The library leaves the files that it opened to the garbage collector.
 pytestmark = [
@@ -30,23 +31,8 @@ def collected():
 
 @pytest.fixture
 def plain(tmp_path):
-    """A motor at outB whose files are plain ones: they take everything and do nothing."""
-    folder = tmp_path / "tacho-motor" / "motor0"
-    folder.mkdir(parents=True)
-    values = {
-        "address": "ev3-ports:outB",
-        "driver_name": "lego-ev3-l-motor",
-        "count_per_rot": "360",
-        "max_speed": "1050",
-    }
-    values |= dict.fromkeys(
-        ("command", "stop_action", "polarity", "position", "duty_cycle", "duty_cycle_sp"), "0"
-    )
-    values |= dict.fromkeys(("ramp_up_sp", "ramp_down_sp"), "9")
-    for name, value in values.items():
-        (folder / name).write_text(value + "\n", encoding="ascii")
-        (folder / name).chmod(0o664)
-    return folder
+    """A motor at outB whose files are plain ones."""
+    return plain_motor(tmp_path)
 
 
 @pytest.fixture(scope="module")

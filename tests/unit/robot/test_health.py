@@ -17,6 +17,8 @@ from robot.server import Server
 from robot.sources import of_robot
 from tests.rig import TOKEN, Motor
 
+HOST = "127.0.0.1"
+
 
 @contextmanager
 def robot(ticks=True):
@@ -76,7 +78,7 @@ def hello(**changes):
 
 def test_a_robot_that_ticks_is_well():
     with robot() as (port, _):
-        assert examine(port, TOKEN)["state"] == "idle"
+        assert examine(HOST, port, TOKEN)["state"] == "idle"
 
 
 def test_a_robot_in_fault_has_a_program_that_is_well(capsys, monkeypatch, tmp_path):
@@ -98,18 +100,18 @@ def test_a_program_that_takes_connections_and_says_nothing_hangs(monkeypatch):
     monkeypatch.setattr(health, "PATIENCE_S", 0.1)
     words = r"it hangs: it has not answered for 0\.1 s"
     with listening() as listener, pytest.raises(Unwell, match=words):
-        examine(listener.getsockname()[1], TOKEN)
+        examine(HOST, listener.getsockname()[1], TOKEN)
 
 
 def test_one_that_does_not_tick_is_not(monkeypatch):
     monkeypatch.setattr(health, "LONGEST_TICK_S", 0.1)
     with robot(ticks=False) as (port, _), pytest.raises(Unwell, match="does not tick"):
-        examine(port, TOKEN)
+        examine(HOST, port, TOKEN)
 
 
 def test_one_with_another_token_is_not():
     with robot() as (port, _), pytest.raises(Unwell, match="the token is not this robot's"):
-        examine(port, bytes(wire.TOKEN_BYTES))
+        examine(HOST, port, bytes(wire.TOKEN_BYTES))
 
 
 @pytest.mark.parametrize(
@@ -125,7 +127,7 @@ def test_one_with_another_token_is_not():
 )
 def test_what_is_no_robot_of_this_release_is_not(answers, words):
     with program(answers) as port, pytest.raises(Unwell, match=words):
-        examine(port, TOKEN)
+        examine(HOST, port, TOKEN)
 
 
 @pytest.mark.parametrize(
