@@ -1,10 +1,8 @@
-"""Thousands of wheels at once.
-
-The controller and the motor compiled into one loop, spread over all cores.
+"""Thousands of wheels at once: controller and motor compiled into one loop, on all cores.
 
 Each wheel runs as in robot.loop on a SimBrick, from the same functions: same readings, same
-arithmetic, same latency. It stands alone, which the motor's model allows (see sim_motor.motor).
-Only a link, a lease and a fault have no place here.
+arithmetic, same latency. It runs alone, which the motor's model allows (see sim_motor.constants).
+Here are no links, leases and faults.
 """
 
 from dataclasses import dataclass
@@ -38,12 +36,17 @@ _clamp_step = compiled(clamp_step)
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
 ParamNumbers = tuple[float, float, float, int, float, float]
 KickNumbers = tuple[int, int, int, int, bool, float]
-PHASE_SHIFT = nan  # a kick's value that stands for: the shift that turns this wheel around
+PHASE_SHIFT = nan  # as a kick's value: the shift that reverses this wheel
 
 
 @dataclass(frozen=True)
 class Start:
-    """Where wheels begin: states as in sim_motor.motor (wheels, 6), and membrane potentials (wheels, 2)."""
+    """Where wheels begin.
+
+    Attributes:
+        states: As in sim_motor.motor, (wheels, 6).
+        potentials: Membrane potentials, (wheels, 2).
+    """
 
     states: Array
     potentials: Array
@@ -51,13 +54,16 @@ class Start:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of the wheels.
+    """What the wheels did.
 
-    before, after: each wheel's direction when the kick began, and in the end. settled_s: how long
-    after the kick's first tick the wheel had settled, as sim_motor.settling has it, NaN if it has
-    not. kick_phi_rad: the angle that the kick's first tick read, NaN without a kick. times: when
-    ticks began, (1 or wheels, ticks). records: CHANNELS of each tick of the wheels that were
-    recorded, (wheels, ticks, channels).
+    Attributes:
+        before: Each wheel's direction when the kick began, (wheels,).
+        after: Each wheel's direction in the end, (wheels,).
+        settled_s: When the wheel had settled after the kick's first tick, s, as sim_motor.settling
+            defines it; NaN if it had not, (wheels,).
+        kick_phi_rad: The angle in the kick's first tick, rad; NaN without a kick, (wheels,).
+        times: When ticks began, s, (1 or wheels, ticks).
+        records: CHANNELS in each tick of the recorded wheels, (wheels, ticks, channels).
     """
 
     before: NDArray[np.int64]
@@ -74,7 +80,10 @@ class Result:
 
 
 def random_start(wheels: int, rng: np.random.Generator, constants: Constants) -> Start:
-    """Wheels at rest at a random phase, anywhere in their play, with potentials that remember a random angle."""
+    """Wheels at rest at random phases and anywhere in their play.
+
+    Their potentials are those that belong to another random angle.
+    """
     states = np.zeros((wheels, 6))
     states[:, 0] = states[:, 1] = rng.uniform(0, 2 * pi, wheels)
     states[:, 4] = rng.uniform(-constants.backlash / 2, constants.backlash / 2, wheels)
@@ -83,9 +92,9 @@ def random_start(wheels: int, rng: np.random.Generator, constants: Constants) ->
 
 
 def random_times(rows: int, ticks: int, tick_s: float, rng: np.random.Generator) -> Array:
-    """When each tick begins (s), (rows, ticks): late as on the brick. For ticks of 20 ms or more.
+    """When each tick begins, s, (rows, ticks): late as on the brick.
 
-    Shorter ones would be missed.
+    For ticks of 20 ms or more; shorter ones would be missed.
     """
     return np.arange(ticks) * tick_s + lateness_s(rng.standard_normal((rows, ticks)))
 
@@ -105,13 +114,22 @@ def run(
 ) -> Result:
     """Run wheels for some ticks, each by itself.
 
-    `kick` acts on all of them with its value for the left wheel.
+    Args:
+        wheels: How many.
+        ticks: For how many control periods.
+        seed: Random seed of what is not given.
+        params: The robot's parameters; the defaults if None.
+        kick: A kick that acts on all wheels, with its value for the left wheel, or None. A pulse
+            of the shift with the value PHASE_SHIFT gets for each wheel the sign that reverses it.
+        motors: Wheel number i has motors[i % len(motors)]; the default motor if None. Battery and
+            latency are those of the first.
+        battery_v: Open-circuit voltage, V.
+        start: Where the wheels begin; random if None.
+        times: When ticks begin, s, (1 or wheels, ticks); random if None.
+        record: How many wheels to record, from the first.
 
-    A pulse of the shift with the value PHASE_SHIFT takes for each wheel the sign that turns it
-    around. motors: wheel number i is motors[i % len(motors)], the default motor if None; battery
-    and latency are the first one's. start, times (1 or `wheels`, ticks): random from `seed` if
-    None. record: how many wheels to record, from the first. Raises ValueError if the arguments do
-    not fit each other.
+    Raises:
+        ValueError: The arguments do not fit each other.
     """
     params = params or Params()
     motors = motors or (load(),)
@@ -175,7 +193,7 @@ def run(
 
 @jit
 def _travel(phis: Array, tick: int) -> float:
-    """How far (rad) a wheel came in the DIRECTION_TICKS ticks up to this one."""
+    """How far (rad) a wheel went in the DIRECTION_TICKS ticks up to this one."""
     travel: float = phis[tick] - phis[tick - DIRECTION_TICKS]
     return travel
 
@@ -194,7 +212,11 @@ def _run_wheel(
     hardware: tuple[float, float, float],
     record: Array,
 ) -> None:
-    """Run one wheel, note its angle (rad) in each tick in `phis`, and its CHANNELS in `record` unless that is empty."""
+    """Run one wheel.
+
+    Its angle (rad) in each tick goes into `phis`, and its CHANNELS into `record` unless that is
+    empty.
+    """
     a_set, tau_set, k_set, rods, max_duty_pct, tick_s = params
     action, begin, ticks, pulse, smooth, value = kick
     battery_v, latency_s, counts = hardware

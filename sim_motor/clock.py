@@ -10,12 +10,12 @@ from sim_motor.constants import Array
 
 # How late a tick begins: a record of 496 ticks of 30 ms on a brick (Python 3.5, balancing robot)
 # lies on a shifted log-normal with these three numbers: median 0.66 ms, 90 % below 2.1, 99 % below
-# 5.7, the longest 13.6. Nothing is claimed beyond the longest.
+# 5.7, the longest 13.6. None is later than the longest.
 LATE_LEAST_S, LATE_MEDIAN_S, LATE_SPREAD, LATE_MOST_S = 0.00017, 0.00049, 1.06, 0.0136
 
 
 def lateness_s(normal: Array) -> Array:
-    """How late ticks begin, from standard normal numbers."""
+    """How late ticks begin, s, from standard normal numbers."""
     return np.minimum(LATE_LEAST_S + LATE_MEDIAN_S * np.exp(LATE_SPREAD * normal), LATE_MOST_S)
 
 
@@ -29,7 +29,9 @@ class Clock(Protocol):
 class VirtualClock:
     """Time that passes only when it is waited for.
 
-    Ticks begin late as on the brick, drawn from `seed`; punctually if not `jitter`.
+    Args:
+        seed: Random seed of how late ticks begin.
+        jitter: Whether ticks begin late as on the brick, else punctually.
     """
 
     def __init__(self, seed: int, *, jitter: bool = True) -> None:

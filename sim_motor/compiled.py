@@ -21,9 +21,9 @@ prange = numba.prange
 def njit(function: F, **options: Any) -> F:
     """Compile a function on its first call with numba's options, and keep the result on disk.
 
-    Everything that the function takes from around it must stand above it: helpers, constants.
-    Functions given as arguments have another identity in each process, so that a function that
-    takes them is compiled in each; hand them in by `bound` instead.
+    Everything that the function takes from around it must stand above it: helpers, constants. A
+    function that is given compiled functions as arguments is compiled again in each process, as
+    numba cannot recognise them there; it should take them from around it instead.
     """
     digest = function_digest(function, options)
     # Machine code from several processes is linked by name, so that a name must mean one code.

@@ -57,13 +57,13 @@ class Constants:
     spread: float
 
     def with_wheel(self, inertia: float) -> "Constants":
-        """With a wheel of this moment of inertia (kg m2), which then carries nothing else."""
+        """With a wheel of this moment of inertia (kg m2), and nothing else to carry."""
         return replace(self, wheel_inertia=inertia)
 
     def varied(self, strength: float, friction: float) -> "Constants":
         """Another specimen: torque and friction by these factors.
 
-        What starts to move at which duty stays as it is.
+        It starts to move at the same duty.
         """
         return replace(
             self,
@@ -164,17 +164,20 @@ def data() -> dict[str, dict[str, list[Any]]]:
 
 
 def names() -> list[str]:
-    """The published motors there are; the first is the default."""
+    """The published motors; the first is the default."""
     return [table for table in data() if table != "robot"]
 
 
 def load(name: str = "pybricks") -> Constants:
-    """The motor `name` in the robot.
+    """A motor in the robot.
 
-    A published one, or a user's own, whose values of the robot come before the published ones.
+    Args:
+        name: A published motor's, or that of one in the user's own file. What that says of the
+            robot counts more than what is published.
 
-    Raises ValueError, in words, for a name that nobody has, and for an own one that is not as it
-    should be.
+    Raises:
+        ValueError: There is no motor of this name, or the user's file is wrong. The message says
+            what to do.
     """
     published = data()
     entry = published[name] if name in names() else own_motor(name, published)

@@ -12,13 +12,18 @@ def with_mathematics(
     mathematics: Mapping[str, Any],
     finish: Callable[[Any], Any] = lambda function: function,
 ) -> F:
-    """A plain Python function, with the functions it calls, in another mathematics.
+    """A plain Python function in another mathematics, with the functions that it calls.
 
     Args:
-        function: Stays as it is. The new one runs the same code, with other globals: every Python
-            function that it names is replaced by that function with_mathematics.
-        mathematics: What stands for a name, as numpy's cosine for "cos".
-        finish: What is done to each new function, as compiling it.
+        function: Stays as it is. The new function runs the same code, but every name in
+            `mathematics` has the value given there, and every Python function that it calls is
+            treated the same way.
+        mathematics: Values by name, for example numpy's cosine for "cos".
+        finish: Called with each new function; what it returns takes that function's place. It may
+            compile it.
+
+    Returns:
+        What `finish` returns for the new function.
     """
     source = cast(FunctionType, function)
     names = source.__globals__

@@ -1,9 +1,9 @@
-"""The EV3 large motor, its gear train's play and the wheel with its share of the robot, as compiled scalar functions.
+"""The EV3 large motor, its gear train's play and its wheel, as compiled scalar functions.
 
 Electrical: L di/dt = V - R i - Ke w. Mechanical: J dw/dt = Kt i - B w - friction - contact. Between
 events this is linear, so every substep of 1 ms applies the exact solution for constant V and
-torque, tabulated for each duty cycle. Events are resolved to the substep: a stop, a break-away, a
-separation or an impact of the two sides of the backlash.
+torque, tabulated for each duty cycle (sim_motor.constants). Events are resolved to the substep: a
+stop, a break-away, a separation or an impact of the two sides of the backlash.
 
 - The gearing sticks with a static torque above its kinetic (Coulomb) friction; the wheel's rolling
   friction is the same at rest.
@@ -31,7 +31,7 @@ TORQUE_CONSTANT, VISCOUS, KINETIC, STATIC, ROLLING, WHEEL_INERTIA, WHEEL_SHARE, 
 
 @inlined_jit
 def substep_at(time_s: float) -> int:
-    """The number of whole substeps up to a time; one that is missing by rounding counts."""
+    """The number of whole substeps up to a time; rounding errors of the time do not count."""
     return floor(time_s * SUBSTEPS_PER_S + 1e-6)
 
 
@@ -45,7 +45,7 @@ def substep_from(time_s: float) -> int:
 def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int:
     """The tacho position in degrees that the kernel reports.
 
-    Counts of the latest sample, halved with C's truncation.
+    It is half of the latest sample's counts, rounded towards zero as in C.
     """
     sampled = angle if substep % SAMPLE_SUBSTEPS == 0 else last_angle
     raw = floor(sampled * counts / (2 * pi))
@@ -56,7 +56,7 @@ def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int
 def _sense(speed: float, torque: float, static: float) -> float:
     """The sign of the motion that friction opposes.
 
-    0 for what is at rest and stays so under this torque.
+    It is 0 for what rests and stays at rest under this torque.
     """
     if speed != 0.0:
         return copysign(1.0, speed)
@@ -99,7 +99,7 @@ def _turn_motor(
 def _turn_wheel(sense: float, speed: float, acceleration: float) -> tuple[float, float]:
     """(turned angle, speed) of a wheel within the play after a substep.
 
-    Friction cannot reverse it either.
+    Friction cannot reverse it: it stops instead.
     """
     new_speed = speed + SUBSTEP_S * acceleration
     if new_speed * sense > 0.0:
@@ -122,10 +122,26 @@ def advance(
     tables: Array,
     c: Array,
 ) -> State:
-    """The state of one wheel after some substeps at a constant duty (% or COAST), battery voltage and load torque (N m) on the wheel.
+    """The state of one wheel after some substeps.
 
-    tables, c: of the wheel's Constants. A touching pair at rest starts at the gearing's static plus
-    the rolling friction.
+    A touching pair at rest starts at the gearing's static plus the rolling friction.
+
+    Args:
+        substeps: How many.
+        duty: Duty cycle in all of them, % or COAST.
+        battery_v: Open-circuit voltage of the battery, V.
+        load: Torque on the wheel, N m.
+        angle: The motor's angle, rad.
+        last_angle: Its angle one substep ago, rad.
+        speed: Its speed, rad/s.
+        current: Its current, A.
+        gap: How far the motor is ahead of the wheel, rad.
+        wheel_speed: The wheel's speed, rad/s.
+        tables: Constants.tables of the motor.
+        c: Constants.scalars of the motor.
+
+    Returns:
+        The last six before the tables, after the substeps.
     """
     volts = battery_v * duty / 100
     if duty == COAST:

@@ -1,8 +1,7 @@
 """The tree of sim_motor.sysfs as a file system (FUSE) in real time.
 
-`python -m sim_motor --sysfs MOUNTPOINT`.
-
-Whoever uses the mount must be another process: one that waits for itself hangs for ever.
+`python -m sim_motor --sysfs MOUNTPOINT`. Only another process may use the mount: one that waits for
+itself hangs for ever.
 """
 
 import errno
@@ -76,7 +75,11 @@ class _Calls:
 
 
 def serve(mountpoint: str, brick: SimBrick) -> int:
-    """Mount the brick's files and serve them until they are unmounted or the process is told to end. Returns the exit status."""
+    """Mount the brick's files and serve them, until somebody unmounts them or ends the process.
+
+    Returns:
+        The exit status.
+    """
     try:
         import mfusepy
     except (ImportError, OSError) as error:
@@ -92,8 +95,8 @@ def serve(mountpoint: str, brick: SimBrick) -> int:
         )
     tree = Tree(brick)
     tree.run_to(brick.clock.now())
-    # The kernel must ask anew each time: values, permissions and the files themselves change
-    # without its doing.
+    # The kernel must ask each time: values, permissions and the files themselves change
+    # by themselves.
     fresh = {"direct_io": True, "entry_timeout": 0, "attr_timeout": 0, "negative_timeout": 0}
     try:
         mfusepy.FUSE(

@@ -1,4 +1,7 @@
-"""A user's own motors: a file with tables as those of motors.toml, as the experiment `calibrate` writes them."""
+"""A user's own motors: a file with tables as in motors.toml.
+
+The experiment `calibrate` writes it.
+"""
 
 import os
 import tomllib
@@ -20,15 +23,23 @@ _MAY_BE_ZERO = {
 
 
 def own_file() -> Path:
-    """Where they are: $KICK_MOTORS, or a file under the user's configuration folder."""
+    """Its path: $KICK_MOTORS, or a file in the user's configuration folder."""
     folder = os.environ.get("XDG_CONFIG_HOME") or "~/.config"
     return Path(os.environ.get("KICK_MOTORS") or f"{folder}/kickctl/motors.toml").expanduser()
 
 
 def own_motor(name: str, published: dict[str, Entry]) -> Entry:
-    """The user's table `name`: all that published motors have, and whatever of the robot is another than the published one's.
+    """A table of the user's file.
 
-    Raises ValueError, in words.
+    Args:
+        name: The table's.
+        published: The tables of motors.toml.
+
+    Returns:
+        All that a published motor has, and what differs from the published robot.
+
+    Raises:
+        ValueError: There is no usable table of this name. The message says what to do.
     """
     path = own_file()
     known = [motor for motor in published if motor != "robot"]

@@ -1,7 +1,4 @@
-"""When a wheel has settled after a kick.
-
-One rule for logs and for the compiled batch, which compiles it unchanged.
-"""
+"""When a wheel has settled after a kick: one rule for logs and, compiled, for batches."""
 
 from collections.abc import Sequence
 from math import nan, pi
@@ -16,14 +13,20 @@ ROUNDING = 1e-9
 
 
 def settling_s(phi: Sequence[float], times: Sequence[float], begin_s: float) -> float:
-    """How long after begin_s, when a kick began, a wheel had settled.
+    """How long after a kick began a wheel had settled.
 
-    A time in s, NaN if it has not by the end of the data.
+    It has settled at the first tick from which on its speed, measured over five ticks around each,
+    stays within BAND of the final speed (or within what one count of the encoder makes over five
+    ticks) until the end, which must be WINDOW_S away. It has settled at once if it never left that
+    band.
 
-    phi (rad), times (s): one value a tick, some of them from before the kick. The wheel has settled
-    at the first tick from which on its speed, measured over five ticks around each, stays within
-    BAND of the final speed (or within what one count of the encoder makes over five ticks) until
-    the end, which must be WINDOW_S away; at once if it never left it.
+    Args:
+        phi: The wheel's angle, rad, one value a tick, some from before the kick.
+        times: When these ticks began, s.
+        begin_s: When the kick began, s.
+
+    Returns:
+        The time, s; NaN if it has not settled by the end of the data.
     """
     last = len(times) - 1
     if last < 2 * HALF_SPAN or times[last] - begin_s < WINDOW_S:

@@ -1,9 +1,8 @@
-"""The files below /sys/class that a brick's kernel shows, live.
+"""The files below /sys/class that a brick's kernel shows: two motors, the battery, the lights.
 
-Two motors with their physics, the battery, the lights.
-
-Time is handed in, so the same tree runs in virtual time and, by sim_motor.mount, in real time.
-Faults are injected by lines written to the file .faults, which lists them when it is read.
+The motors' physics is behind them. The caller says what time it is, so the same tree runs in
+virtual time and, by sim_motor.mount, in real time. Lines written to the file .faults make things
+fail; reading it lists the faults.
 """
 
 import errno
@@ -20,7 +19,7 @@ from sim_motor.wheel_motor import SimMotor
 
 PORTS = ("outB", "outC")
 SAMPLE_S = 0.002
-# After a longer time in which nobody looked, only this much of it is sampled.
+# If nobody looked for longer, only this much of the time is sampled.
 REMEMBERED_S = 1.0
 # How long the kernel takes to notice that a motor is gone, and that one is there; then udev, until
 # the group may write its files.
@@ -34,16 +33,18 @@ LIGHTS = tuple(
 )
 FAULTS = """\
 unplug PORT            pull the cable out of outB or outC
-replug PORT [SECONDS]  put it back; its files become writable so long after they appear (default 0.3)
-eio PORT [TIMES]       the next access to the motor's files, or so many of them, fails with EIO
+replug PORT [SECONDS]  put it back; its files appear, and are writable SECONDS later (default 0.3)
+eio PORT [TIMES]       the next access to the motor's files, or the next TIMES, fail with EIO
 battery VOLTS          another open-circuit voltage"""
 
 
 @dataclass
 class Device:
-    """A folder of files. `writable`: the group may write them already; `errors`.
+    """A folder of files.
 
-    How many more accesses fail with EIO.
+    Attributes:
+        writable: Whether the group may write them by now.
+        errors: How many more accesses fail with EIO.
     """
 
     attributes: dict[str, Attribute]
@@ -62,7 +63,7 @@ class Device:
 
 @dataclass
 class Port:
-    """A socket for a motor, the motor on its cable, and what the kernel has of it while the cable is in."""
+    """A socket for a motor, the motor on its cable, and what the kernel knows of it."""
 
     motor: SimMotor
     folder: str = ""
@@ -129,13 +130,16 @@ class Tree:
         return stat.S_IFREG | (attribute.mode if device.writable else attribute.mode & ~0o020)
 
     def names(self, path: str) -> list[str]:
-        """What is in a folder. Raises OSError."""
+        """What a folder contains. Raises OSError."""
         if path not in self._folders:
             raise failure(errno.ENOENT)
         return sorted(self._folders[path])
 
     def allow(self, path: str, wanted: int) -> None:
-        """Raises OSError unless the group may do all of what is wanted (os.R_OK, os.W_OK), whoever asks: on the brick it is no root."""
+        """Raises OSError unless the group may do all of what is wanted (os.R_OK, os.W_OK).
+
+        It does so for every user: on the brick the robot's user is not root.
+        """
         if wanted & ~(self.mode(path) >> 3 & 7):
             raise failure(errno.EACCES)
 
@@ -151,7 +155,7 @@ class Tree:
         del self._handles[handle]
 
     def read(self, handle: int, size: int, offset: int) -> bytes:
-        """A piece of the text, which is made anew whenever it is read from its beginning.
+        """A piece of the text. A read from its beginning makes the text again.
 
         Raises OSError.
         """
@@ -168,7 +172,7 @@ class Tree:
         opened.attribute.store(data.decode("ascii", "replace"))
 
     def _index(self) -> None:
-        """Find files and folders by path, after a device came or went."""
+        """Find files and folders by path again, as a device came or went."""
         self._files = {
             f"{folder}/{name}": (device, attribute)
             for folder, device in self._devices.items()

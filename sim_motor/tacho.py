@@ -1,10 +1,9 @@
-"""One motor as the kernel's tacho-motor class shows it.
+"""One motor as the kernel's tacho-motor class shows it: attributes as text, and commands.
 
-Attributes as text, commands, and a speed and a stall flag that come late.
-
-Follows the ev3dev kernel's tacho_motor_class.c and legoev3_motor.c as of 4.14.117-ev3dev-2.3.5-ev3.
-Runs that the kernel regulates (all commands but run-direct, stop and reset) are answered with
-EOPNOTSUPP, and `hold` only brakes: nothing here needs them.
+Speed and stall flag come late, as there. It follows the ev3dev kernel's tacho_motor_class.c and
+legoev3_motor.c as of 4.14.117-ev3dev-2.3.5-ev3. Commands for runs that the kernel regulates (all
+but run-direct, stop and reset) fail with EOPNOTSUPP, and `hold` only brakes: nothing here needs
+them.
 """
 
 import errno
@@ -84,9 +83,9 @@ def no_store(text: str) -> None:
 
 
 def whole_number(text: str, least: int, most: int) -> int:
-    """As the kernel's kstrtoint reads it, then within bounds. Raises OSError.
+    """A number as the kernel's kstrtoint reads it, within bounds.
 
-    EINVAL, or ERANGE beyond 32 bits.
+    Raises OSError: EINVAL, or ERANGE beyond 32 bits.
     """
     if not re.fullmatch(r"[+-]?[0-9]+\n?", text, re.ASCII):
         raise failure(errno.EINVAL)
@@ -101,7 +100,7 @@ def whole_number(text: str, least: int, most: int) -> int:
 class Tachometer:
     """The encoder as the brick's coprocessor keeps it.
 
-    A ring of counts with their times, and an entry each 50 ms without any.
+    It is a ring of counts with their times, with an entry every 50 ms if there is no count.
     """
 
     def __init__(self, now: float, angle: float, counts_per_turn: float) -> None:
@@ -113,7 +112,7 @@ class Tachometer:
 
     @property
     def degrees(self) -> int:
-        """Whole degrees, two counts each, cut off as C does."""
+        """Whole degrees, two counts each, rounded towards zero as in C."""
         return int(self._ring[-1][1] / 2)
 
     def sample(self, now: float, angle: float) -> None:
@@ -152,7 +151,7 @@ class Tachometer:
 class TachoMotor:
     """A large motor that was plugged into a port at the time `now` (s).
 
-    The time comes from outside, by `sample`.
+    `sample` brings it the time from outside.
     """
 
     def __init__(self, motor: SimMotor, port: str, now: float) -> None:
@@ -184,7 +183,7 @@ class TachoMotor:
             self._still_since = now
 
     def disconnect(self) -> None:
-        """The cable is out: the motor turns freely, and the position freezes until the kernel notices."""
+        """The cable is out: the motor turns freely. The position stays until the kernel notices."""
         self._connected = False
         self._motor.coast()
 

@@ -1,8 +1,8 @@
-"""A simulated motor behind robot's seam, on a clock that is virtual or real.
+"""A simulated motor behind the robot's motor seam, on a clock that is virtual or real.
 
-Physics is lazy: whoever reads or writes first brings the motor up to the clock's present on its
-fixed grid of substeps. What comes out does not depend on how often anybody looks, and is the same
-in virtual and in real time.
+Whoever reads or writes first brings the motor up to the clock's present, on a fixed grid of
+substeps. So the result does not depend on how often anybody looks, and is the same in virtual and
+in real time.
 """
 
 from collections import deque
@@ -151,7 +151,7 @@ class SimMotor(Motor):
         return self._pending[0][0] if self._pending else inf
 
     def reach(self, substep: int) -> None:
-        """Note that the world has brought the state to a substep, and obey the duties due by then."""
+        """The world has brought the state to this substep: obey the duties due by then."""
         self._substep = substep
         while self.next_turn() <= substep:
             self._duty = self._pending.popleft()[1]

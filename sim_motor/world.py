@@ -1,18 +1,15 @@
-"""The robot's body on a plane between two walls.
-
-What the floor and the walls do to it, and through the floor to its wheels.
+"""The robot's body on a plane between two walls: what floor and walls do to it and to its wheels.
 
 The plane's x axis runs from wall to wall. Everything is on the motors' grid of substeps: forces
 from where things are, then speeds, then places (symplectic Euler).
 
-- The body's moment of inertia is that of half its mass over each wheel, as in sim_motor.motor, and
-  each wheel bears half its weight.
-- A tyre's tread is a damped spring between rim and floor, forward and sideways, and holds with no
-  more than grip times its load
-  (Coulomb's law, regularised by the tread). Beyond that it slips.
+- The body's moment of inertia is that of half its mass over each wheel, as in sim_motor.constants,
+  and each wheel bears half its weight.
+- A tyre's tread is a damped spring between rim and floor, forward and sideways. It holds with no
+  more than grip times its load (Coulomb's law, regularised by the tread). Beyond that it slips.
 - A wall is a stiff, damped spring that pushes, and never pulls, at the four corners of the body:
-  the ends of both bumpers. As it
-  swings faster than anything else, the body takes PARTS steps in each substep.
+  the ends of both bumpers. As it swings faster than anything else, the body takes PARTS steps in
+  each substep.
 """
 
 from collections.abc import Sequence
@@ -36,12 +33,18 @@ PARTS = 8
 
 @dataclass(frozen=True)
 class Scene:
-    """A robot between two parallel walls; what is None is as in motors.toml.
+    """A robot between two parallel walls. What is None is as in motors.toml.
 
-    walls: the distance between them (m). grip: the tyres' friction coefficient. stiffness: of a
-    wall at one corner of the body (N/m). bumper: width (m) of the body's front and rear. apart: how
-    far (rad) the right wheel is ahead of the left one in the beginning, when the left one stands at
-    zero; the robot's own program resets both when it starts. Raises ValueError for what cannot be.
+    Attributes:
+        walls: The distance between them, m.
+        grip: The tyres' friction coefficient, 1.
+        stiffness: That of a wall at one corner of the body, N/m.
+        bumper: The width of the body's front and rear, m.
+        apart: How far the right wheel is ahead of the left one, rad, when the left one stands at
+            zero in the beginning. The robot's own program resets both when it starts.
+
+    Raises:
+        ValueError: A number is out of its LIMITS.
     """
 
     walls: float
@@ -84,7 +87,7 @@ class Place(NamedTuple):
 
 
 class Driven(Protocol):
-    """A motor whose wheel stands on the floor; what sim_motor.brick.SimMotor shows of itself."""
+    """A motor whose wheel stands on the floor, as sim_motor.wheel_motor.SimMotor."""
 
     state: Array
     mount: int
@@ -98,9 +101,10 @@ class Driven(Protocol):
 class World:
     """A body at rest halfway between the walls, on a left and a right wheel.
 
-    Heading (rad) 0 faces the wall at positive x.
-
-    The motors' constants must be those of a wheel alone, see `alone`.
+    Args:
+        scene: The walls.
+        motors: The left and the right one, with the constants of a wheel alone, see `alone`.
+        heading: Where the body points, rad; 0 faces the wall at positive x.
     """
 
     def __init__(self, scene: Scene, motors: Sequence[Driven], heading: float = 0.0) -> None:
@@ -127,7 +131,7 @@ class World:
         self._advance(0)  # compiled here, where nobody waits for it
 
     def catch_up(self, present: int) -> None:
-        """Bring body and wheels up to a substep, with every duty that takes its turn on the way."""
+        """Bring body and wheels up to a substep, with every duty that begins to act on the way."""
         present = max(present, self._substep)
         turn = -1
         while turn < present:
@@ -166,10 +170,17 @@ def alone(constants: Constants) -> Constants:
 def tyre_force(
     stretch: Array, slip: float, side_slip: float, most: float, tyre: TyreNumbers
 ) -> tuple[float, float]:
-    """(forward, sideways) force (N) of the floor on the body at a tyre, which holds with no more than `most`.
+    """The force of the floor on the body at a tyre.
 
-    stretch: how far the tread is stretched forward and sideways (m), brought forward by a substep.
-    slip, side_slip: speed (m/s) of the rim over the floor, backward and to the right.
+    Args:
+        stretch: How far the tread is stretched forward and sideways, m. A substep is added to it.
+        slip: Speed of the rim over the floor backward, m/s.
+        side_slip: The same to the right.
+        most: With no more than this does the tyre hold, N.
+        tyre: Stiffness and damping.
+
+    Returns:
+        (forward, sideways), N.
     """
     stiffness, damping = tyre
     forward = stiffness * (stretch[0] + SUBSTEP_S * slip) + damping * slip
@@ -186,7 +197,17 @@ def tyre_force(
 
 @jit
 def wall_push(place: Array, ahead: float, aside: float, walls: WallNumbers) -> tuple[float, float]:
-    """(force along x in N, torque on the body in N m) of both walls at one corner, so far ahead and to the left of the centre (m)."""
+    """What both walls do to one corner of the body.
+
+    Args:
+        place: As Place.
+        ahead: How far the corner is ahead of the centre, m.
+        aside: How far it is to the left, m.
+        walls: Half their distance, stiffness and damping.
+
+    Returns:
+        (force along x in N, torque on the body in N m).
+    """
     half_distance, stiffness, damping = walls
     x, _, heading, speed_x, _, turn = place
     arm_x = ahead * cos(heading) - aside * sin(heading)
@@ -210,9 +231,16 @@ def move_body(
     body: BodyNumbers,
     walls: WallNumbers,
 ) -> None:
-    """One substep of the body, in parts, under the floor's forces (N).
+    """One substep of the body, in parts, under the floor's forces.
 
-    Forward at the left and the right wheel, and to the left.
+    Args:
+        place: As Place; changed in place.
+        forward: Force at the left and at the right wheel, N.
+        sideways: Force to the left, N.
+        substep_s: How long the substep lasts, s.
+        parts: How many steps it is taken in.
+        body: Mass, track, wheel radius, grip, half length and half width.
+        walls: As in `wall_push`.
     """
     mass, track, _, _, half_length, half_width = body
     step_s = substep_s / parts

@@ -19,8 +19,8 @@ from sim_motor.mathematics import with_mathematics
 
 Array = NDArray[np.float64]
 
-# What a film shows around a kick (s of the robot's time), and how many times slower: a wheel turns
-# twice a second.
+# What a film shows around a kick (s of the robot's time), and how much slower: a wheel turns twice
+# a second.
 WINDOW_S, SLOWER = (-0.4, 1.0), 4.0
 # Far less than any tick, far more than what rounding does to a time.
 ROUNDING_S = 1e-9
@@ -30,13 +30,22 @@ _target: Any = with_mathematics(target_position, _NUMPY)
 
 
 class Course(NamedTuple):
-    """A wheel over time, (times,), or (2, times) with a row for each rod.
+    """A wheel over time.
 
-    t_s is 0 where the kick begins, and kick_s long it acts.
+    The angle is the log's, joined by straight lines from tick to tick. Neurons step once a tick;
+    between ticks potentials, targets and torque hold.
 
-    The angle is the log's, joined by straight lines from tick to tick. Neurons step once a tick,
-    and between ticks potentials, targets and torque hold. seen: the positions that the neurons are
-    shown by the kick; NaN where they see the actual ones.
+    Attributes:
+        t_s: Times, s, (times,); 0 where the kick begins.
+        phi: The wheel's angle, rad, (times,).
+        potentials: Membrane potentials, (2, times).
+        actual: The rods' actual positions, (2, times).
+        targets: Their target positions, (2, times).
+        seen: The positions that the kick shows to the neurons, (2, times); NaN where they see the
+            actual ones.
+        torque: M, (times,).
+        kick_s: How long the kick acts, s.
+        kick: Its mode.
     """
 
     t_s: Array
@@ -51,9 +60,16 @@ class Course(NamedTuple):
 
 
 def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) -> Course:
-    """The 'left' or 'right' wheel around the log's first kick, every step_s.
+    """A wheel around the log's first kick.
 
-    Raises NotDone if the log does not hold that.
+    Args:
+        log: The robot's.
+        side: 'left' or 'right'.
+        window_s: From when to when, s; 0 is where the kick begins.
+        step_s: The time between two values, s.
+
+    Raises:
+        NotDone: The log does not hold that.
     """
     kicks = log.kicks()
     if not kicks:

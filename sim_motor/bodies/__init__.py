@@ -1,4 +1,4 @@
-"""The paper's simulated bodies.
+"""The paper's simulated bodies in MuJoCo.
 
-Two-wheeled cars with one rod per wheel, and trains of them, in MuJoCo.
+They are two-wheeled cars with one rod per wheel, and trains of these cars.
 """

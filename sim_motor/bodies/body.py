@@ -1,7 +1,6 @@
 """A car or a train that runs.
 
-MuJoCo steps the bodies, and between two steps the controllers of all wheels step and set their
-motors.
+MuJoCo steps the bodies. Between two steps the controllers of all wheels step and set their motors.
 """
 
 from __future__ import annotations
@@ -31,16 +30,23 @@ _target_position: Any = with_mathematics(target_position, {"exp": np.exp})
 
 
 class Unstable(Exception):
-    """The simulation can no longer be followed. What was simulated until then is kept."""
+    """The simulation cannot be followed any more. What was simulated until then is kept."""
 
 
 class Body:
     """Cars in a scene, with their controllers.
 
-    model: as host or caller has compiled it from `sim_motor.bodies.model.compose`. phases (rad): of
-    the wheels at the start, (wheels,), with potentials 0, as in the authors' programs; random ones
-    if there are none, from `seed`. torque (N m): if given, it is each wheel's, for ever, instead of
-    the controllers'. Wheels are in the order of `wheels`: car0_left, car0_right, car1_left ...
+    Attributes:
+        wheels: The names of the wheels: car0_left, car0_right, car1_left and so on.
+
+    Args:
+        model: Compiled from `sim_motor.bodies.model.compose`.
+        preset: The cars' numbers.
+        seed: Random seed of the phases.
+        phases: Of the wheels at the start, rad, (wheels,), with potentials 0, as in the authors'
+            programs; random if None.
+        torque: If given, the torque of each wheel, N m, all the time, instead of the controllers'.
+        record_s: How often to write the state down, s.
     """
 
     def __init__(
@@ -54,7 +60,7 @@ class Body:
         record_s: float = RECORD_S,
     ) -> None:
         self.model, self.data, self.torque = model, mujoco.MjData(model), torque
-        # What cannot be followed shall not begin anew by itself.
+        # A simulation that cannot be followed must not restart by itself.
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         self.cars = sum(model.body(number).name.endswith("_car") for number in range(model.nbody))
         self.wheels = tuple(car_name(car) + side for car in range(self.cars) for side in SIDES)
@@ -120,9 +126,10 @@ class Body:
     def kick(self, kick: Kick) -> None:
         """Begin a kick at its `begin`, in steps, on the wheels whose names it has.
 
-        Raises ValueError if that is over or no wheel's.
-
         A wheel has one quenched kick at a time; the next takes its place.
+
+        Raises:
+            ValueError: The step is over, or there is no wheel of a name.
         """
         unknown = [name for name in kick.wheels if name not in self.wheels]
         if unknown or kick.begin < self.step:
@@ -135,10 +142,18 @@ class Body:
         self._kicks.sort(key=lambda one: one.begin)
 
     def run(self, seconds: float, watch: Callable[[float], None] = lambda time_s: None) -> None:
-        """Go on for so long; `watch` is told the time at each record. Raises Unstable."""
+        """Go on for some seconds.
+
+        Args:
+            seconds: For how long.
+            watch: Called with the time, s, at each record.
+
+        Raises:
+            Unstable: See there.
+        """
         model, data, own = self.model, self.data, self.neurons
         end, dt_s = self.step + round(seconds / model.opt.timestep), model.opt.timestep
-        # The same memory as long as the data live.
+        # Views of memory that stays the same.
         qpos, ctrl, pull, velocity, warnings = (
             data.qpos,
             data.ctrl,
@@ -200,8 +215,7 @@ class Body:
         self._notes.append((self.step, *(values.copy() for values in noted)))
 
 
-# Its words would go into a file of the folder where one happens to be; `run` looks for what is
-# wrong itself.
+# MuJoCo would write its warnings into a file of the present folder; `run` looks for them itself.
 mujoco.set_mju_user_warning(lambda words: None)
 _BAD = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -213,7 +227,7 @@ _BAD = (
 def _angles_of(turns: Array) -> Array:
     """Roll, pitch and yaw (rad), (..., 3), of unit quaternions (..., 4), the real part first.
 
-    Such a body is turned by yaw about z, then by pitch about its y, then by roll about its x.
+    They turn a body by yaw about z, then by pitch about its y, then by roll about its x.
     """
     w, x, y, z = np.moveaxis(turns, -1, 0)
     roll, yaw = (

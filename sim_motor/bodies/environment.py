@@ -1,6 +1,4 @@
-"""A train of cars as a Gymnasium environment.
-
-What it does is up to its wheels, and an agent can only kick them.
+"""A train of cars as a Gymnasium environment. Its wheels drive it, and an agent can only kick them.
 
 Importing this registers it: gymnasium.make("sim_motor.bodies.environment:kickctl/Train-v0", ...),
 from kickctl[gym].
@@ -30,7 +28,7 @@ Observation = NDArray[np.float32]
 Action = NDArray[np.int64]
 
 ID = "kickctl/Train-v0"
-# What a wheel can be told: nothing, or one of the paper's kicks. A phase shift takes the sign that
+# What an agent can do to a wheel: nothing, or one of the paper's kicks. A phase shift takes the sign that
 # reverses this wheel.
 KICKS = (None, MEMBRANE, POSITION, PHASE)
 # Observed speeds are parts of these (rad/s), which a body on its wheels does not reach.
@@ -47,7 +45,7 @@ class Train(gymnasium.Env[Observation, Action]):
 
     The names of presets and scenes are those of `compose`.
 
-    Action: (wheels,), for each wheel a number of KICKS. Every decision_s (s) one may be begun; a
+    Action: (wheels,), for each wheel a number of KICKS. Every decision_s (s) one may begin; a
     quenched one lasts kick_s (s), and takes the place of one that still acts on the wheel.
     Observation: proprioception, each in [-1, 1]: of the wheels sin and cos of the angle, omega /
     WHEEL_RAD_S, membrane potential; of the joints angle / its range, rate / JOINT_RAD_S; wheels and
@@ -60,7 +58,7 @@ class Train(gymnasium.Env[Observation, Action]):
     Options of reset: scene, and phases (rad), (wheels,), of the wheels at the start; all other
     chance is the seed's.
 
-    Raises ValueError of a preset, scene or time that there is not. To draw where there is no
+    Raises ValueError if there is no preset, scene or time as given. To draw where there is no
     display, set MUJOCO_GL to egl or osmesa before mujoco is imported.
     """
 
@@ -151,7 +149,8 @@ class Train(gymnasium.Env[Observation, Action]):
     def render(self) -> Any:
         """What it looks like now, (height, width, 3), if the render mode is rgb_array.
 
-        Raises RuntimeError if nothing here can draw.
+        Raises:
+            RuntimeError: Nothing here can draw.
         """
         if self.render_mode is None:
             return None

@@ -1,6 +1,6 @@
 """What a body did, from the rows that it wrote down.
 
-Direction, order, reversals, speed, and whether it got stuck or fell over.
+Direction, order, reversals and speed, and whether it got stuck or fell over.
 """
 
 from __future__ import annotations
@@ -60,9 +60,9 @@ def order(omega: Array) -> Array:
 
 
 def directions(moved: Course) -> NDArray[np.int64]:
-    """1 forward, -1 backward, at each time; what it was last while the wheels' mean is small.
+    """1 forward, -1 backward, at each time.
 
-    0 before it first was anything.
+    While the wheels' mean is small it stays as it was, and is 0 in the beginning.
     """
     mean = moved.omega.mean(axis=1)
     most = float(np.abs(mean).max())
@@ -75,7 +75,8 @@ def directions(moved: Course) -> NDArray[np.int64]:
 def reversals_s(moved: Course) -> list[float]:
     """When the body as a whole took the other direction.
 
-    At the wheels' mean omega's last change of sign before it was large again.
+    It did when the wheels' mean omega changed its sign for the last time before it was large
+    again.
     """
     signs, mean = directions(moved), moved.omega.mean(axis=1)
     found = []
@@ -94,13 +95,20 @@ def started_s(moved: Course) -> float | None:
 
 
 class Summary(TypedDict):
-    """A run in plain data; means are over the time after start-up.
+    """A run in plain data. Means are over the time after start-up.
 
-    time_s: how long it was (s). started_s: when start-up was over (s), or None. reversals: when it
-    reversed (s). mean_speed: of the centre (m/s). mean_abs_omega: of all wheels (rad/s).
-    peak_omega: the greatest that the mean |omega| of all wheels was (rad/s). order_parameter: its
-    mean. path_length: of the centre (m). end: where the centre is in the end (m). flipped: whether
-    a car fell over. stuck: whether it stayed where it was in the end.
+    Attributes:
+        time_s: How long it was, s.
+        started_s: When start-up was over, s, or None.
+        reversals: When it reversed, s.
+        mean_speed: That of the centre, m/s.
+        mean_abs_omega: That of all wheels, rad/s.
+        peak_omega: The greatest mean |omega| of all wheels, rad/s.
+        order_parameter: Its mean, 0 to 1.
+        path_length: That of the centre, m.
+        end: Where the centre is in the end, m.
+        flipped: Whether a car fell over.
+        stuck: Whether it stayed where it was in the end.
     """
 
     time_s: float
@@ -117,7 +125,7 @@ class Summary(TypedDict):
 
 
 def summary(columns: tuple[str, ...], rows: Array) -> Summary:
-    """Sum a run up, from the rows of a Body, (times, columns)."""
+    """Summarise a run, from the rows of a Body, (times, columns)."""
     moved = course(columns, rows)
     started = started_s(moved)
     after = moved.t_s >= (moved.t_s[-1] if started is None else started)

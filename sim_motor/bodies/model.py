@@ -1,4 +1,4 @@
-"""Puts cars into a scene: the train is made of car.xml, as many times as it has cars, and every number is a preset's."""
+"""Puts cars into a scene: a train has car.xml once for each car, with a preset's numbers."""
 
 from __future__ import annotations
 
@@ -44,9 +44,17 @@ def compose(
 ) -> mujoco.MjSpec:
     """A scene with a car, or with a train whose head is the first.
 
-    seed: of boxes and hills. angle (rad): of the scene's slopes. bouncy: whether its walls are
-    springy rather than dead. Raises ValueError of a file that is no MJCF, and of a scene or number
-    of cars that there is not.
+    Args:
+        preset: The numbers of every car.
+        scene: The scene's name, or a file.
+        cars: How many.
+        seed: Random seed of boxes and hills.
+        angle: That of the scene's slopes, rad.
+        bouncy: Whether its walls are springy rather than dead.
+        timestep: MuJoCo's, s.
+
+    Raises:
+        ValueError: A file is no MJCF, or there is no scene or number of cars as given.
     """
     if scene not in SCENES and not scene.endswith(".xml"):
         raise ValueError(
@@ -95,10 +103,8 @@ def _assemble(
 def slip_per_newton(model: mujoco.MjModel) -> float:
     """How fast a contact slides for each newton of friction, m/(s N).
 
-    The mean of all contacts of a body that stands.
-
-    In MuJoCo friction is a force f with a + R f = -b v, and in steady sliding, a = 0, so v = R f /
-    b.
+    It is the mean of all contacts of a standing body. In MuJoCo friction is a force f with
+    a + R f = -b v, and in steady sliding a = 0, so v = R f / b.
     """
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, _STANDING)
@@ -119,9 +125,9 @@ def _impratio(preset: Preset, cars: int) -> float:
 
 
 def _car(preset: Preset, *, alone: bool) -> mujoco.MjSpec:
-    """A car with the preset's numbers. Only one that is alone has casters.
+    """A car with the preset's numbers.
 
-    Those of a train hold each other up.
+    Only a car that is alone has casters; those of a train hold each other up.
     """
     spec = mujoco.MjSpec.from_file(str(HERE / "car.xml"))
     spec.body("car").pos = (0.0, 0.0, preset.wheel_radius)
@@ -181,7 +187,7 @@ def _couple(body: Any, prefix: str, preset: Preset) -> None:
 def _shape(
     spec: mujoco.MjSpec, scene: str, rng: np.random.Generator, angle: float | None, bouncy: bool
 ) -> float:
-    """What of a scene is not in its file. Returns how high (m) the ground is in the middle."""
+    """What is not in the scene's file. Returns how high (m) the ground is in the middle."""
     if angle is not None:
         if scene not in SLOPED:
             raise ValueError(
@@ -240,7 +246,7 @@ def _strew(spec: mujoco.MjSpec, rng: np.random.Generator) -> None:
 
 
 def _hills(points: int, half_m: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Heights from 0 to 1, (points, points), of random waves, flat around the middle, where cars begin."""
+    """Heights from 0 to 1, (points, points), of random waves, flat where cars begin."""
     x, y = np.meshgrid(np.linspace(-half_m, half_m, points), np.linspace(-half_m, half_m, points))
     height = np.zeros_like(x)
     for length, direction, phase in zip(

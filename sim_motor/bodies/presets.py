@@ -34,14 +34,14 @@ class Preset(NamedTuple):
     k: float
 
     def with_drag(self, drag: float) -> Preset:
-        """The same car with this drag, where the preset has it.
+        """The same car with this drag, in place of the preset's.
 
-        On the body in N s/m, or on the wheels in N s/rad.
+        It acts on the body, in N s/m, or on the wheels, in N s/rad.
         """
         return self._replace(body_drag=drag) if self.body_drag else self._replace(wheel_drag=drag)
 
     def checked(self) -> Preset:
-        """The same preset. Raises ValueError if a number of it is none that a car can have."""
+        """The same preset. Raises ValueError if a car cannot have one of its numbers."""
         for name, value in self._asdict().items():
             if not isfinite(value) or value < 0.0 or (value == 0.0 and name not in _MAY_BE_0):
                 raise ValueError(

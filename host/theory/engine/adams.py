@@ -1,4 +1,4 @@
-"""Adams's, Bashforth's and Moulton's multistep method with fixed steps, for a block of systems side by side in memory.
+"""The multistep method of Adams, Bashforth and Moulton with fixed steps, for many systems at once.
 
 It predicts with the polynomial through the latest ORDER rates, evaluates, corrects with the
 polynomial through these and the new one, and evaluates again (Hairer, Norsett, Wanner: Solving
@@ -22,7 +22,14 @@ ORDER = 10
 
 
 def weights(nodes: list[int]) -> tuple[float, ...]:
-    """What the integral over [0, 1] of the polynomial through values at these nodes takes of each value."""
+    """The weights of values at some nodes in an integral.
+
+    Args:
+        nodes: Where the values are.
+
+    Returns:
+        What the integral over [0, 1] of the polynomial through the values takes of each.
+    """
     found = []
     for own in nodes:
         # Lagrange's polynomial, from the constant term up.
@@ -58,7 +65,7 @@ def _predict(to: Array, states: Array, step_s: float, rates: Array, newest: int)
 
 @vectorised
 def _prepare(change_now: Array, step_s: float, rates: Array, newest: int) -> None:
-    """What the old rates contribute to the corrected step."""
+    """Add what the old rates contribute to the corrected step."""
     for i in range(len(change_now)):
         change, slot = 0.0, newest
         for weight in _CORRECTING:
@@ -79,8 +86,8 @@ def _correct(states: Array, lost: Array, step_s: float, new: Array) -> None:
 def stepping(rates_of: Any) -> Any:
     """The compiled function that takes `count` steps of step_s, as that of runge_kutta.
 
-    The first steps are of Runge and Kutta's method, for want of earlier rates. What rounding takes
-    from a step is given to the next, as there.
+    The first steps are by Runge and Kutta's method, as there are no earlier rates. What rounding
+    takes from a step is given to the next, as there.
     """
     first_steps = runge_kutta.stepping(rates_of)
 
@@ -89,7 +96,7 @@ def stepping(rates_of: Any) -> Any:
         # they are moved.
         rates = np.zeros((2 * ORDER, *states.shape))
         at, new, lost = np.empty_like(states), np.empty_like(states), np.zeros(states.size)
-        # The same memory without rows, for loops as long as can be.
+        # The same memory without rows, for the longest loops.
         flat_states, flat_at, flat_new = (
             states.reshape(states.size),
             at.reshape(states.size),

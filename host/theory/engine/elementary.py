@@ -1,7 +1,8 @@
-"""sin, cos and exp without branches and without calls, so that the compiler can do several wheels in one instruction.
+"""sin, cos and exp without branches and without calls.
 
-numba calls the C library for these, one value at a time. Here they are within two units in the last
-place, for |x| < 1e6 (sin, cos) and |x| < 700 (exp).
+With them the compiler can do several wheels in one instruction. numba calls the C library instead,
+one value at a time. Here they are within two units in the last place, for |x| < 1e6 (sin, cos) and
+|x| < 700 (exp).
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from sim_motor.compiled import njit
 # the last bit only.
 OPTIONS: Any = {"fastmath": {"contract", "arcp", "nsz"}, "error_model": "numpy"}
 
-# numba gives the functions so made another signature than they are written with.
+# numba gives intrinsics another signature than the one that they are written with.
 _intrinsic: Any = numba.extending.intrinsic
 
 # Added to a float, it rounds that to a whole number, which then stands in the sum's last bits.

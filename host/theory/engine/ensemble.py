@@ -62,10 +62,10 @@ def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
 
 @vectorised
 def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of all wheels, and the square of omega's difference from the seventh parameter, which makes the standard deviation.
+    """The rates of all wheels, and the square of omega's difference from the seventh parameter.
 
-    With omega itself the standard deviation of a wheel that rolls would be the small difference of
-    two large numbers.
+    The square makes the standard deviation. With omega itself that of a rolling wheel would be the
+    small difference of two large numbers.
     """
     wheel_rates(states, parameters, out)
     for i in range(states.shape[1]):
@@ -82,7 +82,7 @@ def _advancing(method: Any, rates_of: Any) -> Any:
     ) -> None:
         """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each.
 
-        Each core does a run of `order`.
+        Each core takes consecutive blocks of `order`.
         """
         for place in prange(len(order)):
             block = order[place]
@@ -95,12 +95,10 @@ def _advancing(method: Any, rates_of: Any) -> Any:
 
 
 def rate_per_s(parameters: Array) -> Array:
-    """How fast a wheel changes, (wheels,), by which its steps are chosen.
+    """How fast a wheel changes, 1/s, (wheels,); its steps are chosen by that. Eq. F_tan_ana.
 
-    The paper's rate of relaxation, and of turning. Eq. F_tan_ana.
-
-    The factors are such that wheels that come to rest and wheels that roll need the same number of
-    steps per unit for the same error.
+    It combines the paper's rates of relaxation and of turning, with factors so that wheels that
+    come to rest and wheels that roll need the same number of steps per unit for the same error.
     """
     a, tau_s, k, inertia, friction = parameters[:5]
     relaxing = 1.0 / tau_s + friction / inertia + np.sqrt(k * (1.0 + a / 2) / inertia)
@@ -110,7 +108,12 @@ def rate_per_s(parameters: Array) -> Array:
 
 
 def _edges(needed: Array) -> Whole:
-    """Where blocks begin, and where the last ends, of wheels that need so many steps, in rising order: all take those of the last."""
+    """Where blocks of wheels begin, and where the last ends.
+
+    Args:
+        needed: How many steps each wheel needs, in rising order. All wheels of a block take as many
+            as its last.
+    """
     edges = [len(needed)]
     while edges[-1]:
         end = edges[-1]
@@ -120,7 +123,7 @@ def _edges(needed: Array) -> Whole:
 
 
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
-    """What to raise if so many seconds of a wheel with these constants would take so many steps."""
+    """The exception for a wheel with these constants that would take that many steps."""
     words = ", ".join(
         f"{name} = {value:g}"
         for name, value in zip(("a", "tau", "k", "I", "f"), constants.tolist(), strict=False)
@@ -140,11 +143,19 @@ def advance(
 ) -> Array:
     """The states of wheels after some time, by Runge and Kutta's method of order 8.
 
-    states: (rows, wheels), of which rates_of gives the rates; parameters: (6 or more, wheels).
-    fineness: steps per unit of `rate_per_s`. The work is done in blocks of wheels that need about
-    the same step, whatever the number of cores, so that the same call gives the same bits; who
-    stands beside a wheel matters to it by the block's step, and in the last digits. Raises WrongUse
-    of a wheel that is too stiff.
+    The work is done in blocks of wheels that need about the same step, however many cores there
+    are, so that the same call gives the same bits. The other wheels of its block matter to a wheel
+    by the block's step, in the last digits.
+
+    Args:
+        states: (rows, wheels).
+        parameters: (6 or more, wheels).
+        seconds: How long, s.
+        fineness: Steps per unit of `rate_per_s`.
+        rates_of: A compiled function that gives the states' rates.
+
+    Raises:
+        WrongUse: A wheel is too stiff.
     """
     return _advanced(runge_kutta, states, parameters, seconds, fineness, rates_of)
 
@@ -175,7 +186,7 @@ def _advanced(
 
 
 class Averages(NamedTuple):
-    """Time averages of wheels, (wheels,), in rad/s, and the states (4, wheels) in which they ended."""
+    """Time averages of wheels, rad/s, (wheels,), and their last states, (4, wheels)."""
 
     omega_mean: Array
     omega_std: Array
@@ -190,7 +201,8 @@ def averages(
     With a fineness beyond FINE they are by another method, so that a finer run checks more than the
     step.
 
-    Raises WrongUse of a wheel that is too stiff, and of one that cannot be followed.
+    Raises:
+        WrongUse: A wheel is too stiff, or cannot be followed.
     """
     method, fineness = (
         (adams, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta, fineness)

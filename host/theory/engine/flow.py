@@ -1,6 +1,4 @@
-"""One wheel at a time, step by step, with the derivatives of where it gets to.
-
-What shooting and bisection need.
+"""One wheel at a time, step by step, with derivatives of its states: for shooting and bisection.
 
 The method is Runge and Kutta's of order 8 with fixed steps, as in host.theory.engine.ensemble,
 which is for many wheels.
@@ -32,9 +30,10 @@ _jacobian: Any = compiled(derivatives(1))
 
 
 def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
-    """How many steps this time takes. Raises WrongUse if they are too many.
+    """How many steps this time takes.
 
-    The wheel is too stiff.
+    Raises:
+        WrongUse: The wheel is too stiff.
     """
     needed = float(np.ceil(seconds * fineness * rate_per_s(np.array(wheel)[:, None])[0]))
     if not needed <= MOST_STEPS:
@@ -90,7 +89,10 @@ def plain(states: Array, constants: Any, out: Array) -> None:
 
 @cache
 def varied(followed: int) -> Any:
-    """The rates of a state, of its derivatives by the initial state, and of that by the constant of this number, (4, 1 + 4 + 1)."""
+    """The compiled rates of a state and of its derivatives, (4, 1 + 4 + 1).
+
+    The derivatives are by the initial state, and by the wheel's constant of number `followed`.
+    """
     by_constant: Any = compiled(derivatives_by_constant(followed))
 
     def own_rates(states: Array, constants: Any, out: Array) -> None:

@@ -1,7 +1,7 @@
-"""A wheel and its kicks, the same way for the continuous model and for the one that steps once a tick.
+"""A wheel and its kicks, the same way for the continuous model and for the one that steps by ticks.
 
-A quenched kick alters what the neurons see, and nothing else: the rods pull where the wheel really
-is. A frozen kick alters the neurons. Both are robot/kicks.py's.
+A quenched kick changes only what the neurons see: the rods pull where the wheel really is. A frozen
+kick changes the neurons. Both are robot/kicks.py's.
 """
 
 from __future__ import annotations
@@ -41,12 +41,13 @@ class Model(Protocol):
     """
 
     def begun(self, states: Array) -> Array:
-        """The model's states from (x1, x2, phi, omega), (4, wheels)."""
+        """The model's states, from (x1, x2, phi, omega), (4, wheels)."""
 
     def averages(self, states: Array, parameters: Array, seconds: float) -> Averages:
         """Averages over some seconds, and the states after them.
 
-        Raises WrongUse of wheels that cannot be followed.
+        Raises:
+            WrongUse: Wheels cannot be followed.
         """
 
     def kicked(self, states: Array, parameters: Array, seconds: float, seen: Seen) -> Array:
@@ -87,9 +88,11 @@ class Sampled(NamedTuple):
 
 
 def seen_in(mode: str, sign: int) -> Seen:
-    """What a quenched kick of robot/kicks.py does to what the neurons see, at its height. sign.
+    """What a quenched kick of robot/kicks.py does to what the neurons see, at its height.
 
-    Of a phase kick's shift.
+    Args:
+        mode: The kick's.
+        sign: That of a phase kick's shift; 0 for another kick.
     """
     kick = parse(
         {"id": mode, "mode": mode} | ({"shift": sign * DEFAULT_SHIFT_RAD} if sign else {}),
@@ -102,9 +105,9 @@ def seen_in(mode: str, sign: int) -> Seen:
 
 
 def memory_s(wheel: Wheel) -> float:
-    """For how long a wheel remembers: its neurons' time constant and its friction's.
+    """For how long a wheel remembers, s: its neurons' time constant and that of its friction.
 
-    For ever, without friction.
+    It is infinite without friction.
     """
     return wheel.tau_s + (wheel.inertia / wheel.friction if wheel.friction else inf)
 
@@ -142,7 +145,10 @@ _vectorised_rates: Any = with_mathematics(_rates, MATHEMATICS, inlined)
 
 @vectorised
 def _seeing_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of wheels whose rows 4 and 5 are what the kick does to what they see, which stays."""
+    """The rates of wheels under a kick.
+
+    Rows 4 and 5 of the states are what the kick does to what the neurons see. They stay.
+    """
     for i in range(states.shape[1]):
         constants = (
             parameters[0, i],

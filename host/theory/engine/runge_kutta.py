@@ -1,4 +1,4 @@
-"""Runge and Kutta's method of order 8 with fixed steps, for a block of systems side by side in memory."""
+"""Runge and Kutta's method of order 8 with fixed steps, for many systems side by side in memory."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _WHICH, _FACTORS = (
 def _begin(to: Array, base: Array, step_s: float, turn: int, rates: Array) -> None:
     """`to` becomes `base` and what a pass adds.
 
-    They must not be the same, or it would not be done by vector units.
+    They must not be the same array, or the compiler would not use vector units.
     """
     f0, f1, f2, f3 = (
         step_s * _FACTORS[turn, 0],
@@ -61,10 +61,9 @@ def _add(to: Array, step_s: float, turn: int, rates: Array) -> None:
 def stepping(rates_of: Any) -> Any:
     """The compiled function that takes `count` steps of step_s with these rates.
 
-    states: (rows, systems), changed in place; rates_of(states, parameters, out) gives their rates.
-
-    What rounding takes from a step is given to the next one (Kahan's summation), as an angle grows
-    large by small steps.
+    It changes states, (rows, systems), in place; rates_of(states, parameters, out) gives their
+    rates. What rounding takes from a step is given to the next (Kahan's summation), as an angle
+    grows large by small steps.
     """
 
     def steps(states: Array, parameters: Array, step_s: float, count: int) -> None:
@@ -73,7 +72,7 @@ def stepping(rates_of: Any) -> Any:
             np.empty_like(states),
             np.zeros(states.size),
         )
-        # The same memory without rows, for loops as long as can be.
+        # The same memory without rows, for the longest loops.
         flat_rates, flat_at, flat_states = (
             rates.reshape((STAGES, states.size)),
             at.reshape(states.size),

@@ -1,11 +1,9 @@
-"""The wheel as a brick drives it.
-
-Neurons that step once a tick (robot/controller.py), and a force that is held from tick to tick.
+"""The wheel as a brick drives it: neurons that step once a tick, and a force held between ticks.
 
 Between ticks I domega/dt = F - f omega with F constant has an exact solution, so that a tick is a
 map. Its state is (x1, x2, phi, omega, F): that of host.theory.model.wheel, and the force that acts
 until the next one does. Arrays of states are (5, wheels), of parameters (6, wheels), as in
-host.theory.engine.ensemble; there is no motor here that could saturate or stick.
+host.theory.engine.ensemble. There is no motor here that could saturate or stick.
 """
 
 from __future__ import annotations
@@ -29,17 +27,20 @@ from sim_motor.compiled import compiled, parallel_jit, prange
 from sim_motor.mathematics import with_mathematics
 
 HELD = 4
-# A wheel that needs more ticks has a tick too short for what it is asked.
+# A run of more ticks takes too long.
 MOST_TICKS = 50_000_000
 # What host.theory.engine.elementary can take.
 _LARGEST_EXPONENT = 700.0
 
 
 class Clock(NamedTuple):
-    """When a brick reads and acts: every tick_s, and what it decides acts latency_s later.
+    """When a brick reads and acts.
 
-    fresh: the force is that of the potentials that this tick has made, as on the robot; if not, of
-    those of the tick before.
+    Attributes:
+        tick_s: How often it reads, s.
+        latency_s: How long after a tick's begin its decision acts, s.
+        fresh: Whether the force is that of the potentials after this tick's step, as on the robot,
+            else that of the tick before.
     """
 
     tick_s: float = 0.03
@@ -73,9 +74,9 @@ PLAIN = Seen()
 
 
 class Coast(NamedTuple):
-    """How a wheel under a constant force coasts for some time.
+    """How a wheel under a constant force F coasts for some time.
 
-    Phi + ahead omega + pushed F, kept omega + gained F.
+    Its angle becomes phi + ahead omega + pushed F, its speed kept omega + gained F.
     """
 
     ahead: float
@@ -148,9 +149,10 @@ _tick: Any = with_mathematics(tick, {**MATHEMATICS, "tanh": _unsaturated}, inlin
 def _run(
     states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int
 ) -> Array:
-    """Take all wheels `ticks` on, in place.
+    """Advance all wheels by some ticks, in place.
 
-    The sums of omega^2 at the begins of these ticks, (wheels,).
+    Returns:
+        The sums of omega^2 at the begins of these ticks, (wheels,).
     """
     squares = np.zeros(states.shape[1])
     tick_s, latency_s, fresh = clock
@@ -191,9 +193,10 @@ def _run(
 
 
 def ticks_in(seconds: float, clock: Clock) -> int:
-    """How many ticks there are in some seconds, one at least.
+    """How many ticks there are in some seconds, at least one.
 
-    Raises WrongUse if that is hopeless.
+    Raises:
+        WrongUse: They are too many to compute.
     """
     count = round(seconds / clock.tick_s)
     if count > MOST_TICKS:
@@ -204,12 +207,19 @@ def ticks_in(seconds: float, clock: Clock) -> int:
 
 
 def unforced(states: Array) -> Array:
-    """States of the continuous model, (4, wheels), as those of sampled wheels on which no force acts yet, (5, wheels)."""
+    """States of the continuous model as those of sampled wheels on which no force acts yet.
+
+    Args:
+        states: (4, wheels).
+
+    Returns:
+        (5, wheels).
+    """
     return np.vstack([states, np.zeros(states.shape[1])])
 
 
 def overshoots(a: Any, tau_s: Any, clock: Clock) -> Any:
-    """Whether a tick is so long that Euler steps carry the potentials past what they see, and farther from step to step.
+    """Whether ticks are so long that Euler steps carry the potentials ever farther away.
 
     That is at 2 tau. Just below, they stay finite, but grow too large to compute the exponential of
     a x.
@@ -238,9 +248,15 @@ def advance(
 ) -> Array:
     """The states of wheels, (5, wheels), some ticks later.
 
-    `seen` is what a kick does to them all that time.
+    Args:
+        states: (5, wheels).
+        parameters: (6, wheels).
+        clock: The brick's.
+        ticks: How many.
+        seen: What a kick does to all wheels all that time.
 
-    Raises WrongUse of wheels whose potentials run away, as does `averages`.
+    Raises:
+        WrongUse: The potentials of a wheel run away.
     """
     return _ran(states, parameters, clock, ticks, seen)[0]
 
@@ -248,7 +264,10 @@ def advance(
 def averages(states: Array, parameters: Array, clock: Clock, ticks: int) -> Averages:
     """Mean and standard deviation of omega over some ticks.
 
-    The mean of the whole time, the deviation of the begins of ticks.
+    The mean is over the whole time, the deviation over the begins of ticks.
+
+    Raises:
+        WrongUse: The potentials of a wheel run away.
     """
     ended, squares = _ran(states, parameters, clock, ticks, PLAIN)
     mean = (ended[PHI] - states[PHI]) / (ticks * clock.tick_s)
@@ -258,9 +277,17 @@ def averages(states: Array, parameters: Array, clock: Clock, ticks: int) -> Aver
 def as_robot(
     state: Sequence[float], wheel: Wheel, clock: Clock, ticks: int, kick: Kick | None = None
 ) -> Array:
-    """(phi, omega) at the begin of each tick, (2, ticks), as robot.wheel has it, under a kick of the left wheel: a check of the map.
+    """A check of the map: robot.wheel's own steps, under a kick of the left wheel.
 
-    clock: fresh, as the robot's is.
+    Args:
+        state: Where the wheel begins, (5,).
+        wheel: Its constants.
+        clock: It must be fresh, as the robot's is.
+        ticks: How many.
+        kick: The kick, or None.
+
+    Returns:
+        (phi, omega) at the begin of each tick, (2, ticks).
     """
     neurons, params = robot.wheel.Wheel(WHEELS[0]), Params()
     params.a, params.tau_s, params.k = wheel.a, wheel.tau_s, wheel.k
@@ -288,7 +315,7 @@ _COMPLEX_STEP = 1e-100
 def jacobian(state: Sequence[float], wheel: Wheel, clock: Clock) -> Array:
     """The derivatives of a tick by the state before it, (5, 5), exact to rounding.
 
-    By steps in the imaginary direction.
+    They are computed by steps in the imaginary direction.
     """
     coasts = [
         coast(seconds, wheel.inertia, wheel.friction)

@@ -1,6 +1,6 @@
-"""A wheel that turns at constant angular velocity: its neurons' potentials (eq.
+"""A wheel that turns at constant angular velocity.
 
-X-t), and the speed at which it goes on (eq. F_tan_ana).
+Its neurons' potentials (eq. X-t), and the speed at which it keeps turning (eq. F_tan_ana).
 """
 
 from __future__ import annotations
@@ -13,35 +13,57 @@ import numpy as np
 from host.theory.model.wheel import Array, Wheel, numpy_positions
 from robot.controller import actual_positions, membrane_rate
 
-# After so many time constants nothing is left of how the neurons began.
+# After this many time constants nothing is left of how the neurons began.
 _SETTLED = 40.0
 
 
 def potentials(phi: Any, omega: Any, tau_s: float) -> tuple[Any, Any]:
-    """(x1, x2) of neurons that see the wheel turn at omega (rad/s), when it is at phi (rad). Eq.
+    """The potentials of neurons that see a wheel turn at constant speed. Eq. X-t.
 
-    X-t.
+    Args:
+        phi: The wheel's angle, rad.
+        omega: Its speed, rad/s.
+        tau_s: The neurons' time constant, s.
+
+    Returns:
+        (x1, x2).
     """
     (cosine, sine), lag = numpy_positions(phi), omega * tau_s
     return (cosine + lag * sine) / (1 + lag**2), (sine - lag * cosine) / (1 + lag**2)
 
 
 def turning(phi: Array, omega: Array, wheel: Wheel) -> Array:
-    """States of wheels whose potentials are those of wheels that have always turned with their present speed, (4, wheels)."""
+    """States of wheels whose potentials are as if they had always turned with their present speed.
+
+    Args:
+        phi: Angles, rad, (wheels,).
+        omega: Speeds, rad/s, (wheels,).
+        wheel: The constants of all wheels.
+
+    Returns:
+        (4, wheels).
+    """
     return np.array([*potentials(phi, omega, wheel.tau_s), phi, omega])
 
 
 def constant_velocity(wheel: Wheel) -> float | None:
-    """The paper's omega (rad/s) of locomotion, for neurons in their linear range.
+    """The paper's omega (rad/s) of locomotion, for neurons in their linear range. Eq. F_tan_ana.
 
-    None where it has none. Eq. F_tan_ana.
+    None where the wheel has none.
     """
     drive, brake = wheel.a * wheel.k * wheel.tau_s, 2 * wheel.friction
     return sqrt((drive - brake) / brake) / wheel.tau_s if drive > brake > 0.0 else None
 
 
 def begun_rolling(parameters: Array) -> Array:
-    """States, at angle 0, of wheels with these constants that turn with the constant velocity, or rest if there is none, (4, wheels)."""
+    """States at angle 0 of wheels that turn with their constant velocity, or rest without one.
+
+    Args:
+        parameters: The wheels' constants, (6, wheels).
+
+    Returns:
+        (4, wheels).
+    """
     wheels = [Wheel(*column) for column in parameters[: len(Wheel._fields)].T.tolist()]
     return np.hstack(
         [
@@ -52,11 +74,17 @@ def begun_rolling(parameters: Array) -> Array:
 
 
 def driven(phi: Array, omega: float, tau_s: float) -> Array:
-    """The same potentials, (2, angles), by numbers.
+    """The potentials of `potentials` by numbers: a check.
 
-    The robot's two neurons, fed from rest with the turning wheel's positions.
+    The robot's two neurons see the positions of the turning wheel, and begin at 0.
 
-    phi: ascending, from 0 or more.
+    Args:
+        phi: Angles, rad, ascending, from 0 or more.
+        omega: The wheel's speed, rad/s.
+        tau_s: The neurons' time constant, s.
+
+    Returns:
+        (2, angles).
     """
     from scipy.integrate import solve_ivp
 

@@ -1,6 +1,6 @@
 """The four equations of a wheel (eq. dot_x_phi).
 
-The robot's controller, and the mechanics that the paper adds to it.
+They are the robot's controller, and the mechanics that the paper adds to it.
 
 A state is (x1, x2, phi, omega): membrane potentials (1), angle (rad), angular velocity (rad/s).
 Torques are in the units of the rods' forces, moments of inertia in these times s^2, friction in
@@ -47,8 +47,8 @@ def rates(
     """(dx1/dt, dx2/dt, dphi/dt, domega/dt) of a wheel. Eq. dot_x_phi.
 
     dry_friction: torque with which a threshold of the motor holds against a wheel that rolls
-    forward; 0 in the paper's equations. The arguments are floats, or whatever the controller's
-    functions are retold for.
+    forward; 0 in the paper's equations. The arguments are floats, or what the functions take in
+    another mathematics (sim_motor.mathematics).
     """
     actual_1, actual_2 = actual_positions(phi)
     return seen_rates(
@@ -83,7 +83,7 @@ def seen_rates(
     friction: Any,
     dry_friction: Any,
 ) -> tuple[Any, Any, Any, Any]:
-    """The same of a wheel whose neurons see the positions (seen_1, seen_2), which a kick may have altered."""
+    """The same for neurons that see (seen_1, seen_2), which a kick may have changed."""
     force_1 = rod_force(target_position(x1, a), actual_1, k)
     force_2 = rod_force(target_position(x2, a), actual_2, k)
     force = tangential_force(force_1, force_2, actual_1, actual_2)
@@ -99,7 +99,7 @@ def acceleration(force: Any, omega: Any, inertia: Any, friction: Any, dry_fricti
 class Wheel(NamedTuple):
     """The constants of a wheel, in the order in which `rates` takes them.
 
-    The paper's where it gives any.
+    The defaults are the paper's, where it gives any.
     """
 
     a: float = 4.0
@@ -110,7 +110,7 @@ class Wheel(NamedTuple):
     dry_friction: float = 0.0
 
     def checked(self) -> Wheel:
-        """The same wheel. Raises WrongUse if these are no constants of one."""
+        """The same wheel. Raises WrongUse if no wheel can have these constants."""
         for name, value in self._asdict().items():
             if (
                 not isfinite(value)
@@ -127,9 +127,11 @@ class Wheel(NamedTuple):
         return self
 
     def columns(self, count: int, **varied: Array) -> Array:
-        """The constants of `count` such wheels, (6, count). varied.
+        """The constants of many wheels, (6, count).
 
-        Those in which the wheels differ, (count,), by name.
+        Args:
+            count: How many.
+            varied: The constants in which they differ, by name, (count,) each.
         """
         parameters = np.repeat(np.array(self, dtype=np.float64)[:, None], count, axis=1)
         for name, values in varied.items():
@@ -138,9 +140,10 @@ class Wheel(NamedTuple):
 
 
 def wheel_of(options: Mapping[str, Any]) -> Wheel:
-    """The wheel with the constants that options name by the paper's letters.
+    """The wheel with the constants that options give by the paper's letters, else the paper's.
 
-    The others are the paper's. Raises WrongUse.
+    Raises:
+        WrongUse: No wheel can have them.
     """
     named = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
     return Wheel(
@@ -149,7 +152,14 @@ def wheel_of(options: Mapping[str, Any]) -> Wheel:
 
 
 def resting(phi: Array) -> Array:
-    """States of wheels that rest at these angles (rad) with the potentials that belong to them, (4, wheels)."""
+    """States of resting wheels with the potentials that belong to their angles.
+
+    Args:
+        phi: Angles, rad, (wheels,).
+
+    Returns:
+        (4, wheels).
+    """
     return np.array([*numpy_positions(phi), phi, np.zeros_like(phi)])
 
 
