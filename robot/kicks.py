@@ -127,7 +127,7 @@ def pulse_weight(age, ticks, smooth):
     return sin(pi * (age + 0.5) / ticks) ** 2 if smooth else 1.0
 
 
-def pulsed(pulse, value, weight, a, tau_s, k):
+def apply_pulse(pulse, value, weight, a, tau_s, k):
     """The parameters of a wheel during a quenched kick. Eq. quenched_kick_kontrol.
 
     Args:
@@ -156,7 +156,7 @@ def pulsed(pulse, value, weight, a, tau_s, k):
     return a, tau_s, k, beta, shift_rad
 
 
-def kicked(kick, tick, x1, x2, a, tau_s, k):
+def apply_kick(kick, tick, x1, x2, a, tau_s, k):
     """What a kick does to a wheel in a tick, before the neurons step.
 
     Args:
@@ -180,7 +180,7 @@ def kicked(kick, tick, x1, x2, a, tau_s, k):
     if 0 <= age < ticks:
         if action == QUENCH:
             weight = pulse_weight(age, ticks, smooth)
-            a, tau_s, k, beta, shift_rad = pulsed(pulse, value, weight, a, tau_s, k)
+            a, tau_s, k, beta, shift_rad = apply_pulse(pulse, value, weight, a, tau_s, k)
         elif action == INVERT:
             x1, x2 = invert_membrane(x1, x2)
         elif action == JUMP_X1:
@@ -248,7 +248,7 @@ class Kick(object):
         return self.begin <= tick < self.begin + self.ticks
 
     def numbers(self, index):
-        """The kick on one of its wheels, as `kicked` takes it.
+        """The kick on one of its wheels, as `apply_kick` takes it.
 
         Args:
             index: 0 for a left wheel, 1 for a right one.

@@ -1,7 +1,7 @@
 """One wheel's neurons from tick to tick: the controller's equations under a kick, if one acts."""
 
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import WHEELS, kicked, seen_positions
+from robot.kicks import WHEELS, apply_kick, seen_positions
 
 
 class Wheel(object):
@@ -42,7 +42,7 @@ class Wheel(object):
         actual_1, actual_2 = seen_1, seen_2 = actual_positions(self.phi)
         if kick is not None and self.side in kick.wheels:
             numbers = kick.numbers(self.index)
-            self.x1, self.x2, a, tau_s, k, beta, shift_rad = kicked(
+            self.x1, self.x2, a, tau_s, k, beta, shift_rad = apply_kick(
                 numbers, tick, self.x1, self.x2, a, tau_s, k
             )
             seen_1, seen_2 = seen_positions(self.phi, beta, shift_rad)

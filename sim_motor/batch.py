@@ -30,7 +30,7 @@ _actual_positions, _step_wheel, _limit_duty = (
 )
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 _settling_s = compiled(settling_s)
-_kicked, _seen_positions = compiled(kicks.kicked), compiled(kicks.seen_positions)
+_apply_kick, _seen_positions = compiled(kicks.apply_kick), compiled(kicks.seen_positions)
 _clamp_step = compiled(clamp_step)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
@@ -234,7 +234,7 @@ def _run_wheel(
         dt_s = _clamp_step(now - times[tick - 1], tick_s) if tick else tick_s
         if tick == begin and isnan(value):
             value = _reversing_shift(_direction(_travel(phis, tick - 1)))
-        x1, x2, a, tau_s, k, beta, shift_rad = _kicked(
+        x1, x2, a, tau_s, k, beta, shift_rad = _apply_kick(
             (action, begin, ticks, pulse, smooth, value), tick, x1, x2, a_set, tau_set, k_set
         )
         actual_1, actual_2 = _actual_positions(phi)

@@ -57,9 +57,8 @@ class Scene:
         for name, (least, most, unit) in LIMITS.items():
             value = getattr(self, name)
             if value is not None and not least <= value <= most:
-                raise ValueError(
-                    f"{name} cannot be {value!r}: give a number from {least:g} to {most:g} {unit}".rstrip()
-                )
+                bounds = f"from {least:g} to {most:g} {unit}".rstrip()
+                raise ValueError(f"{name} cannot be {value!r}: give a number {bounds}")
 
 
 # Walls that leave room for the body, and springs that the steps can follow.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from host.errors import NotDone
 from host.logs.log import Log
 from robot.controller import actual_positions, target_position
-from robot.kicks import WHEELS, Kick, kicked, seen_positions
+from robot.kicks import WHEELS, Kick, apply_kick, seen_positions
 from sim_motor.mathematics import with_mathematics
 
 Array = NDArray[np.float64]
@@ -99,7 +99,7 @@ def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) ->
     numbers = Kick(**kick).numbers(WHEELS.index(side))
     seen = np.full((2, len(t_s)), nan)
     for place, age in acting:
-        *_, beta, shift_rad = kicked(numbers, kick["begin"] + age, 0.0, 0.0, 0.0, 0.0, 0.0)
+        *_, beta, shift_rad = apply_kick(numbers, kick["begin"] + age, 0.0, 0.0, 0.0, 0.0, 0.0)
         if beta or shift_rad:
             for number in np.flatnonzero(held == place):
                 seen[:, number] = seen_positions(float(phi[number]), beta, shift_rad)

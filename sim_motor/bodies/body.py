@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot.controller import target_position
-from robot.kicks import Kick, kicked
+from robot.kicks import Kick, apply_kick
 from sim_motor.bodies.drive import Wheels, drive
 from sim_motor.bodies.model import SIDES, car_name
 from sim_motor.bodies.presets import Preset
@@ -204,7 +204,7 @@ class Body:
             if kick.pulse:
                 _, *own.whole[:, wheel], own.value[wheel] = numbers
             else:
-                own.x1[wheel], own.x2[wheel], *_ = kicked(
+                own.x1[wheel], own.x2[wheel], *_ = apply_kick(
                     numbers, kick.begin, own.x1[wheel], own.x2[wheel], 0.0, 0.0, 0.0
                 )
 

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import QUENCH, kicked, seen_positions
+from robot.kicks import QUENCH, apply_kick, seen_positions
 from sim_motor.compiled import compiled, jit
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 _actual_positions, _step_wheel = compiled(actual_positions), compiled(step_wheel)
-_kicked, _seen_positions = compiled(kicked), compiled(seen_positions)
+_apply_kick, _seen_positions = compiled(apply_kick), compiled(seen_positions)
 
 
 class Wheels:
@@ -63,7 +63,9 @@ def drive(
         a, tau_s, k = gain[i], time_constant[i], spring[i]
         actual_1, actual_2 = _actual_positions(phi)
         kick = (QUENCH, begin[i], ticks[i], pulse[i], smooth[i], value[i])
-        x1[i], x2[i], a, tau_s, k, beta, shift_rad = _kicked(kick, step, x1[i], x2[i], a, tau_s, k)
+        x1[i], x2[i], a, tau_s, k, beta, shift_rad = _apply_kick(
+            kick, step, x1[i], x2[i], a, tau_s, k
+        )
         seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
         x1[i], x2[i], force, _ = _step_wheel(
             x1[i], x2[i], actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, 1

@@ -28,8 +28,8 @@ Observation = NDArray[np.float32]
 Action = NDArray[np.int64]
 
 ID = "kickctl/Train-v0"
-# What an agent can do to a wheel: nothing, or one of the paper's kicks. A phase shift takes the sign that
-# reverses this wheel.
+# What an agent can do to a wheel: nothing, or one of the paper's kicks. A phase shift takes the
+# sign that reverses this wheel.
 KICKS = (None, MEMBRANE, POSITION, PHASE)
 # Observed speeds are parts of these (rad/s), which a body on its wheels does not reach.
 WHEEL_RAD_S, JOINT_RAD_S = 200.0, 50.0
@@ -114,7 +114,7 @@ class Train(gymnasium.Env[Observation, Action]):
             int(self.np_random.integers(2**31)),
             options.get("phases"),
         )
-        return self._observe(), self._tell("")
+        return self._observe(), self._info("")
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, Info]:
         if not self.action_space.contains(action):
@@ -137,7 +137,7 @@ class Train(gymnasium.Env[Observation, Action]):
             body.run(self._decision_s)
         except Unstable as error:
             ended = str(error)
-        info = self._tell(ended)
+        info = self._info(ended)
         return (
             self._observe(),
             self._reward(info),
@@ -208,18 +208,18 @@ class Train(gymnasium.Env[Observation, Action]):
             np.clip(np.nan_to_num(np.concatenate(parts)), -1.0, 1.0), dtype=np.float32
         )
 
-    def _tell(self, ended: str) -> Info:
+    def _info(self, ended: str) -> Info:
         columns, rows = self._body.columns, self._body.rows
         poses = rows[-1, -self._cars * len(OF_A_CAR) :].reshape(self._cars, -1)
         omega = float(rows[-1, [name.endswith("_omega_rad_s") for name in columns]].mean())
-        told = summary(columns, rows)
+        facts = summary(columns, rows)
         return {
             "time_s": self._body.time_s,
             "cars": poses[:, [OF_A_CAR.index(name) for name in ("x_m", "y_m", "yaw_rad")]],
             "direction": int(np.sign(omega)) if abs(omega) > STILL_RAD_S else 0,
             "kicks": self._kicks,
-            "summary": told,
-            "ended": ended or ("a car fell over" if told["flipped"] else ""),
+            "summary": facts,
+            "ended": ended or ("a car fell over" if facts["flipped"] else ""),
         }
 
 

@@ -141,7 +141,7 @@ def rolling_states(model: Model, wheel: Wheel, phases: int) -> Array | None:
     Raises:
         WrongUse: The wheel cannot be followed.
     """
-    fast = model.begun(starting_states(np.zeros(1), np.array([2 * free_speed(wheel)])))
+    fast = model.states_of(starting_states(np.zeros(1), np.array([2 * free_speed(wheel)])))
     (name,), last = settle_and_classify(model, fast, wheel)
     if name not in (FORWARD, BACKWARD):
         return None

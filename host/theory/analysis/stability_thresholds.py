@@ -104,7 +104,7 @@ def rolling_ends(
     Raises:
         WrongUse: The wheel cannot be followed.
     """
-    fast = model.begun(resting(np.zeros(1)))
+    fast = model.states_of(resting(np.zeros(1)))
     fast[OMEGA] = 2 * sqrt(high * (1 + wheel.a / 2) / wheel.inertia)
     return _narrowed(
         model,
@@ -138,7 +138,7 @@ def swinging_ends(
     Raises:
         WrongUse: The wheel cannot be followed.
     """
-    pushed = model.begun(resting(np.full(1, _PUSH_RAD)))
+    pushed = model.states_of(resting(np.full(1, _PUSH_RAD)))
     return _narrowed(
         model,
         pushed,

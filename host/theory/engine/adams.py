@@ -92,8 +92,8 @@ def stepping(rates_of: Any) -> Any:
     first_steps = runge_kutta.stepping(rates_of)
 
     def steps(states: Array, parameters: Array, step_s: float, count: int) -> None:
-        # The latest rates stand first, from `newest` on; there is room for as many steps more, before
-        # they are moved.
+        # The latest rates stand first, from `newest` on. There is room for as many again, then they
+        # are moved.
         rates = np.zeros((2 * ORDER, *states.shape))
         at, new, lost = np.empty_like(states), np.empty_like(states), np.zeros(states.size)
         # The same memory without rows, for the longest loops.

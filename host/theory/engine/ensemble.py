@@ -208,18 +208,18 @@ def averages(
         (adams, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta, fineness)
     )
 
-    def after(seconds: float, begun: Array) -> Array:
-        given = np.vstack([begun, np.zeros(begun.shape[1])]), np.vstack([parameters, begun[OMEGA]])
+    def after(seconds: float, start: Array) -> Array:
+        given = np.vstack([start, np.zeros(start.shape[1])]), np.vstack([parameters, start[OMEGA]])
         return _advanced(method, *given, seconds, fineness, _averaged_rates)
 
-    begun = np.asarray(states, dtype=np.float64)
-    if begun.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != len(Wheel._fields):
-        shapes = f"{begun.shape} and {parameters.shape}"
+    start = np.asarray(states, dtype=np.float64)
+    if start.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != len(Wheel._fields):
+        shapes = f"{start.shape} and {parameters.shape}"
         raise WrongUse(
             f"states and parameters cannot be of shapes {shapes}",
             "give (4, wheels) and (6, wheels), as Wheel.columns does",
         )
-    if not np.isfinite(begun).all():
+    if not np.isfinite(start).all():
         raise WrongUse(
             "a wheel begins in a state that is not finite",
             "give finite potentials, angles and speeds",
@@ -227,14 +227,14 @@ def averages(
     if transient_s > 0.0:
         # What is averaged on the way is thrown away: that costs less than to compile the rates
         # without it.
-        begun = after(transient_s, begun)[: OMEGA + 1]
-    ended = after(measured_s, begun)
-    mean = (ended[PHI] - begun[PHI]) / measured_s
-    variance = ended[4] / measured_s - (mean - begun[OMEGA]) ** 2
-    if not np.isfinite(ended).all():
-        lost = int(np.flatnonzero(~np.isfinite(ended).all(axis=0))[0])
+        start = after(transient_s, start)[: OMEGA + 1]
+    last = after(measured_s, start)
+    mean = (last[PHI] - start[PHI]) / measured_s
+    variance = last[4] / measured_s - (mean - start[OMEGA]) ** 2
+    if not np.isfinite(last).all():
+        lost = int(np.flatnonzero(~np.isfinite(last).all(axis=0))[0])
         raise WrongUse(
             f"the wheel with constants {parameters[:, lost].tolist()} ran away",
             "choose a larger tau or I, a smaller k",
         )
-    return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), ended[: OMEGA + 1])
+    return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), last[: OMEGA + 1])

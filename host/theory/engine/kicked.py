@@ -23,8 +23,8 @@ from robot.kicks import (
     MEMBRANE,
     PHASE,
     POSITION,
+    apply_pulse,
     invert_membrane,
-    pulsed,
     seen_positions,
 )
 from robot.params import Params
@@ -40,7 +40,7 @@ class Model(Protocol):
     Parameters are (6, wheels).
     """
 
-    def begun(self, states: Array) -> Array:
+    def states_of(self, states: Array) -> Array:
         """The model's states, from (x1, x2, phi, omega), (4, wheels)."""
 
     def averages(self, states: Array, parameters: Array, seconds: float) -> Averages:
@@ -59,7 +59,7 @@ class Continuous(NamedTuple):
 
     fineness: float = FINE
 
-    def begun(self, states: Array) -> Array:
+    def states_of(self, states: Array) -> Array:
         return np.array(states, dtype=np.float64)
 
     def averages(self, states: Array, parameters: Array, seconds: float) -> Averages:
@@ -77,7 +77,7 @@ class Sampled(NamedTuple):
 
     clock: Clock = Clock()
 
-    def begun(self, states: Array) -> Array:
+    def states_of(self, states: Array) -> Array:
         return sampled.unforced(states)
 
     def averages(self, states: Array, parameters: Array, seconds: float) -> Averages:
@@ -100,7 +100,7 @@ def seen_in(mode: str, sign: int) -> Seen:
         Params(),
         0,
     )
-    *_, beta, shift_rad = pulsed(kick.pulse, kick.values[0], 1.0, 0.0, 0.0, 0.0)
+    *_, beta, shift_rad = apply_pulse(kick.pulse, kick.values[0], 1.0, 0.0, 0.0, 0.0)
     return Seen(beta, shift_rad)
 
 

@@ -229,7 +229,7 @@ def overshoots(a: Any, tau_s: Any, clock: Clock) -> Any:
     return a * largest > _LARGEST_EXPONENT
 
 
-def _ran(
+def _advanced(
     states: Array, parameters: Array, clock: Clock, ticks: int, seen: Seen
 ) -> tuple[Array, Array]:
     wild = np.flatnonzero(overshoots(parameters[0], parameters[1], clock))
@@ -239,8 +239,8 @@ def _ran(
             f" {clock.tick_s:g} s",
             "give a tau of more than half a tick; the robot asks for three ticks",
         )
-    ended = np.array(states, dtype=np.float64)
-    return ended, _run(ended, parameters, tuple(seen), tuple(clock), ticks)
+    last = np.array(states, dtype=np.float64)
+    return last, _run(last, parameters, tuple(seen), tuple(clock), ticks)
 
 
 def advance(
@@ -258,7 +258,7 @@ def advance(
     Raises:
         WrongUse: The potentials of a wheel run away.
     """
-    return _ran(states, parameters, clock, ticks, seen)[0]
+    return _advanced(states, parameters, clock, ticks, seen)[0]
 
 
 def averages(states: Array, parameters: Array, clock: Clock, ticks: int) -> Averages:
@@ -269,9 +269,9 @@ def averages(states: Array, parameters: Array, clock: Clock, ticks: int) -> Aver
     Raises:
         WrongUse: The potentials of a wheel run away.
     """
-    ended, squares = _ran(states, parameters, clock, ticks, PLAIN)
-    mean = (ended[PHI] - states[PHI]) / (ticks * clock.tick_s)
-    return Averages(mean, np.sqrt(np.maximum(squares / ticks - mean**2, 0.0)), ended)
+    last, squares = _advanced(states, parameters, clock, ticks, PLAIN)
+    mean = (last[PHI] - states[PHI]) / (ticks * clock.tick_s)
+    return Averages(mean, np.sqrt(np.maximum(squares / ticks - mean**2, 0.0)), last)
 
 
 def as_robot(
@@ -325,10 +325,10 @@ def jacobian(state: Sequence[float], wheel: Wheel, clock: Clock) -> Array:
     for index in range(5):
         aside = [complex(value) for value in state]
         aside[index] += 1j * _COMPLEX_STEP
-        ended = _complex_tick(
+        last = _complex_tick(
             *aside, *PLAIN, wheel.a, wheel.tau_s, wheel.k, clock.tick_s, clock.fresh, *coasts
         )
-        columns.append(np.imag(ended) / _COMPLEX_STEP)
+        columns.append(np.imag(last) / _COMPLEX_STEP)
     return np.array(columns).T
 
 

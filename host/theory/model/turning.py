@@ -55,7 +55,7 @@ def constant_velocity(wheel: Wheel) -> float | None:
     return sqrt((drive - brake) / brake) / wheel.tau_s if drive > brake > 0.0 else None
 
 
-def begun_rolling(parameters: Array) -> Array:
+def rolling_states(parameters: Array) -> Array:
     """States at angle 0 of wheels that turn with their constant velocity, or rest without one.
 
     Args:

@@ -124,7 +124,7 @@ def omegas(wheel: Wheel, points: int) -> Array:
 def simulate_starts(model: Model, wheel: Wheel, phi: Array, omega: Array) -> list[Start]:
     """What wheels come to from these angles (rad) and speeds (rad/s), (wheels,)."""
     has_wells = wheel.k * wheel.a > 0.0
-    names, last = settle_and_classify(model, model.begun(starting_states(phi, omega)), wheel)
+    names, last = settle_and_classify(model, model.states_of(starting_states(phi, omega)), wheel)
     wells = np.rint(last.states[PHI] / QUARTER).tolist()
     columns = (phi.tolist(), omega.tolist(), names.tolist(), wells)
     return [
@@ -157,7 +157,7 @@ def _kicks(cell: KicksCell, wheel: Wheel) -> list[Kick]:
 def _check(model: Model, wheel: Wheel, points: int, rng: np.random.Generator) -> Check:
     """Random starts of the grid, by symmetry, with finer steps, and by another program."""
     phi, omega = rng.choice(angles(points), CHECKED), rng.choice(omegas(wheel, points), CHECKED)
-    states = model.begun(starting_states(phi, omega))
+    states = model.states_of(starting_states(phi, omega))
     names = _names(model, states, wheel)
     opposite: dict[Outcome, Outcome] = {FORWARD: BACKWARD, BACKWARD: FORWARD}
     in_mirror = _names(model, mirror(states), wheel).tolist()

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from host.theory.analysis.attractors import KINDS, ROLL, random_starts, settle, watch
 from host.theory.analysis.tangent import divergence, growth, pair_growth, smooth_mean
 from host.theory.analysis.transients import least_chaotic_k, lives
-from host.theory.model.turning import begun_rolling
+from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel, numpy_rates
 from host.theory.studies.lyapunov_rows import (
     ANY,
@@ -116,7 +116,7 @@ def from_both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -
     columns = np.repeat(parameters, wheels, axis=1)
     count = columns.shape[1]
     anywhere = random_starts(count, rng)
-    rolling_ones = begun_rolling(columns) + 1e-3 * rng.normal(size=(4, count))
+    rolling_ones = rolling_states(columns) + 1e-3 * rng.normal(size=(4, count))
     both = np.tile(columns, (1, 2))
     found = _attractors(both, np.hstack([anywhere, rolling_ones]))
     taus, ks = (both[Wheel._fields.index(name)].tolist() for name in ("tau_s", "k"))
@@ -146,7 +146,7 @@ def _damping(wheel: Wheel, ks: Array) -> list[Damping]:
     each of them.
     """
     parameters = wheel.columns(len(ks), k=ks)
-    settled = settle(begun_rolling(parameters), parameters, 2 * _settle_s(wheel.tau_s))
+    settled = settle(rolling_states(parameters), parameters, 2 * _settle_s(wheel.tau_s))
     seen = watch(settled, parameters, WATCH_S)
     exponents = smooth_mean(growth(seen.states, parameters, MEASURE_S, 4).rates)
     pairs = (divergence(wheel) - exponents[3]) / 2

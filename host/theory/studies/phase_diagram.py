@@ -14,7 +14,7 @@ from host.runs.contract import Setting
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import phase
 from host.theory.engine.ensemble import FINE, Averages, averages
-from host.theory.model.turning import begun_rolling
+from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import PHI, Array, resting, wheel_of
 from host.theory.studies.phase_diagram_report import report
 from host.theory.studies.phase_diagram_rows import (
@@ -85,7 +85,7 @@ def _sweep(cell: BandCell, options: dict[str, Any]) -> list[Point]:
         parameters = _parameters(options, both, np.repeat([up, down], count))
         if states is None:
             at_rest = _at_rest(parameters[:, :count])
-            states = np.hstack([at_rest, begun_rolling(parameters[:, count:])])
+            states = np.hstack([at_rest, rolling_states(parameters[:, count:])])
         states[PHI] += PUSH
         result = _averages(states, parameters, options)
         states = result.states
@@ -101,7 +101,7 @@ def _one_start(cell: BandCell, options: dict[str, Any]) -> list[Point]:
     count, line = len(taus), _hopf_line(options, taus)
     way: Way = options["start"]
     parameters = _parameters(options, np.tile(taus, len(ks)), np.repeat(ks, count))
-    start = _at_rest(parameters) if way == "rest" else begun_rolling(parameters)
+    start = _at_rest(parameters) if way == "rest" else rolling_states(parameters)
     result = _averages(start, parameters, options)
     found: list[Point] = []
     for i, k in enumerate(ks.tolist()):

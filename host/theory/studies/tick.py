@@ -167,7 +167,7 @@ def _running_hz(model: Model, wheel: Wheel, seconds: float) -> float | None:
     """
     states = resting(np.zeros(1))
     states[PHI + 1] = 2 * pi
-    settled = model.averages(model.begun(states), wheel.columns(1), seconds / 2)
+    settled = model.averages(model.states_of(states), wheel.columns(1), seconds / 2)
     first = model.averages(settled.states, wheel.columns(1), seconds / 4)
     second = model.averages(first.states, wheel.columns(1), seconds / 4)
     turns = [abs(float(half.omega_mean[0])) * seconds / 4 / (2 * pi) for half in (first, second)]

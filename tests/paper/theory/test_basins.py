@@ -105,9 +105,9 @@ def test_a_kicked_wheel_moves_as_another_integrator_moves_it(kick):
 def test_without_a_kick_a_kicked_wheel_is_any_wheel():
     states = starting_states(np.linspace(-3.0, 3.0, 7), np.linspace(-9.0, 9.0, 7))
     for model in MODELS:
-        kicked = model.kicked(model.begun(states), WHEEL.columns(7), 0.6, PLAIN)
+        kicked = model.kicked(model.states_of(states), WHEEL.columns(7), 0.6, PLAIN)
         assert kicked == pytest.approx(
-            model.averages(model.begun(states), WHEEL.columns(7), 0.6).states, abs=1e-7
+            model.averages(model.states_of(states), WHEEL.columns(7), 0.6).states, abs=1e-7
         )
 
 
@@ -243,7 +243,7 @@ def test_rest_is_stable_below_each_models_own_k(model):
 def test_between_the_two_k_c_the_continuous_wheel_swings_and_the_sampled_one_rests():
     states = starting_states(np.array([0.1, 0.3, 1.7]), np.zeros(3))
     names = [
-        settle_and_classify(model, model.begun(states), WHEEL._replace(k=1.65))[0].tolist()
+        settle_and_classify(model, model.states_of(states), WHEEL._replace(k=1.65))[0].tolist()
         for model in MODELS
     ]
     assert names == [[BACK] * 3, [REST] * 3]

@@ -21,7 +21,7 @@ from host.theory.analysis.tangent import (
 )
 from host.theory.analysis.transients import crisis, lives, sample
 from host.theory.model.symbolic import jacobian_at
-from host.theory.model.turning import begun_rolling
+from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import PHI, Wheel, rates, resting
 from host.theory.studies import lyapunov as study
 from host.theory.studies import lyapunov_pieces as pieces
@@ -72,7 +72,7 @@ def test_a_wheel_that_balances_is_not_chaotic_though_what_is_near_it_parts():
 
 def test_along_a_cycle_one_exponent_is_0_and_the_others_are_negative():
     parameters = ROLLING.columns(1)
-    begin = settle(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
+    begin = settle(rolling_states(ROLLING.columns(1)), parameters, 60.0)
     found = growth(begin, parameters, 100.0, 4)
     exponents = smooth_mean(found.rates)[:, 0]
     assert exponents[0] == pytest.approx(0.0, abs=1e-3)
@@ -100,7 +100,7 @@ def test_both_algorithms_find_the_same_positive_exponent(chaotic):
 
 def test_neither_algorithm_finds_growth_on_a_cycle():
     parameters = ROLLING.columns(1)
-    begin = settle(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
+    begin = settle(rolling_states(ROLLING.columns(1)), parameters, 60.0)
     assert smooth_mean(pair_growth(begin, parameters, 100.0)) == pytest.approx(0.0, abs=1e-3)
 
 
@@ -149,14 +149,14 @@ def test_what_still_settles_is_not_called_chaos():
 
 def test_smooth_averages_are_the_plain_ones_of_long_times():
     parameters, seconds = ROLLING.columns(1), 1000.0
-    begin = settle(begun_rolling(ROLLING.columns(1)), parameters, 60.0)
+    begin = settle(rolling_states(ROLLING.columns(1)), parameters, 60.0)
     plain = (settle(begin, parameters, seconds)[PHI] - begin[PHI]) / seconds
     assert watch(begin, parameters, 60.0).omega_mean == pytest.approx(plain, rel=1e-5)
 
 
 def test_lives_are_those_of_switching_only():
     wheel = Wheel(k=4.4, tau_s=1.0)
-    begin = np.hstack([random_starts(31, _chance()), begun_rolling(wheel.columns(1))])
+    begin = np.hstack([random_starts(31, _chance()), rolling_states(wheel.columns(1))])
     found = lives(begin, wheel.columns(32), 1000.0, 0.6)
     assert found.ended.all()
     assert found.life_s[-1] == 0.0

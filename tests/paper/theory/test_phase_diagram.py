@@ -8,7 +8,7 @@ import pytest
 from host.runs.contract import Setting
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import STILL
-from host.theory.model.turning import begun_rolling, constant_velocity, turning
+from host.theory.model.turning import constant_velocity, rolling_states, turning
 from host.theory.model.wheel import OMEGA, Wheel
 from host.theory.studies import phase_diagram
 from tests.paper.theory.table import rows_of
@@ -142,4 +142,4 @@ def test_the_state_of_a_turning_wheel_is_that_of_its_equations():
         assert (after[row] - before[row]) / (2 * step) == pytest.approx(
             (seen - now[row]) / wheel.tau_s, abs=1e-8
         )
-    assert begun_rolling(wheel.columns(1))[OMEGA] == [constant_velocity(wheel)]
+    assert rolling_states(wheel.columns(1))[OMEGA] == [constant_velocity(wheel)]

@@ -228,7 +228,7 @@ def test_rolling_begins_and_ends_where_wheels_say_so(model):
     ends = thresholds.rolling_ends(model, WHEEL, 5 * k_c, 0.2 * k_c, 60.0)
     assert begins == pytest.approx(ends, rel=1e-6)  # no hysteresis at tau = 0.25 s
     assert begins > 1.05 * k_c  # forth and back in between
-    start = model.begun(np.array([[1.0, 1.0], [0.0, 0.0], [0.0, 0.0], [12.0, 12.0]]))
+    start = model.states_of(np.array([[1.0, 1.0], [0.0, 0.0], [0.0, 0.0], [12.0, 12.0]]))
     parameters = WHEEL.columns(2)
     parameters[2] = begins * 0.999, begins * 1.001
     settled = model.averages(start, parameters, 60.0)
