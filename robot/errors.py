@@ -1,14 +1,17 @@
 """The one way in which the robot says no."""
 
-# Characters, of which JSON may need twelve bytes each: what is refused may be long, its refusal
-# fits into a frame
+# In characters. JSON may need twelve bytes for each, so that a refusal fits into a frame even if what
+# it refuses is long.
 LONGEST_MESSAGE = 200
 
 
 class Refused(Exception):
     """A request that was not carried out and changed nothing.
 
-    `code` is for programs, `message` says what and why, `hint` what to do.
+    Args:
+        code: For programs: one of the codes in PROTOCOL.md.
+        message: What was refused, and why.
+        hint: What to do.
     """
 
     def __init__(self, code, message, hint=""):

@@ -268,7 +268,7 @@ class Loop(object):
                 raise Refused(
                     "fault",
                     "the fault stays: " + self.incurable,
-                    "start the robot's program anew: it cannot mend this itself",
+                    "restart the robot's program: it cannot repair this itself",
                 )
             for side in self._sides:
                 try:

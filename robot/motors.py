@@ -13,7 +13,7 @@ class MotorFault(Exception):
 class Motor:
     """One wheel's motor, on its own axis.
 
-    Positive is the motor's own positive turn, whatever its mounting.
+    Positive is the motor's own positive turn, also if it is mounted mirrored.
     """
 
     def angle_rad(self):

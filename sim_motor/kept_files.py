@@ -93,7 +93,7 @@ def _say_once(why: str) -> None:
     if multiprocessing.parent_process() is None:
         print(
             f"kickctl: compiled functions cannot be kept ({why}). All works, but each start takes"
-            " some seconds longer. To end that, set XDG_CACHE_HOME to a folder that you can write"
-            " to.",
+            " some seconds longer. To end that, set XDG_CACHE_HOME to a folder with room where you"
+            " can write.",
             file=sys.stderr,
         )

@@ -147,7 +147,7 @@ def batch() -> None:
 
 
 def bodies() -> None:
-    """Cars in MuJoCo with the controllers of all wheels, against MuJoCo alone in the same motion."""
+    """Cars in MuJoCo with the controllers of all wheels, against MuJoCo alone."""
     import mujoco
     import numpy as np
     from mujoco.rollout import rollout

@@ -1,6 +1,6 @@
-"""The tick's reads and writes.
+"""How long a tick's reads and writes take, on files in memory.
 
-Through robot.ev3, through python-ev3dev2's properties, and by bare calls, on files in memory.
+Through robot.ev3, through python-ev3dev2's properties, and by bare calls.
 """
 
 import os

@@ -160,7 +160,7 @@ class Train(gymnasium.Env[Observation, Action]):
             except (
                 Exception
             ) as error:  # what is wrong with a system's OpenGL comes as any kind of exception
-                hint = "install kickctl[bodies], set MUJOCO_GL to egl or osmesa, and begin anew"
+                hint = "install kickctl[bodies], set MUJOCO_GL to egl or osmesa, and start again"
                 raise RuntimeError(f"no picture can be made here ({error}): {hint}") from error
         camera = mujoco.MjvCamera()
         camera.type, camera.trackbodyid = (

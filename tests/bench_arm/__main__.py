@@ -1,6 +1,6 @@
 """`make bench-arm`: what a tick, the imports and the start cost on the brick's processor.
 
-Docs/arm.md tells what the numbers mean.
+docs/arm.md explains the numbers.
 """
 
 import re

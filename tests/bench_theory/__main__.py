@@ -1,4 +1,4 @@
-"""`make bench-theory`: kickctl's engine for many wheels of the analytic model against its peers, at equal accuracy, in one run.
+"""`make bench-theory`: kickctl's engine for the analytic model against its peers, equally accurate.
 
 Every engine gets the equations from host.theory.model.wheel, the same points, both cores, and
 computes the same two averages.
@@ -25,7 +25,7 @@ from tests.bench_theory.problem import (
 
 # Half of the plane is chaotic, where no two engines agree; so more points are drawn than are used.
 DRAWN, POINTS, SEED, REGULAR = 2560, 1024, 1, 1e-8
-# The reference takes long, so every so many points have one.
+# The reference takes long, so only some points have one.
 JUDGED = 4
 RUNS = 3
 FINENESSES = (
@@ -60,8 +60,7 @@ def main():
     """Print everything."""
     load = os.getloadavg()[0]
     print(
-        f"{os.cpu_count()} cores, of which every engine uses {WORKERS}; load when this began:"
-        f" {load:.1f}",
+        f"{os.cpu_count()} cores, {WORKERS} for each engine; load when this began: {load:.1f}",
         flush=True,
     )
     parameters = regular_points()
@@ -122,7 +121,7 @@ def our_contestants():
 
 
 class Result:
-    """What a contestant did: its speed (points x simulated seconds per second) and errors, (2, judged), or fewer if it did fewer."""
+    """A contestant's speed (points x simulated seconds per second) and errors, (2, judged)."""
 
     def __init__(self, contestant, parameters, reference):
         own = np.ascontiguousarray(parameters[:, :: contestant.every])
@@ -150,13 +149,13 @@ class Result:
         return self.points * (TRANSIENT_S + MEASURED_S) / statistics.median(self._times)
 
     def worst(self, every):
-        """The 99th percentile of the errors, (2,), at every so many of the points."""
+        """The 99th percentile of the errors, (2,), at the judged points."""
         own = max(self.contestant.every, JUDGED)
         return np.percentile(self.errors[:, :: max(1, every // own)], 99, axis=1)
 
 
 def measured(contestants, parameters, reference):
-    """Results of all, whose runs take turns, so that whatever else the machine does strikes all alike."""
+    """Results of all. Their runs take turns, so that other work on the machine slows all alike."""
     results = [Result(contestant, parameters, reference) for contestant in contestants]
     for _ in range(RUNS):
         for result in results:
@@ -181,7 +180,7 @@ def show(results):
 
 
 def compare(results):
-    """Print how many times as fast kickctl's coarsest steps are that are no less exact, for each peer and setting."""
+    """Print for each peer and setting how many times faster kickctl is with the same accuracy."""
     print(
         "\nat equal accuracy: kickctl's coarsest fineness whose 99th percentiles of both errors are"
         " no worse, at the same points"

@@ -1,7 +1,8 @@
-"""heyoka.py: Taylor's method with adaptive order and steps, batches as wide as the processor's vectors, one thread for each core.
+"""heyoka.py: Taylor's method with adaptive order and steps.
 
-heyoka's own ensemble_propagate_until_batch copies the integrator for every batch, which for this
-small system costs as much as the work; so each thread here keeps one integrator, which is faster.
+Batches are as wide as the processor's vectors, and each core has a thread. heyoka's own
+ensemble_propagate_until_batch copies the integrator for every batch, which for this small system
+costs as much as the work; so each thread here keeps one integrator, which is faster.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -96,7 +97,7 @@ def batches(tolerance, parameters):
 
 
 def exact(parameters):
-    """The averages in extended precision (a mantissa of 64 bits), a wheel at a time, with a tolerance of 1e-18: the reference."""
+    """The reference: averages in extended precision (a mantissa of 64 bits), tolerance 1e-18."""
     real = np.longdouble
     integrators = [
         heyoka.taylor_adaptive(

@@ -1,9 +1,9 @@
-"""diffrax: JAX's solvers, mapped over all points, compiled in double precision, half of the points on each of two devices (cores)."""
+"""diffrax: JAX's solvers in double precision, half of the points on each of two devices (cores)."""
 
 import os
 from functools import partial
 
-# Before JAX is imported: otherwise the processor is one device, of which small operations use one
+# Before JAX is imported: otherwise the processor is one device, and small operations use one
 # core.
 os.environ["XLA_FLAGS"] = "--xla_force_host_platform_device_count=2"
 

@@ -1,6 +1,6 @@
 """Runge and Kutta's classical method, written plainly for numba.
 
-Sin, cos and exp of `math`, points spread over both cores by prange.
+It has sin, cos and exp of `math`, and spreads points over both cores by prange.
 """
 
 from functools import partial

@@ -21,7 +21,7 @@ TOLERANCES = (1e-6, 1e-8, 1e-10)
 
 @numba.njit(error_model="numpy")
 def field(time, state, constants):
-    """The rates of four variables, and of the integral that makes the standard deviation if there are five."""
+    """The rates of the four variables, and of the fifth, which makes the standard deviation."""
     out = np.empty_like(state)
     x1, x2, phi, omega = state[:4]
     a, tau_s, k, inertia, friction, dry, around = constants

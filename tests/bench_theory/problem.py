@@ -42,7 +42,7 @@ class Contestant(NamedTuple):
 
 
 def random_points(count: int, seed: int) -> Array:
-    """Parameters (6, count), fastest wheels last, so that neighbours need about the same steps, which every engine profits from."""
+    """Parameters (6, count), fastest wheels last: neighbours need about the same steps."""
     chance = np.random.default_rng(seed)
     tau_s, k = chance.uniform(*TAU_S, count), chance.uniform(*K, count)
     parameters = np.array([Wheel(tau_s=tau_s[i], k=k[i]) for i in range(count)]).T
@@ -58,7 +58,7 @@ def starts(count: int) -> Array:
 
 
 def averages(begun: Any, ended: Any) -> Averages:
-    """From states (4, wheels) before and (5, wheels) after measuring, in whatever precision they have.
+    """Averages, from states (4, wheels) before and (5, wheels) after measuring.
 
     The fifth is the integral of (omega - omega at the beginning)^2: with that of omega^2 every
     engine would lose digits of std(omega).

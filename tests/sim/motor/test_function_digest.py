@@ -36,7 +36,7 @@ BASE = "def f(x, y=1.0):\n    return a * x + y"
         (BASE, {"a": 2.0, "__name__": "elsewhere"}, {}),
     ],
 )
-def test_whatever_changes_the_result_changes_it(source, names, options):
+def test_what_changes_the_result_changes_it(source, names, options):
     assert digest(source, options=options, **names) != digest(BASE, a=2.0)
 
 

@@ -87,7 +87,7 @@ def test_the_body_decouples_into_the_wheels():
 
 
 def test_a_substep_is_the_exact_solution(robot):
-    """Against many small Runge-Kutta steps of the equations, through 20 ms of motion with the wheel pushed along."""
+    """Against many small Runge-Kutta steps, through 20 ms in which the motor pushes the wheel."""
     duty, c = 60, robot
     inertia, friction = c.motor_inertia + c.wheel_inertia, c.kinetic + c.rolling
     ohms = c.resistance + 2 * c.source_resistance * (duty / 100) ** 2

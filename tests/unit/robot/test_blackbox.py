@@ -20,7 +20,7 @@ def fields(number):
 
 
 def state_before(journal, tick):
-    """(params, kick) in force when `tick` begins and before its own events, from everything that ever happened."""
+    """(params, kick) in force before a tick's own events, from all events that there were."""
     params, kick = dict(PARAMS), None
     for event in journal:
         if event["tick"] >= tick:
@@ -39,7 +39,7 @@ def state_before(journal, tick):
 class BlackBoxMachine(RuleBasedStateMachine):
     """Ticks and events in any order.
 
-    The box may forget, but what it tells must be what happened.
+    The box may forget, but what it says must have happened.
     """
 
     def __init__(self):

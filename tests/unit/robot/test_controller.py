@@ -1,4 +1,4 @@
-"""The paper's equations against numbers worked out by hand, the symmetries they must have, and the closed form of eq. x-t."""
+"""The paper's equations, against numbers worked out by hand, symmetries and a closed form."""
 
 from math import cos, isclose, pi, sin, sqrt
 

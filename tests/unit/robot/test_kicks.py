@@ -1,4 +1,4 @@
-"""What a request for a kick may say: anything else is refused, and whatever is accepted runs."""
+"""What a request for a kick may say: all else is refused, and all that is accepted runs."""
 
 import json
 from math import inf, isfinite, nan, pi

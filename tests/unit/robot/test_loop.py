@@ -1,4 +1,4 @@
-"""The fixed tick: its schedule, what it measures and counts, how kicks and parameters enter it, and that it always stops its motors."""
+"""The fixed tick: schedule, counts, kicks, parameters, and that it always stops its motors."""
 
 from math import cos, sin
 

@@ -83,7 +83,7 @@ def test_a_kick_acts_in_its_ticks_and_on_its_wheel_only(mode):
     "kick", [make("position"), make("phase"), make("pulse", param="beta", value=1.0)]
 )
 def test_a_kick_alters_what_neurons_see_and_never_the_projection(kick):
-    """Neurons that cannot move (dt = 0) hide whatever is done to their sight.
+    """Neurons that cannot move (dt = 0) hide what is done to their sight.
 
     A kick of the projection would show in the force.
     """

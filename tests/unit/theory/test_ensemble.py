@@ -224,7 +224,7 @@ def test_the_same_bits_on_any_number_of_cores():
 
 
 def test_neighbours_matter_through_the_step_only():
-    """The fastest wheel of a block sets its step, so its own result is the same whoever stands beside it, and in whatever order."""
+    """The fastest wheel of a block sets its step: its result depends on no other wheel."""
     parameters = random_wheels(LANES)
     fastest = int(np.argmax(rate_per_s(parameters)))
     together = advance(starts(LANES), parameters, 3.0)
