@@ -125,7 +125,8 @@ def build_body(request: BodyRequest, scene: mujoco.MjSpec | None = None) -> Body
     start = request.start or (PUSHED_FORWARD if request.cars == 1 else RANDOM)
     phases = np.full(2 * request.cars, PUSHED) if start == PUSHED_FORWARD else None
     own = choose_preset(request)
-    return Body(model, own, seed=request.seed, torque=request.torque, phases=phases)
+    with value_errors_as_wrong_use():
+        return Body(model, own, seed=request.seed, torque=request.torque, phases=phases)
 
 
 @contextmanager

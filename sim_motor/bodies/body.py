@@ -5,6 +5,7 @@ MuJoCo steps the bodies. Between two steps the controllers of all wheels step an
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from math import pi
 from typing import Any
@@ -47,6 +48,10 @@ class Body:
             programs; random if None.
         torque: If given, the torque of each wheel, N m, all the time, instead of the controllers'.
         record_s: How often to write the state down, s.
+        keep: How many of the last written states `rows` has; None for all.
+
+    Raises:
+        ValueError: No body can have these numbers, or the steps could not follow it.
     """
 
     def __init__(
@@ -58,7 +63,9 @@ class Body:
         phases: Array | None = None,
         torque: float | None = None,
         record_s: float = RECORD_S,
+        keep: int | None = None,
     ) -> None:
+        _check(preset, float(model.opt.timestep), phases)
         self.model, self.data, self.torque = model, mujoco.MjData(model), torque
         # A simulation that cannot be followed must not restart by itself.
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
@@ -77,7 +84,7 @@ class Body:
         self._bodies = np.array([model.body(car_name(car) + "car").id for car in range(self.cars)])
         self._drags = np.full(self.cars, preset.body_drag)
         self._kicks: list[Kick] = []
-        self._notes: list[tuple[Any, ...]] = []
+        self._notes: deque[tuple[Any, ...]] = deque(maxlen=keep)
         begin = (
             np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels))
             if phases is None
@@ -106,7 +113,7 @@ class Body:
 
     @property
     def rows(self) -> Array:
-        """The state every record_s, from the start on, (times, columns)."""
+        """The state every record_s, (times, columns): as many of the last as are kept."""
         steps, qpos, qvel, x, torque, places, turns = (
             np.array(values) for values in zip(*self._notes, strict=True)
         )
@@ -167,7 +174,7 @@ class Body:
             until = min(end, self._next_record(), self._kicks[0].begin if self._kicks else end)
             for step in range(self.step, until):
                 mujoco.mj_step1(model, data)
-                drive(
+                finite = drive(
                     step,
                     dt_s,
                     own.floats,
@@ -180,11 +187,15 @@ class Body:
                     velocity,
                     pull,
                 )
+                if not finite:
+                    until = step
+                    break
                 if self.torque is not None:
                     ctrl[:] = self.torque
                 mujoco.mj_step2(model, data)
             self.step = until
-            if any(warnings[bad].number for bad in _BAD):
+            sound = finite and np.isfinite(qpos).all()
+            if not sound or any(warnings[bad].number for bad in _BAD):
                 raise Unstable(
                     f"the simulation cannot be followed beyond {self.time_s:g} s: forces or speeds"
                     " grew without bounds"
@@ -221,7 +232,20 @@ _BAD = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
+    mujoco.mjtWarning.mjWARN_BADCTRL,
 )
+
+
+def _check(preset: Preset, step_s: float, phases: Any) -> None:
+    """Raise ValueError of numbers with which the steps could not be followed."""
+    preset.checked()
+    if preset.tau < step_s:
+        raise ValueError(
+            f"tau cannot be {preset.tau!r}: the neurons take steps of {step_s:g} s, and would jump"
+            f" to and fro, farther each time; give {step_s:g} s or more"
+        )
+    if phases is not None and not np.isfinite(phases).all():
+        raise ValueError("the wheels' angles at the start are not all finite numbers")
 
 
 def _angles_of(turns: Array) -> Array:

@@ -5,6 +5,8 @@ They are those of robot/controller.py with one rod, under the kicks of robot/kic
 
 from __future__ import annotations
 
+from math import isfinite
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,13 +51,14 @@ def drive(
     bodies: Whole,
     velocity: Array,
     pull: Array,
-) -> None:
+) -> bool:
     """Step all neurons by dt_s, and set the torques of the motors and the drag of the bodies.
 
     Torques, in N m, are R k sin(phi) (x_t - cos phi); drags are in N. floats, whole: of Wheels.
     angles: where in qpos the wheels' angles stand. bodies: the rows of `pull`, (bodies, 6), that
-    are the cars'. velocity: theirs, 3 each.
+    are the cars'. velocity: theirs, 3 each. Returns whether all potentials and torques are finite.
     """
+    finite = True
     x1, x2, gain, time_constant, spring, radius_m, value = floats
     begin, ticks, pulse, smooth = whole
     for i in range(len(angles)):
@@ -71,6 +74,8 @@ def drive(
             x1[i], x2[i], actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, 1
         )
         ctrl[i] = radius_m[i] * force
+        finite = finite and isfinite(x1[i] + x2[i]) and isfinite(ctrl[i])
     for i in range(len(bodies)):
         for axis in range(3):
             pull[bodies[i], axis] = -drags[i] * velocity[3 * i + axis]
+    return finite

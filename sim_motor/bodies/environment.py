@@ -18,10 +18,11 @@ from robot.kick_requests import parse
 from robot.kicks import MAX_TICKS, MEMBRANE, PHASE, POSITION
 from robot.params import Params
 from sim_motor.bodies.body import OF_A_CAR, Body, Unstable
-from sim_motor.bodies.measures import STILL_RAD_S, summary
+from sim_motor.bodies.measures import STILL_RAD_S
 from sim_motor.bodies.model import car_name, compose
 from sim_motor.bodies.presets import NAMES
 from sim_motor.bodies.presets import preset as preset_of
+from sim_motor.bodies.running_summary import RunningSummary
 
 Info = dict[str, Any]
 Observation = NDArray[np.float32]
@@ -134,7 +135,7 @@ class Train(gymnasium.Env[Observation, Action]):
                 body.kick(kick)
                 self._kicks += 1
         try:
-            body.run(self._decision_s)
+            body.run(self._decision_s, lambda time_s: self._summary.add(body.rows[-1]))
         except Unstable as error:
             ended = str(error)
         info = self._info(ended)
@@ -184,7 +185,14 @@ class Train(gymnasium.Env[Observation, Action]):
         model = compose(self._preset, scene, self._cars, seed=seed, timestep=STEP_S).compile()
         if phases is not None and np.shape(phases) != (2 * self._cars,):
             raise ValueError(f"phases need {2 * self._cars} angles, one for each wheel")
-        self._body = Body(model, self._preset, seed=seed, phases=phases, record_s=self._decision_s)
+        # An episode may be long: it must not take more memory with each decision.
+        self._body = Body(
+            model, self._preset, seed=seed, phases=phases, record_s=self._decision_s, keep=1
+        )
+        columns = self._body.columns
+        self._omegas = [name.endswith("_omega_rad_s") for name in columns]
+        self._summary = RunningSummary(columns)
+        self._summary.add(self._body.rows[-1])
         self._kicks = 0
 
     def _observe(self) -> Observation:
@@ -209,17 +217,16 @@ class Train(gymnasium.Env[Observation, Action]):
         )
 
     def _info(self, ended: str) -> Info:
-        columns, rows = self._body.columns, self._body.rows
-        poses = rows[-1, -self._cars * len(OF_A_CAR) :].reshape(self._cars, -1)
-        omega = float(rows[-1, [name.endswith("_omega_rad_s") for name in columns]].mean())
-        facts = summary(columns, rows)
+        row, summary = self._body.rows[-1], self._summary.summary()
+        poses = row[-self._cars * len(OF_A_CAR) :].reshape(self._cars, -1)
+        omega = float(row[self._omegas].mean())
         return {
             "time_s": self._body.time_s,
             "cars": poses[:, [OF_A_CAR.index(name) for name in ("x_m", "y_m", "yaw_rad")]],
             "direction": int(np.sign(omega)) if abs(omega) > STILL_RAD_S else 0,
             "kicks": self._kicks,
-            "summary": facts,
-            "ended": ended or ("a car fell over" if facts["flipped"] else ""),
+            "summary": summary,
+            "ended": ended or ("a car fell over" if summary["flipped"] else ""),
         }
 
 

@@ -5,6 +5,7 @@ Direction, order, reversals and speed, and whether it got stuck or fell over.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple, TypedDict
 
 import numpy as np
@@ -36,11 +37,17 @@ class Course(NamedTuple):
     lean_rad: Array
 
 
+@cache
+def _ending(columns: tuple[str, ...], ending: str) -> NDArray[np.intp]:
+    """The numbers of the columns whose names end so."""
+    return np.flatnonzero([column.endswith(ending) for column in columns])
+
+
 def course(columns: tuple[str, ...], rows: Array) -> Course:
     """Take what is needed from the rows of a Body."""
 
     def of(ending: str) -> Array:
-        return rows[:, [column.endswith(ending) for column in columns]]
+        return rows[:, _ending(columns, ending)]
 
     centre = np.stack([of(f"_{axis}_m").mean(axis=1) for axis in "xyz"], axis=1)
     lean = np.arccos(np.clip(np.cos(of("_roll_rad")) * np.cos(of("_pitch_rad")), -1.0, 1.0)).max(

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tracemalloc
 from math import cos, pi, sin
 
 import gymnasium
@@ -19,6 +20,7 @@ from robot.kicks import (
     reversing_shift,
 )
 from sim_motor.bodies.environment import ID, JOINT_RAD_S, KICKS, WHEEL_RAD_S, Train
+from sim_motor.bodies.measures import summary
 from sim_motor.bodies.presets import preset
 
 CHECK = f"""
@@ -157,3 +159,55 @@ def test_an_episode_ends_when_a_car_lies_on_its_back_or_cannot_be_followed():
     assert train.observation_space.contains(seen)
     train.reset(seed=1)
     assert not train.step(kicks(train))[2]
+
+
+def test_a_decision_late_in_an_episode_takes_no_more_memory_than_an_early_one():
+    train = Train(cars=1, decision_s=0.01, time_s=1e6)
+    train.reset(seed=1)
+    action = kicks(train)
+
+    def allocated(steps):
+        """The most memory that one of the last 10 of so many steps took."""
+        most = []
+        for _ in range(steps - 10):
+            train.step(action)
+        tracemalloc.start()
+        for _ in range(10):
+            tracemalloc.reset_peak()
+            before = tracemalloc.get_traced_memory()[0]
+            train.step(action)
+            most.append(tracemalloc.get_traced_memory()[1] - before)
+        tracemalloc.stop()
+        return max(most)
+
+    allocated(600)  # up to here the last seconds fill
+    early = allocated(20)
+    assert allocated(2000) < early + 2000
+    assert len(train._body.rows) == 1
+
+
+def test_its_summary_is_that_of_the_states_at_all_decisions():
+    train = Train(cars=2, decision_s=0.1)
+    train.reset(seed=3)
+    rows = [train._body.rows[-1]]
+    for number in range(120):
+        seen = train.step(kicks(train, **({"car0_left": PHASE} if number == 50 else {})))
+        rows.append(train._body.rows[-1])
+    found, whole = seen[-1]["summary"], summary(train._body.columns, np.array(rows))
+    assert list(found) == list(whole)
+    for name, value in whole.items():
+        assert found[name] == pytest.approx(value, rel=1e-9), name
+    assert found["started_s"] is not None
+
+
+def test_a_preset_whose_neurons_its_steps_cannot_follow_is_refused(monkeypatch):
+    fast = preset("paper")._replace(tau=0.0004)
+    monkeypatch.setattr("sim_motor.bodies.environment.preset_of", lambda name: fast)
+    with pytest.raises(ValueError, match=r"tau cannot be 0\.0004"):
+        Train(cars=1)
+
+
+def test_angles_at_the_start_are_finite():
+    train = Train(cars=1)
+    with pytest.raises(ValueError, match="finite"):
+        train.reset(seed=1, options={"phases": [0.0, float("nan")]})

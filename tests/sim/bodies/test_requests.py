@@ -21,6 +21,8 @@ def test_what_cannot_be_is_refused_in_words(tmp_path):
         (BodyRequest(scene="slopes", angle=2.0), "slopes of"),
         (BodyRequest(k=float("nan")), "k cannot"),
         (BodyRequest(tau=0.0), "tau"),
+        (BodyRequest(tau=0.0004), "tau cannot be 0.0004"),
+        (BodyRequest(tau=0.001, timestep=0.002), "tau cannot be 0.001"),
         (BodyRequest(drag=-1.0), "drag"),
         (BodyRequest(preset="porsche"), "no preset"),
     ):
