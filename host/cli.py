@@ -98,7 +98,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                             "hint": error.hint,
                             "status": error.status,
                         }
-                    }
+                    },
+                    allow_nan=False,
                 )
             )
         print(
@@ -116,7 +117,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.json:
             print(
                 json.dumps(
-                    {"error": {"message": message, "hint": "is the disk full?", "status": 1}}
+                    {"error": {"message": message, "hint": "is the disk full?", "status": 1}},
+                    allow_nan=False,
                 )
             )
         print(f"kickctl: {message}\n  is the disk full?", file=sys.stderr)

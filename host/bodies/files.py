@@ -67,18 +67,18 @@ def write_mcap(
         },
         "required": list(columns),
     }
-    metadata = {name: json.dumps(value) for name, value in info.items()}
+    metadata = {name: json.dumps(value, allow_nan=False) for name, value in info.items()}
     with path.open("wb") as file:
         writer: Any = Writer(file, compression=CompressionType.LZ4, enable_data_crcs=True)
         writer.start(library=f"kickctl {__version__}")
         writer.add_metadata("kickctl", metadata)
         schema_id = writer.register_schema(
-            "kickctl.State", "jsonschema", json.dumps(schema).encode()
+            "kickctl.State", "jsonschema", json.dumps(schema, allow_nan=False).encode()
         )
         channel = writer.register_channel(TOPIC, "json", schema_id)
         for number, row in enumerate(rows.tolist()):
             time_ns = round(row[0] * 1e9)
-            message = json.dumps(dict(zip(columns, row, strict=True))).encode()
-            writer.add_message(channel, time_ns, message, time_ns, number)
+            message = json.dumps(dict(zip(columns, row, strict=True)), allow_nan=False)
+            writer.add_message(channel, time_ns, message.encode(), time_ns, number)
         writer.finish()
     return path

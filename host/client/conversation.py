@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import struct
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any, NamedTuple
 
 from host.client.stop import Stopped, answered
@@ -134,7 +135,7 @@ class Conversation:
             try:
                 if kind == wire.SAMPLES:
                     number, records = wire.open_samples(payload)
-                    yield Samples(number, unpack(records))
+                    yield Samples(number, _finite(unpack(records)))
                 elif kind == wire.EVENT:
                     yield _checked_event(wire.load(payload))
                 else:
@@ -188,6 +189,14 @@ def _checked_event(event: dict[str, Any]) -> dict[str, Any]:
     if not all(isinstance(place, int) for place in places):
         raise wire.BadMessage("an event that has no place in the stream")
     return event
+
+
+def _finite(records: list[Record]) -> list[Record]:
+    """The records, if all their numbers are finite: no log holds others. Raises ValueError."""
+    for record in records:
+        if not all(map(isfinite, record)):
+            raise ValueError(f"numbers that are not finite in tick {record.tick}")
+    return records
 
 
 def _bytes(frame: Any) -> bytes:

@@ -206,7 +206,7 @@ def reversal(
         The plan; None if no quenched kick is sure.
     """
     chosen = tuple(values[name] for name in _MAPPED)
-    key = json.dumps([sources(), before, *chosen])
+    key = json.dumps([sources(), before, *chosen], allow_nan=False)
     kept = _kept()
     if key not in kept:
         say("computing which kicks reverse a wheel at these parameters: some seconds, only once")
@@ -236,7 +236,8 @@ def _keep(plans: dict[str, Any]) -> None:
     new = _file().with_suffix(f".{os.getpid()}")
     with suppress(OSError):
         new.parent.mkdir(parents=True, exist_ok=True)
-        new.write_text(json.dumps(dict(list(plans.items())[-_KEPT:])), encoding="utf-8")
+        text = json.dumps(dict(list(plans.items())[-_KEPT:]), allow_nan=False)
+        new.write_text(text, encoding="utf-8")
         new.replace(_file())
 
 

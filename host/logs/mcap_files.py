@@ -83,7 +83,7 @@ def _to_text(value: Any) -> str:
             json.loads(value)
         except ValueError:
             return value
-    return json.dumps(value)
+    return json.dumps(value, allow_nan=False)
 
 
 def _from_text(text: str) -> Any:
@@ -135,7 +135,8 @@ class McapTap:
         self._writer.flush()
 
     def _register(self, topic: str, name: str, schema: dict[str, Any]) -> int:
-        identity = self._writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
+        text = json.dumps(schema, allow_nan=False)
+        identity = self._writer.register_schema(name, "jsonschema", text.encode())
         return int(self._writer.register_channel(topic, "json", identity))
 
     def take_records(self, records: list[Record]) -> None:
@@ -164,7 +165,7 @@ class McapTap:
         self._waiting.clear()
 
     def _write(self, channel: int, message: dict[str, Any], tick: int) -> None:
-        data = json.dumps(message, separators=(",", ":")).encode()
+        data = json.dumps(message, allow_nan=False, separators=(",", ":")).encode()
         self._writer.add_message(channel, self._now_ns, data, self._now_ns, tick)
 
     def close(self) -> None:

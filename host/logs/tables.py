@@ -47,4 +47,9 @@ def write_npz(
     """Write the columns as arrays of an .npz file, and `info` and `events` as JSON text."""
     import numpy as np
 
-    np.savez_compressed(out, **columns(arrays), info=json.dumps(info), events=json.dumps(events))
+    np.savez_compressed(
+        out,
+        **columns(arrays),
+        info=json.dumps(info, allow_nan=False),
+        events=json.dumps(events, allow_nan=False),
+    )

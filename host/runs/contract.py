@@ -42,7 +42,7 @@ class Setting:
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
         """The random seed of a cell. It does not depend on other cells or on the machine."""
-        text = json.dumps([self.seed, cell], sort_keys=True)
+        text = json.dumps([self.seed, cell], allow_nan=False, sort_keys=True)
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], "big")
 
     def elsewhere(self, **own: Any) -> str:

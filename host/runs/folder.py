@@ -53,7 +53,7 @@ class Study:
             ) from error
         try:
             fcntl.flock(self._journal, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            self.write("settings.json", json.dumps(settings, indent=1) + "\n")
+            self.write("settings.json", json.dumps(settings, indent=1, allow_nan=False) + "\n")
             self._read()
         except BlockingIOError:
             self.close()
@@ -141,4 +141,4 @@ def digest(data: dict[str, Any]) -> str:
 
 
 def _key(cell: Cell) -> str:
-    return json.dumps(cell, sort_keys=True)
+    return json.dumps(cell, allow_nan=False, sort_keys=True)

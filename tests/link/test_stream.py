@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from host.client.conversation import Conversation
 from host.client.subscription import Subscription
-from host.errors import KickctlError
+from host.errors import KickctlError, NoLink
 from host.logs.log import Log
-from robot import wire
+from robot import record, wire
 from robot.blackbox import BlackBox
 from tests.rig import TOKEN, Rig
 from tests.talk import Client
@@ -234,3 +234,11 @@ def test_a_line_that_loses_frames_costs_time_and_nothing_else(data):
     assert {number for number, tick in enumerate(ticks_of_events) if tick not in gone} <= set(
         numbers
     )
+
+
+@pytest.mark.parametrize("number", [float("nan"), float("inf")])
+def test_a_record_whose_numbers_are_not_finite_is_none(number):
+    fields = dict.fromkeys(record.NAMES, 0) | {"tick": 7, "left_x1": number}
+    frame = wire.encode_samples(1, record.STRUCT.pack(*fields.values()))
+    with pytest.raises(NoLink, match="not finite in tick 7"):
+        Conversation(TOKEN, "n", "c").feed(frame)
