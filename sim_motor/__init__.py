@@ -1,4 +1,4 @@
-"""Part of kickctl: what stands in for hardware.
+"""Part of kickctl. It stands in for hardware.
 
 A simulated EV3 with two large motors, in virtual or in real time, alone or by the thousand.
 """
