@@ -1,4 +1,4 @@
-"""A connection to a robot: hello, proof, lease, heartbeat, reconnection, requests and the stop.
+"""A connection to a robot: requests, control, and the stop.
 
 Without a token it observes: it may look, and stop the robot. With the token it may also drive. Any
 number of connections to one robot may be open, each with a thread of its own, and `stop` waits for
@@ -7,77 +7,33 @@ none of them.
 
 from __future__ import annotations
 
-import threading
-import uuid
 from collections.abc import Callable
 from contextlib import suppress
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, Self
 
-from host.client.access import greet, hear
-from host.client.conversation import Conversation
+from host.client import neighbours
+from host.client.lasting_link import HEARTBEAT_S, LastingLink
 from host.client.stop import REPEAT_S, Stopped, stop_frame, stop_robot, unconfirmed
-from host.client.stream import Stream
 from host.errors import KickctlError, NoLink, RefusedByRobot
-from host.link.transport import Link, LinkLost
+from host.link.transport import LinkLost
 from host.util.installation import deploy_command
 from robot.token import default_path
 
 if TYPE_CHECKING:
     from types import TracebackType
 
-# The robot counts a silent host as lost after half a second by default.
-HEARTBEAT_S = 0.1
 # How long an open link that carries other things may take to confirm a stop, and how often to look.
 THROUGH_S = 1.0
 LOOK_S = 0.005
 
 
-class Connection:
-    """One conversation with a robot, over a link that is found again when it breaks.
+class Connection(LastingLink):
+    """A conversation with a robot that this program may control.
 
-    Every method that talks to the robot raises KickctlError in words when that fails.
-
-    Args:
-        link: The way to the robot, not opened yet.
-        token: The robot's token; None observes.
-        name: Who this is, for the robot and for other people.
-
-    Attributes:
-        link: The way to the robot.
-        hello: What the robot has said of itself.
-        stream: What it sends to who subscribes.
-        on_trouble: Called with words for people when the link breaks.
-        answer_s: How long the robot may take to answer.
-        reconnect_s: How long a lost robot is looked for.
+    Every method that talks to the robot raises KickctlError in words when that fails. A connection
+    that nobody refers to any more hangs up, as a program does that ends: if it had control, the
+    robot takes its host for lost.
     """
-
-    answer_s = 5.0
-    reconnect_s = 10.0
-
-    def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
-        self.link = link
-        self.name = name
-        self.stream = Stream()
-        self.on_trouble: Callable[[str], None] = lambda words: None
-        self._talk = Conversation(token, name, client=uuid.uuid4().hex)
-        self._lock = threading.RLock()
-        self._sending = threading.Lock()
-        self._leased = False
-        self._heartbeat_due = 0.0
-        self._closed = threading.Event()
-        self._broken: KickctlError | None = None
-        with self._lock:
-            try:
-                self._open()
-            except KickctlError:
-                link.close()
-                raise
-            self.hello = self._talk.hello
-            self.started_utc = datetime.now(UTC)
-            self.clock_zero_s = self._clock_zero()
-        if not link.virtual:
-            threading.Thread(target=self._keep_alive, name="kickctl link", daemon=True).start()
 
     def __enter__(self) -> Self:
         return self
@@ -97,9 +53,7 @@ class Connection:
                 return
             with suppress(KickctlError):
                 self.release()
-            self._closed.set()
-            self._broken = NoLink("this connection has been closed", "call connect again")
-            self.link.close()
+            self._end("this connection has been closed")
 
     @property
     def trusted(self) -> bool:
@@ -114,12 +68,15 @@ class Connection:
     def lease(self) -> None:
         """Take control. Others may look on and stop the robot.
 
+        Another connection of this program that has control loses it.
+
         Raises:
             LeaseLost: Another host controls the robot.
             RefusedByRobot: This machine does not have the robot's token.
         """
         self.request("lease", sealed=True)
         self._leased = True
+        neighbours.take_control(self)
 
     def release(self) -> None:
         """Give control back; the robot goes on as it is."""
@@ -144,6 +101,8 @@ class Connection:
             KickctlError: The robot refuses, does not answer, or cannot be reached.
         """
         with self._lock:
+            if not self._whole and self._broken is None:
+                self._reopen("it was left half open")
             if sealed and not self._talk.trusted:
                 raise RefusedByRobot(
                     "this machine does not have the robot's token, so it may only look, and stop"
@@ -179,7 +138,7 @@ class Connection:
         raise failures[0]
 
     def _stop_aside(self) -> Stopped:
-        return stop_robot(self.link.another(), self.name)
+        return stop_robot(self.link, self.name)
 
     def _stop_through(self) -> Stopped:
         """Stop over the open link, which another thread may be reading."""
@@ -210,62 +169,19 @@ class Connection:
         finally:
             self._sending.release()
 
-    def pump(self, timeout_s: float) -> bool:
-        """Take in what the robot has sent.
-
-        Args:
-            timeout_s: How long to wait for the first of it (s).
-
-        Returns:
-            Whether anything came.
-
-        Raises:
-            NoLink: The link broke and did not come back.
-        """
-        with self._lock:
-            came = self._pump(timeout_s)
-            self.stream.raise_failure()
-            return came
-
-    def _pump(self, timeout_s: float) -> bool:
-        if self._broken is not None:
-            raise self._broken
-        try:
-            self._send_what_is_due(self.link.now())
-            return self._read(timeout_s)
-        except LinkLost:
-            self._reopen()
-            return False
-
-    def _read(self, timeout_s: float) -> bool:
-        data = self.link.receive(timeout_s)
-        self.stream.take(list(self._talk.feed(data)))
-        return bool(data)
-
-    def _send(self, frame: bytes) -> None:
-        with self._sending:
-            self.link.send(frame)
-
-    def _send_what_is_due(self, now: float) -> None:
-        if self._leased and now >= self._heartbeat_due:
-            self._heartbeat_due = now + HEARTBEAT_S
-            self._send(self._talk.request("heartbeat", {}, sealed=True)[1])
-        tick = self.stream.tick_to_ask_for(now)
-        if tick is not None:
-            self._send(self._talk.request("subscribe", {"from": tick}, sealed=False)[1])
-
     def _exchange(self, make: Callable[[], tuple[int, bytes]], what: str) -> dict[str, Any]:
         if self._broken is not None:
             raise self._broken
+        give_up = self.link.now() + self.answer_s + self.reconnect_s
         while True:
             session = self._talk.session
             number, frame = make()
             try:
                 self._send(frame)
-            except LinkLost:
-                self._reopen()
+            except LinkLost as error:
+                self._reopen(str(error))
                 continue
-            until = self.link.now() + self.answer_s
+            until = min(give_up, self.link.now() + self.answer_s)
             while session == self._talk.session:
                 answer = self._talk.answer(number)
                 if answer is not None:
@@ -276,76 +192,3 @@ class Connection:
                         "is its program alive? Look at its screen",
                     )
                 self.pump(HEARTBEAT_S)
-
-    def _open(self) -> None:
-        """Say hello, prove the token, and take the lease again if this host had it."""
-        self.link.open()
-        try:
-            greet(self.link, self._talk, self._send, self.answer_s)
-            if self._leased:
-                self._retake_lease()
-        except LinkLost as error:
-            self._talk.raise_refusal()
-            raise NoLink(
-                f"the robot at {self.link.uri} hung up: {error}",
-                "is another program listening at that port?",
-            ) from error
-
-    def _reopen(self) -> None:
-        """Find the robot again, to go on in its record where the link broke."""
-        if self._broken is not None:
-            raise self._broken
-        self.on_trouble(
-            f"the link to {self.link.uri} broke; looking for the robot for {self.reconnect_s:g} s"
-        )
-        until = self.link.now() + self.reconnect_s
-        pause = 0.05
-        while True:
-            try:
-                self._open()
-                break
-            except NoLink as error:
-                if (
-                    self._closed.wait(0.0 if self.link.virtual else pause)
-                    or self.link.now() >= until
-                ):
-                    self._broken = NoLink(
-                        f"the link to {self.link.uri} broke and did not come back: {error.message}",
-                        error.hint,
-                    )
-                    raise self._broken from error
-                pause = min(1.0, 2.0 * pause)
-        self.stream.interrupt()
-        if self._talk.hello["boot"] != self.hello["boot"]:
-            self.hello = self._talk.hello
-            self.clock_zero_s = self._clock_zero()
-            self.stream.restart(self.hello, self.clock_zero_s)
-
-    def _retake_lease(self) -> None:
-        number, frame = self._talk.request("lease", {}, sealed=True)
-        self._send(frame)
-        try:
-            hear(
-                self.link,
-                self._talk,
-                lambda: self._talk.answer(number) is not None,
-                self.answer_s,
-            )
-        except RefusedByRobot:
-            self._leased = False
-
-    def _clock_zero(self) -> float:
-        """UTC, in Unix seconds, when the robot's clock was at zero."""
-        return datetime.now(UTC).timestamp() - float(self._talk.hello["clock_s"])
-
-    def _keep_alive(self) -> None:
-        while not self._closed.wait(HEARTBEAT_S / 2):
-            if self._lock.acquire(blocking=False):
-                try:
-                    if not self._closed.is_set() and (self._leased or self.stream.wanted):
-                        while self._pump(0.0):
-                            pass
-                except KickctlError:
-                    return
-                finally:
-                    self._lock.release()

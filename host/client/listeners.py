@@ -7,6 +7,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Self
+from weakref import WeakMethod
 
 from host.logs.tap import Event
 from robot.record import Record
@@ -49,16 +50,22 @@ class Backlog:
             return self._records.popleft() if self._records else None
 
     def wait(self) -> Record | None:
-        """The oldest record, as soon as there is one; None after `end`."""
+        """The oldest record, as soon as there is one; None when no more will come."""
         with self._changed:
             self._changed.wait_for(lambda: self._ended or self._records)
-            return None if self._ended else self._records.popleft()
+            return self._records.popleft() if self._records else None
 
-    def end(self) -> None:
-        """Let nobody wait any longer."""
+    def finish(self) -> None:
+        """No more records will come; those that are there can still be taken."""
         with self._changed:
             self._ended = True
             self._changed.notify_all()
+
+    def end(self) -> None:
+        """Let nobody wait any longer, and give nobody what is left."""
+        with self._changed:
+            self._records.clear()
+            self.finish()
 
 
 class Listener:
@@ -70,7 +77,9 @@ class Listener:
     """
 
     def __init__(
-        self, callback: Callable[[Record], object], forget: Callable[[Listener], None]
+        self,
+        callback: Callable[[Record], object],
+        forget: WeakMethod[Callable[[Listener], None]],
     ) -> None:
         self.failures = 0
         self.error: Exception | None = None
@@ -96,7 +105,9 @@ class Listener:
 
     def close(self) -> None:
         """Call the callback no more."""
-        self._forget(self)
+        forget = self._forget()
+        if forget is not None:
+            forget(self)
         self.backlog.end()
 
     def run(self) -> None:

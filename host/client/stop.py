@@ -66,12 +66,12 @@ def answered(result: dict[str, Any]) -> Stopped:
 
 
 def stop_robot(link: Link, name: str = "kickctl", patience_s: float | None = None) -> Stopped:
-    """Open a link, send the STOP frame before anything else, and wait until it is confirmed.
+    """Open another link, send the STOP frame first and alone, and wait until it is confirmed.
 
-    The link is closed in the end.
+    The other link is closed in the end.
 
     Args:
-        link: A way to the robot, not opened yet.
+        link: A way to the robot, which stays as it is.
         name: Who stops the robot, for people.
         patience_s: How long the robot may take, by default as long as it may for a hello.
 
@@ -82,6 +82,7 @@ def stop_robot(link: Link, name: str = "kickctl", patience_s: float | None = Non
         NoLink: Nobody has confirmed the stop, so the motors may be running.
     """
     frame, decoder = stop_frame(name), wire.Decoder()
+    link = link.another()
     try:
         link.open()
         until = link.now() + (patience_s or float(getattr(link, "answer_s", CONFIRM_S)))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from math import inf
 from typing import TYPE_CHECKING, Any
+from weakref import WeakMethod
 
 from host.client.connection import Connection
 from host.client.listeners import Backlog, Listener, Records
+from host.client.stream import Feed
 from host.errors import NoLink, WrongUse
 from host.logs.tap import Tap
 from host.util.provenance import origin
@@ -65,7 +67,7 @@ class Watcher(Connection):
             )
         self._subscribe()
         first = self.newest
-        silent_since = self.link.now()
+        began = self.link.now()
         while until is None or not until():
             newest = self.newest
             if newest is not None:
@@ -73,9 +75,11 @@ class Watcher(Connection):
                     first = newest
                 if newest.t_s - first.t_s >= seconds:
                     return False
-            if self.pump(0.1):
-                silent_since = self.link.now()
-            elif self.link.now() - silent_since > self.answer_s + self.reconnect_s:
+            came = self.pump(0.1)
+            # Answers to heartbeats show that the robot is there, not that it sends records.
+            silent_since = max(began, self.stream.fed_s)
+            patience_s = self.answer_s + self.reconnect_s
+            if not came and self.link.now() - silent_since > patience_s:
                 raise NoLink(
                     "the robot sends no more records",
                     "look at its screen; `kickctl doctor` says more",
@@ -119,8 +123,8 @@ class Watcher(Connection):
         from host.logs.log import Log
 
         log = Log(self.info())
-        self.add_tap(log)
         try:
+            self.add_tap(log)
             yield log
         finally:
             self.remove_tap(log)
@@ -141,10 +145,12 @@ class Watcher(Connection):
         Returns:
             The listener; its `close` ends the calls, as does leaving it as a `with` block.
         """
-        listener = Listener(callback, self._forget)
+        # The listener's thread lives as long as the connection; it must not keep it alive.
+        listener = Listener(callback, WeakMethod(self._forget))
         if self.link.virtual:
             self.stream.after.append(listener.catch_up)
         else:
+            self._endings.append(listener.backlog.finish)
             threading.Thread(target=listener.run, name="kickctl listener", daemon=True).start()
         self.add_tap(listener.backlog)
         return listener
@@ -191,19 +197,21 @@ class Watcher(Connection):
     def pull(self, tap: Tap) -> None:
         """Feed a tap with everything that the robot's black box holds, up to now.
 
+        Other taps get nothing of it, and nothing twice; what is new comes to them a little later.
+
         Args:
             tap: As for `add_tap`.
         """
-        with self._lock:
-            # The answer comes behind the last record of the subscription that there was.
-            self.request("unsubscribe")
-            until = self.request("status")["tick"]
-            self.stream.begin(0, -inf)
-            self.stream.add(tap)
-            try:
-                self.wait(inf, until=lambda: (self.stream.place.next_tick or 0) >= until)
-            finally:
-                self.stream.remove(tap)
+        self._subscribe()
+        feed = Feed(end=self.request("status")["tick"])
+        feed.add(tap)
+        try:
+            with self._lock:
+                self.stream.open(feed)
+            self.wait(inf, until=lambda: feed.complete)
+        finally:
+            with self._lock:
+                self.stream.close(feed)
 
     def info(self) -> dict[str, Any]:
         """What a log must say of its origin.
@@ -215,8 +223,10 @@ class Watcher(Connection):
 
     def _forget(self, listener: Listener) -> None:
         self.stream.remove(listener.backlog)
-        if listener.catch_up in self.stream.after:
+        with suppress(ValueError):
             self.stream.after.remove(listener.catch_up)
+        with suppress(ValueError):
+            self._endings.remove(listener.backlog.finish)
 
     def _subscribe(self) -> None:
         with self._lock:

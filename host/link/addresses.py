@@ -6,44 +6,76 @@ sim:// (embedded, in virtual time), tcp://HOST:PORT, ssh://USER@HOST and serial:
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
+from ipaddress import IPv6Address
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
-from host.errors import WrongUse
+from host.errors import WrongUse, printable
+from host.link.serial_line import SerialLink
 from host.link.settings import parse_setting
-from host.link.transport import Link, SerialLink, TcpLink
+from host.link.transport import Link, TcpLink
 from host.util.interrupts import uninterrupted
 from robot.program import PORT
 from robot.serial_line import BAUD
 
 SIM = "sim://"
+FASTEST_BAUD = 4_000_000
+
+_FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
+_SCHEMES = ("sim", "tcp", "ssh", "serial")
+# USER@HOST:PORT; a host that is an IPv6 address stands in brackets.
+_AUTHORITY = re.compile(
+    r"(?:(?P<user>[^@]*)@)?(?:\[(?P<v6>[^][@]*)\]|(?P<name>[^][@:]*))(?::(?P<port>[0-9]*))?"
+)
 
 
 @dataclass(frozen=True)
 class _Parts:
+    """An address in pieces, whose scheme is known."""
+
+    uri: str
     scheme: str
-    host: str
-    port: int | None
+    authority: str
     path: str
     options: dict[str, str]
 
+    def refuse_options(self, *known: str) -> None:
+        """Raise WrongUse for an option that is not among the known ones."""
+        for name in self.options:
+            if name not in known:
+                they_are = f"; the only option is {', '.join(known)}" if known else ""
+                raise no_address(self.uri, f"it has no option '{name}'{they_are}")
+
+
+def no_address(uri: str, why: str, hint: str = _FORMS) -> WrongUse:
+    """The error for what is no address of a robot.
+
+    Args:
+        uri: What was given.
+        why: What is wrong with it.
+        hint: What to write instead.
+    """
+    return WrongUse(f"'{printable(uri)}' is no address of a robot: {printable(why)}", hint)
+
 
 def _split(uri: str) -> _Parts:
+    """The pieces of an address. Raises WrongUse."""
+    if not uri.isprintable():
+        raise no_address(uri, "it contains a character that cannot be printed")
     try:
         parts = urlsplit(uri)
-        port = parts.port
     except ValueError as error:
-        raise WrongUse(f"'{uri}' is no address of a robot: {error}", _FORMS) from error
-    return _Parts(
-        parts.scheme,
-        parts.hostname or "",
-        port,
-        parts.path,
-        dict(parse_qsl(parts.query, keep_blank_values=True)),
-    )
-
-
-_FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
+        raise no_address(uri, str(error)) from error
+    if parts.scheme not in _SCHEMES or not uri.lstrip()[len(parts.scheme) :].startswith("://"):
+        raise no_address(uri, f"it begins with none of {', '.join(f'{s}://' for s in _SCHEMES)}")
+    if parts.fragment:
+        raise no_address(uri, "nothing belongs behind a '#'")
+    pairs = parse_qsl(parts.query, keep_blank_values=True)
+    options = dict(pairs)
+    if len(options) < len(pairs):
+        raise no_address(uri, "an option stands in it twice")
+    return _Parts(uri, parts.scheme, parts.netloc, parts.path, options)
 
 
 def chosen(uri: str | None) -> str:
@@ -76,9 +108,9 @@ def with_params(uri: str, settings: list[str]) -> str:
 
 
 def sim_options(uri: str) -> dict[str, str] | None:
-    """The options of a simulated robot's URI, None for a real one's.
+    """The options of a simulated robot's address, None for a real robot's.
 
-    Raises WrongUse if it is no URI.
+    Raises WrongUse if it is no address.
     """
     parts = _split(uri)
     return parts.options if parts.scheme == "sim" else None
@@ -95,29 +127,81 @@ def make_link(uri: str, seed: int | None = None) -> Link:
         WrongUse: It is no address of a robot, or a real robot was given a seed.
     """
     parts = _split(uri)
-    if parts.scheme != "sim" and seed is not None:
+    if parts.scheme == "sim":
+        return _sim(parts, seed)
+    if seed is not None:
         raise WrongUse(
             f"--seed fixes the chances of {SIM} only",
             "a robot elsewhere has the seed that it was started with",
         )
-    if parts.scheme == "sim":
-        if parts.host or parts.path:
-            raise WrongUse(
-                f"'{uri}' is no address of a robot: the simulated one has no name", _FORMS
-            )
-        with uninterrupted():
-            from host.link.sim import SimLink
+    if parts.scheme == "tcp":
+        return _tcp(parts)
+    if parts.scheme == "serial":
+        return _serial(parts)
+    from host.link.ssh import SshLink
 
-            return SimLink.from_options(uri, parts.options, seed)
-    if parts.scheme == "tcp" and parts.host:
-        return TcpLink(uri, parts.host, parts.port or PORT)
-    if parts.scheme == "ssh" and parts.host:
-        from host.link.ssh import SshLink
+    return SshLink(uri)
 
-        return SshLink(uri)
-    if parts.scheme == "serial" and parts.path:
-        baud = parts.options.get("baud", str(BAUD))
-        if not baud.isdigit():
-            raise WrongUse(f"'{baud}' is no baud rate", _FORMS)
-        return SerialLink(uri, parts.path, int(baud))
-    raise WrongUse(f"'{uri}' is no address of a robot", _FORMS)
+
+def _sim(parts: _Parts, seed: int | None) -> Link:
+    if parts.authority or parts.path:
+        raise no_address(parts.uri, "the simulated robot has no name")
+    with uninterrupted():
+        from host.link.sim import SimLink
+
+        return SimLink.from_options(parts.uri, parts.options, seed)
+
+
+def _tcp(parts: _Parts) -> Link:
+    hint = "write it as tcp://HOST:PORT, for example tcp://ev3dev.local or tcp://[fe80::1%usb0]"
+    pieces = _AUTHORITY.fullmatch(parts.authority)
+    if pieces is None:
+        many = parts.authority.count(":") > 1 and "[" not in parts.authority
+        why = "an IPv6 address stands in brackets" if many else "its host or port is none"
+        raise no_address(parts.uri, why, hint)
+    if pieces["user"] is not None or parts.path.strip("/"):
+        raise no_address(parts.uri, "only a host and a port belong into it", hint)
+    parts.refuse_options()
+    port = int((pieces["port"] or str(PORT))[:6])
+    if not 0 < port < 65536:
+        raise no_address(parts.uri, "ports are 1 to 65535", hint)
+    try:
+        host = _ip6(pieces["v6"]) if pieces["v6"] is not None else _name(pieces["name"])
+    except ValueError as error:
+        raise no_address(parts.uri, str(error), hint) from error
+    return TcpLink(parts.uri, host, port)
+
+
+def _ip6(text: str) -> str:
+    """An IPv6 address with its interface, which is behind a '%', in URIs by the book '%25'.
+
+    Raises ValueError.
+    """
+    address, percent, interface = text.partition("%")
+    if len(interface) > 2:
+        interface = interface.removeprefix("25")
+    if percent and not re.fullmatch(r"[\w.:@-]+", interface):
+        raise ValueError(f"'{interface}' is no network interface")
+    return str(IPv6Address(address)) + percent + interface
+
+
+def _name(text: str) -> str:
+    """A machine's name or IPv4 address. Raises ValueError."""
+    if not re.fullmatch(r"[\w.-]+", text):
+        raise ValueError(f"'{text}' is no machine's name")
+    try:
+        text.encode("idna")  # as the network's functions do
+    except UnicodeError as error:
+        raise ValueError(f"'{text}' is no machine's name") from error
+    return text
+
+
+def _serial(parts: _Parts) -> Link:
+    hint = f"write it as serial:///dev/ttyUSB0?baud={BAUD}, with three slashes"
+    if parts.authority or not parts.path:
+        raise no_address(parts.uri, "it names no device file", hint)
+    parts.refuse_options("baud")
+    baud = parts.options.get("baud", str(BAUD))
+    if not re.fullmatch("[0-9]{1,8}", baud) or not 0 < int(baud) <= FASTEST_BAUD:
+        raise no_address(parts.uri, f"'{baud}' is no baud rate", hint)
+    return SerialLink(parts.uri, parts.path, int(baud))

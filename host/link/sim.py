@@ -14,6 +14,7 @@ from typing import Any, Self
 from host.errors import WrongUse
 from host.link.settings import number_or_text
 from host.link.transport import LinkLost
+from host.util.interrupts import uninterrupted
 from robot.errors import Refused
 from robot.loop import Loop
 from robot.params import TABLE
@@ -32,11 +33,13 @@ class SimLink:
     """A simulated brick in virtual time behind a pair of connected sockets.
 
     It has a token of its own. Several threads may use links to the same robot: each one that
-    waits lets one tick pass at a time.
+    waits lets one tick pass at a time. ^C falls between ticks and between commands, never into one:
+    what a log says of the robot is all that has happened to it.
     """
 
     virtual = True
     opens_fast = True
+    exclusive = False
 
     def __init__(
         self,
@@ -155,7 +158,7 @@ class SimLink:
 
     def run_tick(self) -> None:
         """Let the robot's time pass until its next tick is done, and what it has to say is sent."""
-        with self._turn:
+        with self._turn, uninterrupted():
             self.loop.clock.wait(self.loop.deadline, self.server.serve)
             self.loop.tick()
             self.server.serve(0.0)
@@ -172,7 +175,7 @@ class SimLink:
             self._serve()  # lets the robot notice
 
     def _serve(self) -> None:
-        with self._turn:
+        with self._turn, uninterrupted():
             self.server.serve(0.0)
 
 

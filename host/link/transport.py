@@ -1,4 +1,4 @@
-"""What a link to a robot is (bytes out, bytes in), and the two plain ones: TCP and serial."""
+"""What a link to a robot is (bytes out, bytes in), and the plainest one: TCP."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from host.errors import NoLink
 from host.util.installation import deploy_command
 
 CONNECT_TIMEOUT_S = 5.0
-_READ_BYTES = 65536
+READ_BYTES = 65536
 
 
 class LinkLost(Exception):
@@ -23,15 +23,16 @@ class Link(Protocol):
 
     uri: the robot's address. virtual: whether the link carries its own robot, which has its own
     time. opens_fast: whether a second link is opened as quickly as a frame is sent, so that a stop
-    had better take one of its own.
+    had better take one of its own. exclusive: whether one connection at a time can use the way.
     """
 
     uri: str
     virtual: bool
     opens_fast: bool
+    exclusive: bool
 
     def another(self) -> Link:
-        """A second way to the same robot, not opened yet."""
+        """A second way to the same robot for a stop, not opened yet."""
 
     def open(self) -> None:
         """Open, or close and open again. Raises NoLink."""
@@ -57,6 +58,7 @@ class TcpLink:
 
     virtual = False
     opens_fast = True
+    exclusive = False
 
     def __init__(self, uri: str, host: str, port: int) -> None:
         self.uri = uri
@@ -102,7 +104,7 @@ class TcpLink:
         try:
             if not select.select([self._socket], (), (), max(0.0, timeout_s))[0]:
                 return b""
-            data = self._socket.recv(_READ_BYTES)
+            data = self._socket.recv(READ_BYTES)
         except (OSError, ValueError) as error:
             raise LinkLost(str(error)) from error
         if not data:
@@ -118,60 +120,3 @@ class TcpLink:
         if self._socket is not None:
             self._socket.close()
             self._socket = None
-
-
-class SerialLink:
-    """A serial line, by pyserial.
-
-    Two readers of one line would take each other's bytes, so a stop goes over the open line first.
-    """
-
-    virtual = False
-    opens_fast = False
-
-    def __init__(self, uri: str, device: str, baud: int) -> None:
-        import serial
-
-        self.uri = uri
-        self._device = device, baud
-        self._serial = serial.Serial(baudrate=baud, write_timeout=CONNECT_TIMEOUT_S)
-        self._serial.port = device
-
-    def another(self) -> Self:
-        """The same line, not opened yet."""
-        return type(self)(self.uri, *self._device)
-
-    def open(self) -> None:
-        """Open the line, closing it first if it is open. Raises NoLink."""
-        self.close()
-        try:
-            self._serial.open()
-        except (OSError, ValueError) as error:
-            raise NoLink(
-                f"the serial line {self.uri} cannot be opened: {error}",
-                "is the cable in, and are you in group dialout?",
-            ) from error
-
-    def send(self, data: bytes) -> None:
-        """Send all of it. Raises LinkLost."""
-        try:
-            self._serial.write(data)
-        except OSError as error:
-            raise LinkLost(str(error)) from error
-
-    def receive(self, timeout_s: float) -> bytes:
-        """What has arrived within timeout_s. Raises LinkLost."""
-        try:
-            self._serial.timeout = max(0.0, timeout_s)
-            data = bytes(self._serial.read(1))
-            return data + bytes(self._serial.read(self._serial.in_waiting)) if data else b""
-        except (OSError, TypeError) as error:
-            raise LinkLost(str(error)) from error
-
-    def now(self) -> float:
-        """Monotonic seconds."""
-        return time.monotonic()
-
-    def close(self) -> None:
-        """Close the line."""
-        self._serial.close()

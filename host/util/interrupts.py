@@ -10,9 +10,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold back ^C until the end of the block.
+    """Hold back ^C until the end of the block, for what must be done as a whole or not at all.
 
-    An interrupt while compiled code is loaded would crash the interpreter.
+    Blocks may be nested: the outermost one hands ^C on, also when the block fails.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -23,5 +23,5 @@ def uninterrupted() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-    if kept:
-        raise KeyboardInterrupt
+        if kept:
+            signal.raise_signal(signal.SIGINT)

@@ -104,7 +104,7 @@ def test_a_loop_that_is_left_early_leaves_nothing_behind():
     with kickctl.connect("sim://", seed=1) as robot:
         for _ in robot.records():
             break
-        assert robot.stream._taps == []
+        assert robot.stream._live._taps == []
         with robot.records() as records:
             next(records)
         assert list(records) == []

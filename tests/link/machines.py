@@ -2,9 +2,11 @@
 
 import os
 import select
+import socket
 import threading
 import time
 import tty
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 from types import SimpleNamespace
@@ -40,6 +42,8 @@ class RigLink(SimLink):
         self.loop.safety.__init__()
         self.loop.start()
         self.left = None
+        self.forgotten = False
+        self.opened = 0
         self.away_until = 0.0
 
     def open(self):
@@ -47,8 +51,19 @@ class RigLink(SimLink):
             self.run_tick()
             raise NoLink("the robot is away")
         super().open()
+        self.forgotten = False
+        self.opened += 1
+
+    def send(self, data):
+        if not self.forgotten:
+            super().send(data)
 
     def receive(self, timeout_s):
+        if self.forgotten:
+            until = self.now() + timeout_s
+            while self.now() < until:
+                self.run_tick()
+            return b""
         data = super().receive(timeout_s)
         if self.left is not None:
             data, self.left = data[: self.left], self.left - len(data)
@@ -61,6 +76,10 @@ class RigLink(SimLink):
         self.left = None
         self.close()
         self.away_until = self.now() + away_s
+
+    def forget(self):
+        """Carry nothing any more, and say nothing of it; a new connection works."""
+        self.forgotten = True
 
     def restart(self):
         """Another boot of the same robot."""
@@ -96,6 +115,64 @@ class TcpRobot:
         self.loop.done = True
         self._thread.join()
         self.server.close()
+
+
+class Middlebox:
+    """A port that carries connections on to another one, and may forget those that there are.
+
+    It ends none of them, as a router that has forgotten them does; new ones work.
+    """
+
+    def __init__(self, port):
+        self._target = ("127.0.0.1", port)
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        self.accepted = 0
+        self._pairs = {}
+        self._kept = []
+        self._lock = threading.Lock()
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._carry)
+        self._thread.start()
+
+    def forget(self):
+        with self._lock:
+            self._kept += self._pairs
+            self._pairs.clear()
+
+    def close(self):
+        self._ended.set()
+        self._thread.join()
+        for end in (self._listener, *self._pairs, *self._kept):
+            end.close()
+
+    def _carry(self):
+        while not self._ended.is_set():
+            with self._lock:
+                pairs = dict(self._pairs)
+            for end in select.select((self._listener, *pairs), (), (), 0.005)[0]:
+                if end is self._listener:
+                    near, far = end.accept()[0], socket.create_connection(self._target)
+                    self.accepted += 1
+                    with self._lock:
+                        self._pairs.update({near: far, far: near})
+                    continue
+                with self._lock:
+                    other = self._pairs.get(end)
+                if other is not None:
+                    try:
+                        data = end.recv(65536)
+                        other.sendall(data)
+                    except OSError:
+                        data = b""
+                    if not data:
+                        with self._lock:
+                            self._kept += [end, other]
+                            self._pairs.pop(end, None)
+                            self._pairs.pop(other, None)
+                        for one in (end, other):
+                            with suppress(OSError):
+                                one.shutdown(socket.SHUT_RDWR)
 
 
 class Cable:

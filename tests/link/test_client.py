@@ -149,16 +149,6 @@ def test_a_robot_that_stays_away_is_given_up_on(robot, link):
             call()
 
 
-def test_a_silent_robot_is_given_up_on(robot, link):
-    robot.wait(0.1)
-    serve, link.server.serve = link.server.serve, lambda timeout_s: None
-    with pytest.raises(NoLink, match="does not answer"):
-        robot.status()
-    with pytest.raises(NoLink, match="no more records"):
-        robot.wait(1.0)
-    link.server.serve = serve
-
-
 # Calls
 
 

@@ -1,0 +1,259 @@
+"""A link to a robot that is opened again when it breaks, and the conversation over it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any
+from weakref import finalize, ref
+
+from host.client import neighbours
+from host.client.access import greet, hear
+from host.client.conversation import Conversation
+from host.client.silence import Silence
+from host.client.stream import Stream
+from host.errors import KickctlError, NoLink, RefusedByRobot
+from host.link.transport import Link, LinkLost
+from host.util.interrupts import uninterrupted
+
+# The robot counts a silent host as lost after half a second by default.
+HEARTBEAT_S = 0.1
+
+
+class LastingLink:
+    """One conversation with a robot, over a link that is found again when it breaks.
+
+    A link is broken when it says so, and when it is silent although the robot has to answer or to
+    send records.
+
+    Args:
+        link: The way to the robot, not opened yet.
+        token: The robot's token; None observes.
+        name: Who this is, for the robot and for other people.
+
+    Attributes:
+        link: The way to the robot.
+        hello: What the robot has said of itself.
+        stream: What it sends to who subscribes.
+        on_trouble: Called with words for people when the link breaks.
+        answer_s: How long the robot may take to answer.
+        silence_s: How long a link on which something is due may carry nothing.
+        reconnect_s: How long a lost robot is looked for.
+    """
+
+    answer_s = 5.0
+    silence_s = 2.0
+    reconnect_s = 10.0
+
+    def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
+        self.link = link
+        self.name = name
+        self.stream = Stream()
+        self.on_trouble: Callable[[str], None] = lambda words: None
+        self._talk = Conversation(token, name, client=neighbours.client_id())
+        self._lock = threading.RLock()
+        self._sending = threading.Lock()
+        self._leased = False
+        self._heartbeat_due = 0.0
+        self._silence = Silence()
+        self._whole = False
+        self._closed = threading.Event()
+        self._broken: KickctlError | None = None
+        self._endings: list[Callable[[], object]] = []
+        self._hang_up = finalize(self, _hang_up, link, self._closed, self._endings)
+        self._hang_up.atexit = False
+        self.hello: dict[str, Any] = {"boot": None}
+        neighbours.arrive(self)
+        with self._lock:
+            try:
+                self._open()
+            except BaseException:
+                self._hang_up()
+                raise
+            self.hello = self._talk.hello
+            self.started_utc = datetime.now(UTC)
+            self.clock_zero_s = self._clock_zero()
+            self._whole = True
+        if not link.virtual:
+            arguments = ref(self), self._closed
+            threading.Thread(
+                target=_keep_alive, args=arguments, name="kickctl link", daemon=True
+            ).start()
+
+    def _end(self, why: str) -> None:
+        self._leased = False
+        self._broken = NoLink(why, "call connect again")
+        self._hang_up()
+
+    def give_way(self) -> None:
+        """Hang up, since a newer connection of this program needs the line."""
+        # Whoever reads the line now is done within a moment; a stop may not wait for longer.
+        locked = self._lock.acquire(timeout=1.0)
+        try:
+            self._end("a newer connection of this program has taken over the line")
+        finally:
+            if locked:
+                self._lock.release()
+
+    def lose_control(self) -> None:
+        """Another connection of this program drives the robot now."""
+        self._leased = False
+
+    def pump(self, timeout_s: float) -> bool:
+        """Take in what the robot has sent.
+
+        Args:
+            timeout_s: How long to wait for the first of it (s).
+
+        Returns:
+            Whether anything came.
+
+        Raises:
+            NoLink: The link broke and did not come back.
+        """
+        until = self.link.now() + timeout_s
+        with self._lock:
+            came = False
+            while not came:
+                left_s = until - self.link.now()
+                came = self._pump(max(0.0, min(left_s, HEARTBEAT_S)))
+                self.stream.raise_failure()
+                if left_s <= HEARTBEAT_S:
+                    break
+            return came
+
+    def _pump(self, timeout_s: float) -> bool:
+        if self._broken is not None:
+            raise self._broken
+        if not self._whole:
+            self._reopen("it was left half open")
+            return False
+        try:
+            self._send_what_is_due(self.link.now())
+            came = self._read(timeout_s)
+            if not came and self._silence.lasts(self.link.now()) > self.silence_s:
+                raise LinkLost(f"nothing has come over it for {self.silence_s:g} s")
+        except LinkLost as error:
+            self._reopen(str(error))
+            return False
+        return came
+
+    def _read(self, timeout_s: float) -> bool:
+        # ^C waits until what has arrived is handed on, or it would be lost for some and not for
+        # others.
+        with uninterrupted():
+            data = self.link.receive(timeout_s)
+            if data:
+                self._silence.hear(self.link.now(), more=self.stream.wanted)
+                self.stream.take(list(self._talk.feed(data)), self.link.now())
+        self.stream.call_after()
+        return bool(data)
+
+    def _send(self, frame: bytes) -> None:
+        with self._sending, uninterrupted():
+            self.link.send(frame)
+            self._silence.ask(self.link.now())
+
+    def _send_what_is_due(self, now: float) -> None:
+        if self._leased and now >= self._heartbeat_due:
+            self._heartbeat_due = now + HEARTBEAT_S
+            self._send(self._talk.request("heartbeat", {}, sealed=True)[1])
+        tick = self.stream.tick_to_ask_for(now)
+        if tick is not None:
+            self._send(self._talk.request("subscribe", {"from": tick}, sealed=False)[1])
+
+    def _open(self) -> None:
+        """Say hello, prove the token, and take the lease again if this host had it."""
+        self._whole = False
+        self.link.open()
+        try:
+            greet(self.link, self._talk, self._send, self.answer_s)
+            if self._leased:
+                self._retake_lease()
+            self._silence.begin()
+        except LinkLost as error:
+            self._talk.raise_refusal()
+            raise NoLink(
+                f"the robot at {self.link.uri} hung up: {error}",
+                "is another program listening at that port?",
+            ) from error
+
+    def _reopen(self, why: str) -> None:
+        """Find the robot again, to go on in its record where the link broke."""
+        if self._broken is not None:
+            raise self._broken
+        self.on_trouble(
+            f"the link to {self.link.uri} broke ({why}); looking for the robot for"
+            f" {self.reconnect_s:g} s"
+        )
+        until = self.link.now() + self.reconnect_s
+        pause = 0.05
+        while True:
+            try:
+                self._open()
+                break
+            except NoLink as error:
+                if (
+                    self._closed.wait(0.0 if self.link.virtual else pause)
+                    or self.link.now() >= until
+                ):
+                    self._broken = NoLink(
+                        f"the link to {self.link.uri} broke and did not come back: {error.message}",
+                        error.hint,
+                    )
+                    raise self._broken from error
+                pause = min(1.0, 2.0 * pause)
+        self.stream.interrupt()
+        if self._talk.hello["boot"] != self.hello["boot"]:
+            self.hello = self._talk.hello
+            self.clock_zero_s = self._clock_zero()
+            self.stream.restart(self.hello, self.clock_zero_s)
+        self._whole = True
+
+    def _retake_lease(self) -> None:
+        number, frame = self._talk.request("lease", {}, sealed=True)
+        self._send(frame)
+        try:
+            hear(
+                self.link,
+                self._talk,
+                lambda: self._talk.answer(number) is not None,
+                self.answer_s,
+            )
+        except RefusedByRobot:
+            self._leased = False
+
+    def _clock_zero(self) -> float:
+        """UTC, in Unix seconds, when the robot's clock was at zero."""
+        return datetime.now(UTC).timestamp() - float(self._talk.hello["clock_s"])
+
+    def _look_after(self) -> bool:
+        """Read what has come, and send what is due. Returns False if the link is gone for good."""
+        if self._lock.acquire(blocking=False):
+            try:
+                if not self._closed.is_set() and (self._leased or self.stream.wanted):
+                    while self._pump(0.0):
+                        pass
+            except KickctlError:
+                return False
+            finally:
+                self._lock.release()
+        return True
+
+
+def _keep_alive(connection: ref[LastingLink], closed: threading.Event) -> None:
+    """Look after a connection for as long as somebody else refers to it."""
+    while not closed.wait(HEARTBEAT_S / 2):
+        present = connection()
+        if present is None or not present._look_after():  # noqa: SLF001
+            return
+        del present
+
+
+def _hang_up(link: Link, closed: threading.Event, endings: list[Callable[[], object]]) -> None:
+    """End a connection, and what lives on it. It is not released: that is for who is still there."""
+    closed.set()
+    link.close()
+    for end in endings:
+        end()

@@ -1,0 +1,98 @@
+"""Several connections of one program to one robot, as a notebook's cells make them."""
+
+import gc
+import threading
+import time
+import weakref
+
+import pytest
+
+from host.client.robot import Robot
+from host.errors import LeaseLost, NoLink
+from host.link.addresses import make_link
+from robot.record import STATES
+from tests.link.machines import Cable, Machine, TcpRobot, open_files
+from tests.rig import TOKEN
+
+PATIENCE_S = 30.0
+
+
+@pytest.fixture
+def machine():
+    machine = TcpRobot(link_loss_s=0.2)
+    yield machine
+    machine.close()
+
+
+def until(true):
+    """Wait for what is to come at once."""
+    end = time.monotonic() + PATIENCE_S
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
+def test_a_cell_that_connects_and_drives_can_be_run_twice(machine):
+    for _ in range(3):
+        robot = Robot(machine.link(), TOKEN, "my notebook")
+        robot.kick("membrane")
+        robot.wait(0.1)
+        assert robot.drives
+    robot.close()
+
+
+def test_the_last_to_take_control_has_it_and_the_others_do_not_keep_it(machine):
+    with Robot(machine.link(), TOKEN, "second") as second:
+        first = Robot(machine.link(), TOKEN, "first")
+        first.lease()
+        second.lease()
+        assert (first.drives, second.drives) == (False, True)
+        assert machine.loop.lease.name == "second"
+        first.close()  # what it gives back is not its own any more
+        time.sleep(0.4)
+        assert machine.loop.lease.name == "second"
+        assert STATES[machine.loop.safety.state] == "running"
+
+
+def test_another_program_is_still_kept_out(machine, monkeypatch):
+    with Robot(machine.link(), TOKEN, "here") as robot:
+        robot.lease()
+        monkeypatch.setattr("host.client.neighbours.client_id", lambda: "another program")
+        with Robot(machine.link(), TOKEN, "there") as other, pytest.raises(LeaseLost, match="here"):
+            other.kick("membrane")
+
+
+def test_a_connection_dies_with_the_last_reference_to_it(machine):
+    gc.collect()
+    files, threads = open_files(), threading.active_count()
+    robot = Robot(machine.link(), TOKEN)
+    robot.kick("membrane")
+    heard = []
+    robot.on_record(heard.append)
+    robot.wait(0.1)
+    gone = weakref.ref(robot)
+    del robot
+    until(lambda: gone() is None)
+    until(lambda: threading.active_count() == threads)
+    until(lambda: not machine.server._peers)
+    assert open_files() == files
+    until(lambda: machine.loop.lease.holder is None)
+    until(lambda: STATES[machine.loop.safety.state] == "stopped")
+    assert heard
+
+
+def test_a_new_connection_over_a_serial_line_takes_the_line(tmp_path):
+    cable = Cable(tmp_path)
+    machine = Machine(cable.paths["robot"])
+    uri = f"serial://{cable.paths['host']}"
+    try:
+        first = Robot(make_link(uri), TOKEN)
+        first.kick("membrane")
+        with Robot(make_link(uri), TOKEN) as second:
+            second.wait(0.1)
+            second.kick("membrane")
+            with pytest.raises(NoLink, match="taken over"):
+                first.status()
+    finally:
+        machine.close()
+        cable.close()

@@ -1,0 +1,196 @@
+"""A link that nobody ends, but that carries nothing any more: the host dials again."""
+
+import stat
+import sys
+
+import pytest
+
+from host.client.connection import Connection
+from host.client.robot import Robot
+from host.errors import NoLink
+from host.link.addresses import make_link
+from host.logs.log import Log
+from robot import wire
+from robot.record import STATES
+from robot.session import Session
+from tests.link.machines import Middlebox, TcpRobot
+from tests.rig import TOKEN, packed
+
+
+def whole(log, link):
+    """Assert that a log has every tick from its first on, once, as in the robot's black box."""
+    ticks = [record.tick for record in log.records]
+    assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
+    assert packed(log.records) == packed(link.records()[ticks[0] : ticks[-1] + 1])
+    assert [event["event"] for event in log.events if event["event"] in ("snapshot", "lost")] == [
+        "snapshot"
+    ]
+
+
+# In virtual time
+
+
+@pytest.mark.parametrize("token", [True, False], ids=["who drives", "who only watches"])
+def test_who_records_dials_again_and_loses_no_tick(link, token):
+    with Robot(link, link.token if token else None) as robot:
+        if token:
+            robot.set(link_loss="continue")
+        log, troubles = Log(), []
+        robot.on_trouble = troubles.append
+        robot.add_tap(log)
+        robot.wait(1.0)
+        link.forget()
+        begin = link.now()
+        robot.wait(5.0)
+        robot.remove_tap(log)
+        assert link.opened == 2
+        assert "nothing has come over it for 2 s" in troubles[0]
+        assert link.now() - begin < 5.5
+        whole(log, link)
+        if token:
+            robot.kick("membrane")
+
+
+def test_the_lease_is_taken_again_and_a_held_run_resumes(link):
+    with Robot(link, link.token) as robot:
+        robot.set(link_loss="hold")
+        link.forget()
+        robot.wait(5.0)
+        assert STATES[link.loop.safety.state] == "running"
+        assert [event["event"] for event in link.events()[-3:]] == ["link_loss", "hold", "resume"]
+        assert robot.drives
+
+
+def test_a_request_is_sent_again(link):
+    with Robot(link, link.token) as robot:
+        robot.lease()
+        for ask in (robot.status, lambda: robot.set(k=3.0), lambda: robot.describe("channels")):
+            link.forget()
+            begin = link.now()
+            assert ask()
+            assert link.now() - begin < Robot.silence_s + 1.0
+
+
+def test_a_connection_on_which_nothing_is_due_is_left_alone(link):
+    """Nobody has subscribed or asked: silence is what the protocol demands."""
+    with Connection(link, None) as connection:
+        for _ in range(100):
+            connection.pump(0.1)
+        assert link.opened == 1
+        assert connection.request("status")
+
+
+def test_a_host_that_was_asleep_does_not_take_that_for_silence(link):
+    with Robot(link, link.token) as robot:
+        robot.lease()
+        robot.wait(0.2)
+        for _ in range(200):  # six seconds in which the host reads nothing
+            link.run_tick()
+        robot.wait(0.5)
+        assert link.opened == 1
+
+
+def test_a_robot_that_says_nothing_any_more_is_given_up_on(link):
+    with Robot(link, None) as robot:
+        robot.wait(0.1)
+        serve, link.server.serve = link.server.serve, lambda timeout_s: None
+        begin = link.now()
+        with pytest.raises(NoLink, match="did not come back"):
+            robot.status()
+        assert link.now() - begin < Robot.silence_s + Robot.reconnect_s + Robot.answer_s + 1.0
+        link.server.serve = serve
+
+
+def test_a_request_that_is_never_answered_ends(link, monkeypatch):
+    """The robot lets everybody in, but does not answer."""
+    real = Session.receive
+
+    def deaf(session, kind, payload):
+        return b"" if kind == wire.ASK else real(session, kind, payload)
+
+    monkeypatch.setattr(Session, "receive", deaf)
+    with Robot(link, link.token) as robot:
+        begin = link.now()
+        with pytest.raises(NoLink, match="does not answer to 'status'"):
+            robot.status()
+        assert link.now() - begin < Robot.reconnect_s + 2 * Robot.answer_s
+
+
+def test_answers_to_heartbeats_are_no_records(link):
+    """The robot has lost the subscription: the host asks again, and gives up in the end."""
+    with Robot(link, link.token) as robot:
+        robot.lease()
+        log = Log()
+        robot.add_tap(log)
+        robot.wait(0.5)
+        for peer in link.server._peers:
+            peer.session.unsubscribe()
+        robot.wait(4.0)
+        assert link.opened == 1
+        whole(log, link)
+        for peer in link.server._peers:
+            peer.session.stream = lambda: None
+        with pytest.raises(NoLink, match="no more records"):
+            robot.wait(1.0)
+        assert robot.status()["controller"] == "kickctl"
+
+
+# Over sockets
+
+
+@pytest.fixture
+def forgetful(monkeypatch):
+    """A middlebox before a robot; nobody waits as long as in real life."""
+    monkeypatch.setattr(Robot, "silence_s", 0.3)
+    machine = TcpRobot(link_loss="continue")
+    box = Middlebox(machine.port)
+    yield box
+    box.close()
+    machine.close()
+
+
+def ssh(folder, monkeypatch):
+    """A stand-in for ssh: what comes after `-W` is where it carries its input."""
+    program = folder / "ssh"
+    program.write_text(
+        f"#!{sys.executable}\n"
+        "import os, select, socket, sys\n"
+        "host, port = sys.argv[sys.argv.index('-W') + 1].split(':')\n"
+        "far = socket.create_connection((host, int(port)))\n"
+        "while True:\n"
+        "    for end in select.select((0, far), (), ())[0]:\n"
+        "        data = os.read(end if end == 0 else far.fileno(), 65536)\n"
+        "        if not data:\n"
+        "            sys.exit(255)\n"
+        "        far.sendall(data) if end == 0 else os.write(1, data)\n",
+        encoding="utf-8",
+    )
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", str(folder), prepend=":")
+
+
+@pytest.mark.parametrize("scheme", ["tcp", "ssh"])
+@pytest.mark.parametrize("token", [TOKEN, None], ids=["who drives", "who only watches"])
+def test_a_middlebox_that_forgets_costs_time_and_no_tick(
+    forgetful, tmp_path, monkeypatch, scheme, token
+):
+    box = forgetful
+    ssh(tmp_path, monkeypatch)
+    uri = f"tcp://127.0.0.1:{box.port}" if scheme == "tcp" else f"ssh://brick?port={box.port}"
+    with Robot(make_link(uri), token) as robot:
+        if token:
+            robot.lease()
+        log = Log()
+        robot.add_tap(log)
+        for _ in range(2):
+            robot.wait(0.2)
+            box.forget()
+            robot.wait(0.6)
+        robot.remove_tap(log)
+        if token:
+            robot.set(k=4.0)
+        assert box.accepted == 3
+    assert log.missing() == []
+    ticks = [record.tick for record in log.records]
+    assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
+    assert len(ticks) > 150
