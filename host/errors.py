@@ -52,6 +52,12 @@ class RobotFault(KickctlError):
     status = 5
 
 
+class Interrupted(KickctlError):
+    """A person, or the system, has ended the command: ^C, SIGTERM, or a terminal that closed."""
+
+    status = 130
+
+
 _STATUS_BY_CODE = {
     "usage": WrongUse,
     "range": WrongUse,

@@ -10,8 +10,12 @@ import sys
 
 def main() -> int:
     """Run one verb. Returns the exit status."""
-    from host.cli import main as run
-
+    try:
+        from host.cli import main as run
+    except KeyboardInterrupt:  # run() answers later ones
+        if "--json" in sys.argv:
+            print('{"error": {"message": "interrupted", "hint": "", "status": 130}}')
+        return 130
     return run()
 
 

@@ -1,10 +1,12 @@
 """Options that every verb has."""
 
 import argparse
+import itertools
+from collections.abc import Sequence
 
 
 def _seed(text: str) -> int:
-    if not text.isdigit():
+    if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(f"'{text}' is no seed; give a whole number, 0 or more")
     return int(text)
 
@@ -37,6 +39,15 @@ def common(*, defaults: bool) -> argparse.ArgumentParser:
     group.add_argument("--token", metavar="FILE", help="the robot's token file")
     off = False if defaults else argparse.SUPPRESS
     group.add_argument(
-        "--json", action="store_true", default=off, help="answer in JSON on standard output"
+        "--json",
+        action="store_true",
+        default=off,
+        help="answer with one JSON object on standard output, also after an error",
     )
     return parser
+
+
+def asks_for_json(arguments: Sequence[str]) -> bool:
+    """Whether a command line that may be wrong asks for JSON. argparse takes `--js` for it, too."""
+    options = itertools.takewhile(lambda argument: argument != "--", arguments)
+    return any(len(one) > 2 and "--json".startswith(one) for one in options)

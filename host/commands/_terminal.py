@@ -10,14 +10,24 @@ import json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.client.robot import Robot, connect
-from host.errors import KickctlError
 
 if TYPE_CHECKING:
-    from host.logs.log import Log
+    from rich.table import Table
+
+_answers: list[dict[str, Any]] = []
+
+
+def begin() -> None:
+    """A command begins: nothing has been answered yet."""
+    _answers.clear()
+
+
+def answered() -> bool:
+    """Whether the command has answered in JSON, which it does only once."""
+    return bool(_answers)
 
 
 def say(text: str) -> None:
@@ -25,9 +35,36 @@ def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def show(result: object) -> None:
-    """A result for machines: one JSON object, on a line of its own."""
-    print(json.dumps(result, allow_nan=False), flush=True)
+def show(result: dict[str, Any]) -> None:
+    """Answer machines: one JSON object, on a line of its own."""
+    line = json.dumps(result, allow_nan=False)
+    _answers.append(result)
+    print(line, flush=True)
+
+
+def show_next(item: dict[str, Any]) -> None:
+    """Give machines the next object of a stream, on a line of its own. An error may end it."""
+    print(json.dumps(item, allow_nan=False), flush=True)
+
+
+def print_table(table: Table) -> None:
+    """Print a table without cutting anything off.
+
+    A terminal gets as many lines as it takes; elsewhere each row has one line.
+    """
+    from rich.console import Console
+
+    for column in table.columns:
+        column.overflow = "fold"
+    console = Console()
+    if not console.is_terminal:
+        console.width = max(1, console.measure(table, options=_endless(console)).maximum)
+    console.print(table)
+
+
+def _endless(console: Any) -> Any:
+    """rich's options for a console without a right margin."""
+    return console.options.update(width=10**6)
 
 
 @contextmanager
@@ -64,14 +101,37 @@ def tell(summary: dict[str, Any]) -> None:
         print(Claim.from_dict(claim).sentence())
     for name, value in _single_values(summary["numbers"]):
         print(name, f"{value:.10g}" if isinstance(value, float) else value)
-    table = Path(summary["table"])
     for kind, path in (
-        ("table", table),
-        ("numbers", table.with_name("summary.json")),
+        ("table", summary["table"]),
+        ("numbers", summary["summary"]),
         *(("figure", path) for path in summary["figures"][:1]),
         *(("file", path) for path in summary["files"]),
     ):
-        print(kind, path)
+        if path is not None:
+            print(kind, path)
+
+
+def finish(options: argparse.Namespace, summary: dict[str, Any], result: dict[str, Any]) -> int:
+    """Answer with the results of a run, and say which of its files could not be written.
+
+    Args:
+        options: Say whether to answer in JSON.
+        summary: The run's summary.
+        result: The same as a JSON object.
+
+    Returns:
+        The exit status: 1 if a claim does not hold, or the table or the summary is missing.
+    """
+    from host.runs.claims import exit_status
+
+    if options.json:
+        show(result)
+    else:
+        tell(summary)
+    for words in summary["unwritten"].values():
+        say(f"kickctl: {words}")
+    lost = summary["table"] is None or summary["summary"] is None
+    return 1 if lost else exit_status(summary["claims"])
 
 
 def _single_values(numbers: Any) -> Iterator[tuple[str, Any]]:
@@ -86,29 +146,3 @@ def _single_values(numbers: Any) -> Iterator[tuple[str, Any]]:
                 (f"accuracy: {' '.join(filter(None, (name, key)))}", part)
                 for key, part in inner.items()
             )
-
-
-@contextmanager
-def recorded(robot: Robot, kind: str) -> Iterator[tuple[Log, Path]]:
-    """Record all that the robot does meanwhile, in memory and in a new file that grows with it.
-
-    Yields:
-        The log and the file's path.
-    """
-    from host.logs.log import Log
-    from host.logs.log_folder import new_path
-    from host.logs.mcap_files import McapTap
-
-    path = new_path(kind)
-    log = Log(robot.info())
-    with McapTap(path, log.info) as file:
-        robot.add_tap(file)
-        robot.add_tap(log)
-        try:
-            yield log, path
-        except (KickctlError, OSError):
-            say(f"what was recorded until then is in {path}")
-            raise
-        finally:
-            robot.remove_tap(log)
-            robot.remove_tap(file)

@@ -1,8 +1,10 @@
 """kickctl demo."""
 
 import argparse
+from pathlib import Path
 
-from host.commands._terminal import recorded, robot_of, say, show
+from host.commands._recording import conclude, recorded
+from host.commands._terminal import robot_of, say
 
 HELP = (
     "start, roll, and reverse the robot by a kick, and measure some of the paper's claims on the"
@@ -22,20 +24,21 @@ def run(options: argparse.Namespace) -> int:
 
     Returns 1 if the kick did not reverse the robot or a claim does not hold.
     """
-    from host.figures.robot.kick import KICK_WINDOW_S, draw
     from host.kicking import manoeuvres as showing
     from host.kicking import robot_claims as claims
     from host.kicking.outcome import describe, kick_and_watch, title
     from host.kicking.primitives import drive
     from host.link.addresses import sim_options
+    from host.logs.log import Log
     from host.perform.run import setting_of
     from host.util.progress import progress
 
     with (
         robot_of(options, moves=True) as robot,
-        recorded(robot, "demo") as (log, path),
+        recorded(robot, "demo") as recording,
         progress("demo", 4) as advance,
     ):
+        log = recording.log
         setting = setting_of(robot.status()["params"], sim_options(robot.link.uri), options.seed)
         say("driving forward ...")
         if robot.status()["state"] != "running":
@@ -43,9 +46,8 @@ def run(options: argparse.Namespace) -> int:
         drive(robot, log, "forward")
         rolling = showing.steady(robot, log)
         outcome = kick_and_watch(robot, log, "phase", ticks=4)
-        figure = draw(
-            log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick
-        )
+        until_then = Log(log.info)
+        log.play(until_then)
         advance(1)
         say(f"starting {STARTS} times from random potentials ...")
         starts = showing.starts(robot, log, STARTS)
@@ -67,19 +69,18 @@ def run(options: argparse.Namespace) -> int:
     foreign = setting.elsewhere(**claims.PAPER)
     report = [claim.doubted(foreign) for claim in measured]
     failed = not outcome.reversed or any(claim.holds is False for claim in report)
-    if options.json:
-        show(
-            {
-                **outcome.as_dict(),
-                "brick": brick,
-                "seed": seed,
-                "log": str(path),
-                "figure": str(figure),
-                "claims": [claim.as_dict() for claim in report],
-            }
-        )
-    else:
-        for claim in report:
-            print(claim.sentence())
-        print(f"{describe(outcome)}\nlog {path}\nfigure {figure}")
-    return 1 if failed else 0
+
+    def draw(path: Path) -> Path:
+        from host.figures.robot.kick import KICK_WINDOW_S, draw
+
+        return draw(until_then, path, title(outcome), KICK_WINDOW_S, outcome.applied_tick)
+
+    result = {
+        **outcome.as_dict(),
+        "brick": brick,
+        "seed": seed,
+        "claims": [claim.as_dict() for claim in report],
+    }
+    sentences = [*(claim.sentence() for claim in report), describe(outcome)]
+    conclude(options, result, "\n".join(sentences), recording, draw)
+    return 1 if failed or recording.failure else 0

@@ -1,8 +1,10 @@
 """kickctl drive."""
 
 import argparse
+from pathlib import Path
 
-from host.commands._terminal import recorded, robot_of, show
+from host.commands._recording import conclude, recorded
+from host.commands._terminal import robot_of
 
 HELP = "bring the robot into a motion primitive by kicks, or to rest by the spring constant k"
 
@@ -16,7 +18,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Start the robot if it does not run, and drive there. Returns 1 if it did not get there."""
-    from host.figures.robot.kick import draw
     from host.kicking.outcome import require_running
     from host.kicking.primitives import drive
 
@@ -24,9 +25,9 @@ def run(options: argparse.Namespace) -> int:
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)
-        with recorded(robot, "drive") as (log, path):
-            result = drive(robot, log, options.primitive)
-        result.update(brick=robot.link.uri, seed=robot.hello["seed"], log=str(path))
+        with recorded(robot, "drive") as recording:
+            result = drive(robot, recording.log, options.primitive)
+        result.update(brick=robot.link.uri, seed=robot.hello["seed"])
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
     if result["k"] != result["k_before"]:
         how += f", and k from {result['k_before']:g} to {result['k']:g}"
@@ -38,11 +39,11 @@ def run(options: argparse.Namespace) -> int:
     sentence = (
         f"{verdict}: left {result['after']['left']}, right {result['after']['right']}, by {how}."
     )
-    result["figure"] = str(
-        draw(log, path.with_suffix(".png"), f"Driven to {options.primitive}: {how}")
-    )
-    if options.json:
-        show(result)
-    else:
-        print(f"{sentence}\nlog {path}\nfigure {result['figure']}")
-    return 0 if result["reached"] else 1
+
+    def draw(path: Path) -> Path:
+        from host.figures.robot.kick import draw
+
+        return draw(recording.log, path, f"Driven to {options.primitive}: {how}")
+
+    conclude(options, result, sentence, recording, draw)
+    return 0 if result["reached"] and not recording.failure else 1

@@ -3,7 +3,7 @@
 import argparse
 
 from host.commands._options import common
-from host.commands._terminal import say, show, tell
+from host.commands._terminal import finish, say
 from host.experiments.registry import TABLE
 from host.runs.registry import add_options, options_given
 
@@ -23,7 +23,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run it or resume it. Returns 1 if a claim does not hold."""
     from host.perform.run import perform
-    from host.runs.claims import exit_status
 
     name = options.experiment
     arguments = options_given(options, TABLE[name])
@@ -37,8 +36,4 @@ def run(options: argparse.Namespace) -> int:
         say=say,
         **arguments,
     )
-    if options.json:
-        show(summary)
-    else:
-        tell(summary)
-    return exit_status(summary["claims"])
+    return finish(options, summary, summary)

@@ -1,8 +1,10 @@
 """kickctl kick."""
 
 import argparse
+from pathlib import Path
 
-from host.commands._terminal import recorded, robot_of, say, show
+from host.commands._recording import conclude, recorded
+from host.commands._terminal import robot_of, say
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
 from robot.errors import Refused
@@ -52,7 +54,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Kick, and write a log and a figure. Returns 1 if a kicked wheel did not reverse."""
-    from host.figures.robot.kick import KICK_WINDOW_S, draw
     from host.kicking.outcome import (
         advice,
         describe,
@@ -69,33 +70,28 @@ def run(options: argparse.Namespace) -> int:
     _check(options.mode, options.wheel, details)
     with robot_of(options, moves=True) as robot:
         require_running(robot)
-        with recorded(robot, "kick") as (log, path):
+        with recorded(robot, "kick") as recording:
             if not options.now and not wait_settled(robot):
                 raise NotDone(
                     "the wheels did not settle",
                     "are the parameters those of a steady motion? --now kicks without waiting",
                 )
-            outcome = kick_and_watch(robot, log, options.mode, wheel=options.wheel, **details)
+            outcome = kick_and_watch(
+                robot, recording.log, options.mode, wheel=options.wheel, **details
+            )
         brick, seed = robot.link.uri, robot.hello["seed"]
-    sentence = describe(outcome)
-    figure = draw(
-        log, path.with_suffix(".png"), title(outcome), KICK_WINDOW_S, outcome.applied_tick
-    )
-    if options.json:
-        show(
-            {
-                **outcome.as_dict(),
-                "brick": brick,
-                "seed": seed,
-                "log": str(path),
-                "figure": str(figure),
-            }
-        )
-    else:
-        print(f"{sentence}\nlog {path}\nfigure {figure}")
+
+    def draw(path: Path) -> Path:
+        # Nothing may fail here before the kick is made and answered, so matplotlib comes last.
+        from host.figures.robot.kick import KICK_WINDOW_S, draw
+
+        return draw(recording.log, path, title(outcome), KICK_WINDOW_S, outcome.applied_tick)
+
+    result = {**outcome.as_dict(), "brick": brick, "seed": seed}
+    conclude(options, result, describe(outcome), recording, draw)
     if not outcome.reversed:
         say("the robot did not reverse" + advice(outcome))
-    return 0 if outcome.reversed else 1
+    return 0 if outcome.reversed and not recording.failure else 1
 
 
 def _check(mode: str, wheel: str, details: dict[str, object]) -> None:

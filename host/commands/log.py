@@ -1,8 +1,9 @@
-"""kickctl log list|pull|export|replay."""
+"""kickctl log list|pull|export|replay|recover."""
 
 from __future__ import annotations
 
 import argparse
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,9 +12,10 @@ from host.commands._terminal import answer, robot_of, say, show
 from host.errors import WrongUse
 
 if TYPE_CHECKING:
+    from host.logs.mcap_reading import LogFile
     from host.logs.replay import ReplayResult
 
-HELP = "list, export and replay logs, or pull one from the robot's black box"
+HELP = "list, export, replay and recover logs, or pull one from the robot's black box"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,13 +50,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="recompute the controller from a log's angles and delta t, and compare exactly",
     )
     replay.add_argument("log", type=Path, help="the log, an MCAP file")
+    recovery = actions.add_parser(
+        "recover",
+        parents=parents,
+        help="write what can be read of a log that breaks off to a new log, which viewers open",
+    )
+    recovery.add_argument("log", type=Path, help="the log, an MCAP file; it is not changed")
+    recovery.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="the log to write (default: NAME-recovered.mcap beside it)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Run the action. `replay` returns 1 if the controller computes something else."""
-    return {"list": _list, "pull": _pull, "export": _export, "replay": _replay}[options.action](
-        options
-    )
+    actions = {
+        "list": _list,
+        "pull": _pull,
+        "export": _export,
+        "replay": _replay,
+        "recover": _recover,
+    }
+    return actions[options.action](options)
 
 
 def _list(options: argparse.Namespace) -> int:
@@ -68,7 +87,7 @@ def _list(options: argparse.Namespace) -> int:
     else:
         rows = list_logs(folder)
     if options.json:
-        show([{**row._asdict(), "path": str(row.path)} for row in rows])
+        show({"logs": [{**row._asdict(), "path": str(row.path)} for row in rows]})
         return 0
     for row in rows:
         print(
@@ -82,12 +101,12 @@ def _list(options: argparse.Namespace) -> int:
 
 def _pull(options: argparse.Namespace) -> int:
     from host.logs.log import Log
-    from host.logs.log_folder import new_path
+    from host.logs.log_folder import in_folder
 
     with robot_of(options) as robot:
         log = Log(robot.info())
         robot.pull(log)
-    path = log.save(options.out or new_path("pull"))
+    path = log.save(options.out) if options.out else in_folder("pull", log.save)
     answer(
         options,
         {"log": str(path), "ticks": len(log)},
@@ -99,54 +118,75 @@ def _pull(options: argparse.Namespace) -> int:
 def _export(options: argparse.Namespace) -> int:
     import sys
 
-    from host.logs.log import Log
-    from host.logs.tables import write_csv
+    from host.logs.mcap_reading import LogFile
+    from host.logs.tables import save_csv, save_npz, write_csv
 
-    log = Log.load(options.log)
-    if log.info.get("truncated"):
-        say(f"{options.log} breaks off; the table has the ticks until then")
+    log = LogFile(options.log)
     if options.format == "csv" and options.out is None and not options.json:
-        write_csv(log.arrays(), sys.stdout)
+        write_csv(log.stream(), sys.stdout)
+        _say_if_cut(log)
         return 0
     out = options.out or options.log.with_suffix("." + options.format)
     try:
-        path = log.to_csv(out) if options.format == "csv" else log.to_npz(out)
+        ticks = (
+            save_csv(log.stream(), out)
+            if options.format == "csv"
+            else save_npz(log.stream(), log.info, out)
+        )
     except OSError as error:
         raise WrongUse(
             f"{out} cannot be written: {error.strerror}", "choose another place with --out"
         ) from error
-    answer(options, {"table": str(path), "ticks": len(log)}, f"{len(log)} ticks in {path}")
+    _say_if_cut(log)
+    answer(options, {"table": str(out), "ticks": ticks}, f"{ticks} ticks in {out}")
     return 0
 
 
+def _say_if_cut(log: LogFile) -> None:
+    if not log.whole:
+        say(f"{log.path} breaks off; the table has the ticks until then")
+
+
 def _replay(options: argparse.Namespace) -> int:
-    from host.logs.log import Log
+    from host.logs.mcap_reading import LogFile
     from host.logs.replay import replay
 
-    log = Log.load(options.log)
+    log = LogFile(options.log)
     result = replay(log)
-    truncated = bool(log.info.get("truncated"))
-    missing = sum(end - first for first, end in log.missing())
     facts = {
         "reproduced": result.reproduced,
         "exact": result.exact,
         "compared": result.compared,
         "not_comparable": result.not_comparable,
-        "missing": missing,
-        "truncated": truncated,
+        "missing": result.missing,
+        "truncated": not log.whole,
         "worst": result.worst,
         "first_mismatch": None if result.first is None else str(result.first),
     }
     sentence = (
         f"{result.compared} ticks replayed: {_verdict(result)} ({result.not_comparable} not"
-        f" comparable, {missing} missing)"
+        f" comparable, {result.missing} missing)"
     )
+    if not log.whole:
+        sentence += (
+            "; the file is damaged or breaks off after them"
+            f" (kickctl log recover {shlex.quote(str(log.path))})"
+        )
+    answer(options, facts, sentence)
+    return 0 if result.reproduced and log.whole else 1
+
+
+def _recover(options: argparse.Namespace) -> int:
+    from host.logs.log_folder import recover
+
+    path, ticks, whole = recover(options.log, options.out)
+    state = "was whole" if whole else "breaks off or is damaged after them"
     answer(
         options,
-        facts,
-        sentence + ("; the file is damaged or breaks off after them" if truncated else ""),
+        {"log": str(path), "ticks": ticks, "from": str(options.log), "was_whole": whole},
+        f"{ticks} ticks of {options.log}, which {state}, are in {path}",
     )
-    return 0 if result.reproduced and not truncated else 1
+    return 0
 
 
 def _verdict(result: ReplayResult) -> str:

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.commands._terminal import robot_of, say, show
+from host.commands._terminal import print_table, robot_of, say, show
 from host.errors import WrongUse
 from host.link.settings import parse_setting
 
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
             for name, row in rows.items()
         ]
         if options.json:
-            show(table)
+            show({"params": table})
         else:
             _print_table(table)
     elif options.json:
@@ -62,7 +62,6 @@ def _gone(settings: list[str]) -> str:
 
 
 def _print_table(rows: list[dict[str, object]]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
@@ -78,4 +77,4 @@ def _print_table(rows: list[dict[str, object]]) -> None:
         table.add_row(
             *map(str, (row["name"], row["value"], row["unit"], span, row["default"], row["doc"]))
         )
-    Console().print(table)
+    print_table(table)

@@ -1,12 +1,18 @@
 """kickctl record."""
 
+from __future__ import annotations
+
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from host.commands._terminal import answer, robot_of, say
-from host.errors import KickctlError, RobotFault, WrongUse, printable
+from host.errors import Interrupted, KickctlError, RobotFault, WrongUse, printable
 from robot.record import Record
+
+if TYPE_CHECKING:
+    from host.client.robot import Robot
+    from host.logs.mcap_files import McapTap
 
 HELP = "record every tick of the robot into a log"
 
@@ -43,43 +49,71 @@ class Tally:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record. ^C ends it early, and what was recorded is kept.
+    """Record. An interrupt ends it early, and what was recorded is kept.
 
     Returns:
-        The exit status: 5 if the robot fell into a fault meanwhile.
+        The exit status: 130 after an interrupt, 5 if the robot fell into a fault meanwhile.
     """
-    from host.logs.log_folder import new_path
-    from host.logs.mcap_files import McapTap
-    from host.util.progress import progress
-
     if not 0.0 < options.seconds < 1e6:
         raise WrongUse(f"cannot record {options.seconds:g} s", "give a number of seconds above 0")
-    path = options.out or new_path("record")
     tally = Tally()
+    path: Path | None = None
+    interrupted = False
     try:
-        with robot_of(options) as robot, McapTap(path, robot.info()) as tap:
+        with robot_of(options) as robot, _new_log(options.out, robot.info()) as tap:
+            path = tap.path
             robot.add_tap(tap)
             robot.add_tap(tally)
-            with progress("recording", options.seconds) as advance:
-                began = robot.newest
-
-                def report() -> bool:
-                    if began is not None and robot.newest is not None:
-                        advance(robot.newest.t_s - began.t_s)
-                    return False
-
-                robot.wait(options.seconds, until=report)
+            _wait(robot, options.seconds)
     except KeyboardInterrupt:
-        say("interrupted: the log holds what was recorded until now")
-    except (KickctlError, OSError):
+        if path is None:  # there is no log yet
+            raise
+        interrupted = True
+    except (KickctlError, OSError) as error:
         if tally.ticks:
-            say(f"what was recorded until then, {tally.ticks} ticks, is in {path}")
+            error.add_note(f"what was recorded until then, {tally.ticks} ticks, is in {path}")
         raise
-    facts = {
+    _answer(options, path, tally, interrupted=interrupted)
+    if interrupted:
+        return Interrupted.status
+    return RobotFault.status if tally.fault else 0
+
+
+def _new_log(out: Path | None, info: dict[str, Any]) -> McapTap:
+    from host.logs.log_folder import in_folder
+    from host.logs.mcap_files import McapTap
+
+    if out is not None:
+        return McapTap(out, info)
+    return in_folder("record", lambda path: McapTap(path, info))
+
+
+def _wait(robot: Robot, seconds: float) -> None:
+    """Wait while the robot is recorded, and show how much is left."""
+    from host.util.progress import progress
+
+    began: Record | None = None
+    with progress("recording", seconds) as advance:
+
+        def report() -> bool:
+            nonlocal began
+            began = began or robot.newest
+            if began is not None and robot.newest is not None:
+                advance(robot.newest.t_s - began.t_s)
+            return False
+
+        robot.wait(seconds, until=report)
+
+
+def _answer(
+    options: argparse.Namespace, path: Path | None, tally: Tally, *, interrupted: bool
+) -> None:
+    facts: dict[str, Any] = {
         "log": str(path),
         "ticks": tally.ticks,
         "missing": tally.missing,
         "restarts": tally.restarts,
+        "interrupted": interrupted,
     }
     more = (
         f"; the robot's program started again {tally.restarts} times, and the ticks that it had not"
@@ -90,5 +124,6 @@ def run(options: argparse.Namespace) -> int:
     if tally.fault:
         facts["fault"] = tally.fault
         more += f"\nfault on the robot meanwhile: {printable(tally.fault)}"
+    if interrupted:
+        say("kickctl: interrupted; the log holds what was recorded until then")
     answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{more}")
-    return RobotFault.status if tally.fault else 0

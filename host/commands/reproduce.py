@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from host.commands._terminal import say, show
+from host.commands._terminal import print_table, say, show
 
 if TYPE_CHECKING:
     from host.runs.claims import Claim
@@ -34,15 +34,17 @@ def run(options: argparse.Namespace) -> int:
         options.brick, options.seed, only, token=options.token, out=options.out, say=say
     )
     if options.json:
-        show([claim.as_dict() for claim in done.claims])
+        claims = [claim.as_dict() for claim in done.claims]
+        page = done.page and str(done.page)
+        show({"claims": claims, "skipped": done.skipped, "report": page})
     else:
         _print(done.claims, done.skipped)
-        print(f"report {done.page}")
-    return 0
+        if done.page is not None:
+            print(f"report {done.page}")
+    return 0 if done.page is not None else 1
 
 
 def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     table = Table("", "claim", "paper", "measured", "", show_lines=True)
@@ -56,8 +58,7 @@ def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
         )
     for number in skipped:
         table.add_row(number, "", "", "", "not measured")
-    console = Console()
-    console.print(table)
+    print_table(table)
     for number, note in [(claim.id, claim.note) for claim in claims] + list(skipped.items()):
         if note:
-            console.print(f"{number}: {note}", markup=False, highlight=False)
+            print(f"{number}: {note}")

@@ -3,7 +3,8 @@
 import argparse
 from pathlib import Path
 
-from host.commands._terminal import answer, recorded, robot_of
+from host.commands._recording import recorded
+from host.commands._terminal import answer, robot_of, say
 
 HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverses it"
 
@@ -36,7 +37,8 @@ def run(options: argparse.Namespace) -> int:
     with Movie(options.out, SIZE) as movie:
         with robot_of(options, moves=True) as robot:
             require_running(robot)
-            with recorded(robot, "rods") as (log, path):
+            with recorded(robot, "rods") as recording:
+                log = recording.log
                 if not wait_settled(robot):
                     raise NotDone(
                         "the wheels did not settle", "are the parameters those of a steady motion?"
@@ -50,6 +52,8 @@ def run(options: argparse.Namespace) -> int:
             for picture in pictures(shown, SLOWER):
                 movie.add(picture)
                 advance(movie.pictures)
-    result = {**outcome.as_dict(), "log": str(path), "film": str(options.out)}
-    answer(options, result, f"{describe(outcome)}\nlog {path}\nfilm {options.out}")
-    return 0 if outcome.reversed else 1
+    result = {**outcome.as_dict(), "log": str(recording.path), "film": str(options.out)}
+    answer(options, result, f"{describe(outcome)}\nlog {recording.path}\nfilm {options.out}")
+    if recording.failure:
+        say(f"kickctl: {recording.failure}")
+    return 0 if outcome.reversed and not recording.failure else 1

@@ -3,7 +3,7 @@
 import argparse
 
 from host.commands._options import common
-from host.commands._terminal import say, show, tell
+from host.commands._terminal import finish, say
 from host.runs.registry import add_options, options_given
 from host.theory.studies.registry import TABLE
 
@@ -28,11 +28,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run it or resume it. Returns 1 if a claim does not hold.
 
-    With --json the numbers stand beside the fields of the summary. If they are a list, they are the
-    whole answer.
+    With --json the numbers stand beside the fields of the summary; a list of them has the study's
+    name.
     """
     from host.perform.run import perform
-    from host.runs.claims import exit_status
 
     name = options.study
     summary = perform(
@@ -44,9 +43,8 @@ def run(options: argparse.Namespace) -> int:
         say=say,
         **options_given(options, TABLE[name]),
     )
-    if options.json:
-        numbers = summary.pop("numbers")
-        show(numbers if isinstance(numbers, list) else {**summary, **numbers})
-    else:
-        tell(summary)
-    return exit_status(summary["claims"])
+    facts = {key: value for key, value in summary.items() if key != "numbers"}
+    numbers = summary["numbers"]
+    return finish(
+        options, summary, facts | (numbers if isinstance(numbers, dict) else {name: numbers})
+    )

@@ -16,7 +16,10 @@ from robot.record import KICK_NAMES, STATES, Record
 if TYPE_CHECKING:
     from rich.table import Table
 
-HELP = "show a live table of the wheels; ^C ends it"
+HELP = (
+    "show a live table of the wheels; ^C ends it. With --json: a stream of JSON lines, one object for"
+    " each refresh"
+)
 
 REFRESH_S = 0.1
 _SPEED_TICKS = 10
@@ -37,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     """Show the table; with --json print a line of JSON for each refresh instead."""
     from rich.live import Live
 
-    from host.commands._terminal import show
+    from host.commands._terminal import show_next
 
     if not options.seconds > 0.0:
         raise WrongUse(
@@ -54,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
                         # Virtual time would pass before anyone has seen it.
                         time.sleep(REFRESH_S)
                     if options.json:
-                        show(_summary(robot.recent()))
+                        show_next(_summary(robot.recent()))
                     else:
                         live.update(_table(robot), refresh=True)
             except KeyboardInterrupt:

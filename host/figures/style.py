@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
-from matplotlib import rc_context
+from matplotlib import rc_context, rcdefaults, rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from host.util.whole_files import whole_file
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 STYLE: Any = {
@@ -29,9 +32,32 @@ SIZE: Any = {"figsize": (10.0, 6.4), "dpi": 160, "layout": "constrained"}
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Draw figures in this style within the context."""
-    with rc_context(STYLE):
+    """Draw figures in this style within the context, no matter what the user's matplotlibrc says.
+
+    A figure has to be saved in it, too: fonts, colours and sizes count until then.
+    """
+    with rc_context():
+        rcdefaults()
+        rcParams.update(STYLE)
         yield
+
+
+def save(figure: Figure, path: str | Path) -> Path:
+    """Write a figure to a file, which appears when it is whole.
+
+    Args:
+        figure: The figure.
+        path: The file; its ending, such as .png or .svg, says the format.
+
+    Returns:
+        The path.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    with styled(), whole_file(path) as draft:
+        figure.savefig(draft, format=Path(path).suffix.removeprefix(".") or "png")
+    return Path(path)
 
 
 def share_legend(place: Axes | Figure, panels: Iterable[Axes], **style: Any) -> None:

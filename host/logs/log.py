@@ -16,6 +16,27 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+class Gaps:
+    """Finds the gaps in the numbers of a stream's ticks.
+
+    Attributes:
+        found: (first, end) of each gap: the ticks from first to end - 1 are missing.
+    """
+
+    def __init__(self) -> None:
+        self.found: list[tuple[int, int]] = []
+        self._due: int | None = None
+
+    def take(self, item: Event | Record) -> None:
+        """Look at the next event or record."""
+        if isinstance(item, dict):
+            self._due = item["tick"] if item["event"] == "restart" else self._due
+            return
+        if self._due is not None and item.tick > self._due:
+            self.found.append((self._due, item.tick))
+        self._due = item.tick + 1
+
+
 class Log:
     """Records and events of one subscription; a Tap.
 
@@ -154,16 +175,10 @@ class Log:
         Returns:
             (first, end) of each gap: the ticks from first to end - 1 are not in the log.
         """
-        gaps = []
-        due: int | None = None
+        gaps = Gaps()
         for item in self.stream():
-            if isinstance(item, dict):
-                due = item["tick"] if item["event"] == "restart" else due
-                continue
-            if due is not None and item.tick > due:
-                gaps.append((due, item.tick))
-            due = item.tick + 1
-        return gaps
+            gaps.take(item)
+        return gaps.found
 
     def kicks(self) -> list[tuple[int, Event]]:
         """The kicks that began in the log.
@@ -188,7 +203,7 @@ class Log:
         return float(sum(span[-1].t_s - span[0].t_s for span in spans if span))
 
     def save(self, path: str | Path) -> Path:
-        """Write the log to a new MCAP file.
+        """Write the log to a new MCAP file, which appears when it is whole.
 
         Args:
             path: The file, which must not exist.
@@ -198,10 +213,11 @@ class Log:
 
         Raises:
             LogError: The file exists already, or cannot be written.
+            OSError: The disk fails, or is full.
         """
-        from host.logs.mcap_files import McapTap
+        from host.logs.mcap_files import new_log
 
-        with McapTap(path, self.info) as tap:
+        with new_log(path, self.info) as tap:
             self.play(tap)
         return tap.path
 
@@ -218,7 +234,7 @@ class Log:
         Raises:
             LogError: The file is not there, or is no log.
         """
-        from host.logs.mcap_files import play
+        from host.logs.mcap_reading import play
 
         log = cls()
         log.info, whole = play(path, log)
@@ -230,33 +246,37 @@ class Log:
         """Write a table, one row for each tick, in the columns of host.logs.tables.
 
         Args:
-            path: The file; what it held is replaced.
+            path: The file; what it held is replaced, unless that is a log.
 
         Returns:
             The file's path.
-        """
-        from host.logs.tables import write_csv
 
-        path = Path(path)
-        with path.open("w", encoding="utf-8", newline="") as out:
-            write_csv(self.arrays(), out)
-        return path
+        Raises:
+            LogError: The file is a log.
+            OSError: It cannot be written.
+        """
+        from host.logs.tables import save_csv
+
+        save_csv(self.stream(), path)
+        return Path(path)
 
     def to_npz(self, path: str | Path) -> Path:
         """Write the table's columns as numpy arrays, and `info` and `events` as JSON text.
 
         Args:
-            path: The file; what it held is replaced.
+            path: The file; what it held is replaced, unless that is a log.
 
         Returns:
             The file's path.
-        """
-        from host.logs.tables import write_npz
 
-        path = Path(path)
-        with path.open("wb") as out:
-            write_npz(self.arrays(), self.info, self.events, out)
-        return path
+        Raises:
+            LogError: The file is a log.
+            OSError: It cannot be written.
+        """
+        from host.logs.tables import save_npz
+
+        save_npz(self.stream(), self.info, path)
+        return Path(path)
 
     def __len__(self) -> int:
         return len(self.records)

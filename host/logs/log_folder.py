@@ -2,34 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from datetime import datetime
+from itertools import chain, count
 from math import inf
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from mcap.reader import SeekingReader
 
-from host.logs.mcap_files import DAMAGE, METADATA, TICKS, LogError, play
+from host.logs.mcap_files import METADATA, TICKS, LogError, NameTaken, new_log
+from host.logs.mcap_reading import DAMAGE, LogFile, play
 from host.logs.tap import Event
 from robot.record import Record
+
+T = TypeVar("T")
 
 LOG_FOLDER = Path("logs")
 
 
-def new_path(kind: str) -> Path:
-    """A free name in ./logs for a log that begins now, as logs/kick-20261122-153012.mcap.
+def in_folder(kind: str, write: Callable[[Path], T]) -> T:
+    """Write a log that begins now to ./logs, as logs/kick-20261122-153012.mcap.
 
-    The time is local. The folder is created if it is not there.
+    The time is local. The folder is created if it does not exist.
+
+    Args:
+        kind: The first part of the name.
+        write: Creates the file that it gets; see `under_free_name`.
+
+    Returns:
+        What `write` returns.
 
     Raises:
-        LogError: The folder cannot be created.
+        LogError: The folder or the file cannot be created.
     """
-    stem = f"{kind}-{datetime.now().astimezone():%Y%m%d-%H%M%S}"
-    path = LOG_FOLDER / f"{stem}.mcap"
-    number = 1
-    while path.exists():
-        number += 1
-        path = LOG_FOLDER / f"{stem}-{number}.mcap"
     try:
         LOG_FOLDER.mkdir(exist_ok=True)
     except OSError as error:
@@ -37,7 +44,28 @@ def new_path(kind: str) -> Path:
             f"the folder {LOG_FOLDER} cannot be created here: {error.strerror}",
             "go to a folder that you may write to",
         ) from None
-    return path
+    moment = datetime.now().astimezone()
+    return under_free_name(LOG_FOLDER / f"{kind}-{moment:%Y%m%d-%H%M%S}.mcap", write)
+
+
+def under_free_name(path: Path, write: Callable[[Path], T]) -> T:
+    """Write a log under the first free name of NAME.mcap, NAME-2.mcap, NAME-3.mcap ...
+
+    A name is free if a file of this name can be created. Looking first would not do: another
+    program may take it in between.
+
+    Args:
+        path: NAME.mcap.
+        write: Creates the file that it gets, or raises NameTaken.
+
+    Returns:
+        What `write` returns.
+    """
+    others = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
+    for name in chain([path], others):
+        with suppress(NameTaken):
+            return write(name)
+    raise AssertionError("numbers do not end")
 
 
 class Summary(NamedTuple):
@@ -96,6 +124,52 @@ def _summary_of_whole(path: Path) -> Summary | None:
     ticks = sum(counts.get(channel, 0) for channel in channels)
     seconds = (statistics.message_end_time - statistics.message_start_time) / 1e9
     return Summary(path, ticks, seconds, info.get("brick", ""), info.get("started_utc", ""), "")
+
+
+class Recovered(NamedTuple):
+    """What came of a log that breaks off.
+
+    Attributes:
+        path: The new log.
+        ticks: How many ticks it has.
+        was_whole: Whether the old one was whole.
+    """
+
+    path: Path
+    ticks: int
+    was_whole: bool
+
+
+def recover(path: str | Path, out: Path | None = None) -> Recovered:
+    """Write what can be read of a log that breaks off to a new one, which has an index again.
+
+    Args:
+        path: The log; it is not changed.
+        out: The new log, which must not exist; by default NAME-recovered.mcap beside it.
+
+    Returns:
+        The new log.
+
+    Raises:
+        LogError: There is no such log, or the new one cannot be written.
+        OSError: The disk fails, or is full.
+    """
+    source = LogFile(path)
+
+    def write(place: Path) -> Recovered:
+        ticks = 0
+        with new_log(place, source.info) as tap:
+            for item in source.stream():
+                if isinstance(item, dict):
+                    tap.take_event(item)
+                else:
+                    tap.take_records([item])
+                    ticks += 1
+        return Recovered(place, ticks, source.whole)
+
+    if out is not None:
+        return write(out)
+    return under_free_name(source.path.with_name(f"{source.path.stem}-recovered.mcap"), write)
 
 
 class _Extent:

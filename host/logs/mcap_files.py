@@ -5,26 +5,24 @@ log's info: text as it is, anything else as JSON), the channel /ticks with one m
 the channel /events. Messages have the order of the robot's stream; an event has the log time of the
 record that follows it. A chunk is closed and given to the operating system for every second of
 robot time. A process that is killed loses what came after the last whole chunk; the rest reads
-without the end of the file.
+without the end of the file, and `kickctl log recover` gives it an index again.
 """
 
 from __future__ import annotations
 
 import json
-import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import IO, Any, Self
 
-from mcap.exceptions import McapError
-from mcap.records import Channel, Message, Metadata
-from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
 from host.errors import WrongUse
-from host.logs.tap import Event, Tap
+from host.logs.tap import Event
+from host.util.interrupts import uninterrupted
+from host.util.whole_files import naming, whole_file
 from robot import __version__
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 
@@ -32,26 +30,30 @@ METADATA = "kickctl"
 FORMAT = "1"
 TICKS, EVENTS = "/ticks", "/events"
 CHUNK_S = 1.0
-
-_GIVE_OURS = "give a log that kickctl recorded; 'kickctl log list' shows those in ./logs"
-_NAMED = {"state": STATES, "kick": KICK_NAMES}
-# What the reader raises for a file that breaks off or was damaged. A wrong checksum and wrong UTF-8
-# are ValueErrors.
-DAMAGE = (McapError, struct.error, ValueError, RuntimeError, KeyError, OverflowError, MemoryError)
+NAMED = {"state": STATES, "kick": KICK_NAMES}
 
 
 class LogError(WrongUse):
     """A log cannot be written or read."""
 
 
+class NameTaken(LogError):
+    """There is a file of this name already."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(
+            f"{path} exists already, and logs are never overwritten", "choose another name"
+        )
+
+
 def _ticks_schema() -> dict[str, Any]:
     properties: dict[str, Any] = {}
     for channel in CHANNELS:
-        if channel.name in _NAMED:
-            properties[channel.name] = {"type": "string", "enum": list(_NAMED[channel.name])}
+        if channel.name in NAMED:
+            properties[channel.name] = {"type": "string", "enum": list(NAMED[channel.name])}
         else:
             properties[channel.name] = {"type": "number" if channel.code in "df" else "integer"}
-        doc = channel.doc.split(":")[0] if channel.name in _NAMED else channel.doc
+        doc = channel.doc.split(":")[0] if channel.name in NAMED else channel.doc
         properties[channel.name]["description"] = f"[{channel.unit}] {doc}"
     return {
         "title": "tick",
@@ -86,40 +88,26 @@ def _to_text(value: Any) -> str:
     return json.dumps(value, allow_nan=False)
 
 
-def _from_text(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
-
-
 class McapTap:
-    """A Tap, and context manager, that writes a new file while the stream arrives.
+    """A Tap, and context manager, that writes a file while the stream arrives.
 
     Args:
-        path: the new file; also an attribute. A log is never overwritten.
-        info: see Log. Its clock_zero_s turns the robot's clock into UTC; after a `restart` event,
-            that of the event does.
+        path: The log's file; also an attribute. It is created, and must not exist.
+        info: What was run, as in Log. Its clock_zero_s turns the robot's clock into UTC; after a
+            `restart` event, that of the event does.
+        file: A new file that is open already, to be written instead.
 
     Raises:
-        LogError: The file exists already or cannot be written.
+        NameTaken: The file exists already.
+        LogError: The file cannot be created.
         OSError: The disk fails later; the error names the file.
     """
 
-    def __init__(self, path: str | Path, info: dict[str, Any]) -> None:
+    def __init__(
+        self, path: str | Path, info: dict[str, Any], file: IO[bytes] | None = None
+    ) -> None:
         self.path = Path(path)
-        try:
-            self._file = self.path.open("xb")
-        except OSError as error:
-            if self.path.exists():
-                raise LogError(
-                    f"{self.path} exists already, and logs are never overwritten",
-                    "choose another name",
-                ) from None
-            raise LogError(
-                f"{self.path} cannot be written: {error.strerror}",
-                "choose a folder that is there, and that you may write to",
-            ) from None
+        self._file = file or _create(self.path, self.path)
         self._zero_ns = _nanoseconds(info.get("clock_zero_s", 0.0))
         self._now_ns = self._chunk_ns = self._zero_ns
         self._waiting: list[Event] = []
@@ -141,17 +129,20 @@ class McapTap:
 
     def take_records(self, records: list[Record]) -> None:
         """Write records, and the events that waited for the first of them."""
-        with _named(self.path):
+        with uninterrupted(), naming(self.path):
             for record in records:
-                self._now_ns = self._zero_ns + _nanoseconds(record.t_s)
-                self._write_events()
-                message = record._asdict()
-                for name, words in _NAMED.items():
-                    message[name] = words[message[name]]
-                self._write(self._ticks, message, record.tick)
-                if abs(self._now_ns - self._chunk_ns) >= CHUNK_S * 1e9:
-                    self._writer.flush()
-                    self._chunk_ns = self._now_ns
+                self._take(record)
+
+    def _take(self, record: Record) -> None:
+        self._now_ns = self._zero_ns + _nanoseconds(record.t_s)
+        self._write_events()
+        message = record._asdict()
+        for name, words in NAMED.items():
+            message[name] = words[message[name]]
+        self._write(self._ticks, message, record.tick)
+        if abs(self._now_ns - self._chunk_ns) >= CHUNK_S * 1e9:
+            self._writer.flush()
+            self._chunk_ns = self._now_ns
 
     def take_event(self, event: Event) -> None:
         """Keep an event until the next record gives it its time."""
@@ -172,7 +163,7 @@ class McapTap:
         """Write what waits and the file's index. Once is enough, more does no harm."""
         if self._file.closed:
             return
-        with _named(self.path), self._file:
+        with uninterrupted(), naming(self.path), self._file:
             self._write_events()
             self._writer.finish()
 
@@ -189,75 +180,47 @@ class McapTap:
 
 
 @contextmanager
-def _named(path: Path) -> Iterator[None]:
-    """Add the file's name to the OSError of a disk that is full or fails."""
+def new_log(path: str | Path, info: dict[str, Any]) -> Iterator[McapTap]:
+    """A tap whose file appears under its name at the end of the block, if that ends well.
+
+    Args:
+        path: The log's file, which must not exist.
+        info: What was run, as in Log.
+
+    Yields:
+        The tap.
+
+    Raises:
+        NameTaken: The file exists already.
+        LogError: The file cannot be created.
+        OSError: The disk fails later; the error names the file.
+    """
+    path = Path(path)
     try:
-        yield
+        with (
+            whole_file(path, new=True) as draft,
+            _create(draft, path) as file,
+            McapTap(path, info, file) as tap,
+        ):
+            yield tap
+    except FileExistsError:
+        raise NameTaken(path) from None
+
+
+def _create(place: Path, path: Path) -> IO[bytes]:
+    """Create the file of the log `path` in a place, and open it."""
+    try:
+        return place.open("xb")
+    except FileExistsError:
+        raise NameTaken(path) from None
     except OSError as error:
-        error.filename = str(path)
-        raise
+        if path.is_dir():
+            raise NameTaken(path) from None
+        raise LogError(
+            f"{path} cannot be written: {error.strerror}",
+            "choose a folder that is there, and that you may write to",
+        ) from None
 
 
 def _nanoseconds(seconds: float) -> int:
     return round(seconds * 1e9)
-
-
-def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
-    """Feed a tap with the stream in a file, as far as the file can be read.
-
-    Returns:
-        The log's info, and whether the file is whole.
-
-    Raises:
-        LogError: The file cannot be opened, or is not a log of kickctl.
-    """
-    path = Path(path)
-    info: dict[str, Any] | None = None
-    whole = True
-    topics: dict[int, str] = {}
-    try:
-        with path.open("rb") as file:
-            if file.read(8) != b"\x89MCAP0\r\n":
-                raise LogError(f"{path} is not an MCAP file", _GIVE_OURS)
-            file.seek(0)
-            try:
-                for item in StreamReader(
-                    file, validate_crcs=True, record_size_limit=path.stat().st_size
-                ).records:
-                    if isinstance(item, Metadata) and item.name == METADATA:
-                        info = _info(path, item.metadata)
-                    elif isinstance(item, Channel):
-                        topics[item.id] = item.topic
-                    elif isinstance(item, Message) and info is not None:
-                        _take(tap, topics[item.channel_id], json.loads(item.data))
-            except DAMAGE:
-                whole = False
-    except OSError as error:
-        raise LogError(
-            f"{path} cannot be read: {error.strerror}",
-            "'kickctl log list' shows the logs there are",
-        ) from None
-    if info is None:
-        raise LogError(f"{path} is an MCAP file, but holds no log of kickctl", _GIVE_OURS)
-    return info, whole
-
-
-def _info(path: Path, metadata: dict[str, str]) -> dict[str, Any]:
-    if metadata.get("format") != FORMAT:
-        raise LogError(
-            f"{path} has log format {metadata.get('format')}, not {FORMAT}",
-            "read it with the release that wrote it",
-        )
-    return {name: _from_text(text) for name, text in metadata.items() if name != "format"}
-
-
-def _take(tap: Tap, topic: str, message: dict[str, Any]) -> None:
-    if topic == TICKS:
-        for name, words in _NAMED.items():
-            message[name] = words.index(message[name])
-        values = [message[name] for name in NAMES]
-        if not all(isinstance(value, (int, float)) for value in values):
-            raise ValueError("a value that is not a number")
-        tap.take_records([Record(*values)])
-    elif topic == EVENTS:
-        tap.take_event(message)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from struct import pack
 from typing import Any
 
-from host.logs.log import Log
+from host.logs.log import Gaps, Log
+from host.logs.mcap_reading import LogFile
 from host.logs.tap import Event
 from robot.blackbox import Snapshot
 from robot.kicks import WHEELS, Kick
@@ -44,19 +45,21 @@ class ReplayResult:
     """What a replay found.
 
     Attributes:
-        tolerance: the largest difference that counts as reproduced.
-        compared: how many ticks were compared in every channel.
-        not_comparable: how many ticks gave their potentials to the replay, because the log does not
+        tolerance: The largest difference that counts as reproduced.
+        compared: How many ticks were compared in every channel.
+        not_comparable: How many ticks gave their potentials to the replay, because the log does not
             say what these were before: the first tick of the log, the first after a gap or a
             restart, and ticks in which a motor failed.
-        first: the first channel that differs in any bit.
-        beyond: the first channel that differs by more than the tolerance.
-        worst: the greatest difference.
+        missing: How many ticks are not in the log.
+        first: The first channel that differs in any bit.
+        beyond: The first channel that differs by more than the tolerance.
+        worst: The greatest difference.
     """
 
     tolerance: float
     compared: int = 0
     not_comparable: int = 0
+    missing: int = 0
     first: Mismatch | None = None
     beyond: Mismatch | None = None
     worst: float = 0.0
@@ -143,8 +146,18 @@ class _Controller:
                     yield Mismatch(record.tick, f"{wheel.side}_{name}", recorded, value)
 
 
-def replay(log: Log) -> ReplayResult:
-    """Replay a log. In a log that was neither changed nor damaged, nothing differs."""
+def replay(log: Log | LogFile) -> ReplayResult:
+    """Replay a log. In a log that was neither changed nor damaged, nothing differs.
+
+    Args:
+        log: In memory, or a file, which is read as a stream and may be long.
+
+    Returns:
+        What was compared, and what differs.
+
+    Raises:
+        LogError: The file cannot be read any more.
+    """
     here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
     result = ReplayResult(
         0.0 if log.info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE
@@ -152,7 +165,9 @@ def replay(log: Log) -> ReplayResult:
     controller = _Controller()
     known_before: int | None = None  # the tick before which the potentials are known
     failed = False
+    gaps = Gaps()
     for item in log.stream():
+        gaps.take(item)
         if isinstance(item, dict):
             controller.take(item)
             if item["event"] == "start":
@@ -172,4 +187,5 @@ def replay(log: Log) -> ReplayResult:
         result.not_comparable += not known
         known_before = item.tick + 1
         failed = False
+    result.missing = sum(end - first for first, end in gaps.found)
     return result

@@ -1,18 +1,29 @@
 """Logs as tables for spreadsheets and numpy: one row a tick, with the columns COLUMNS.
 
 Columns have the names, units and meaning of robot.record.CHANNELS, but state and kick are words.
-left_omega_rad_s and right_omega_rad_s are those of Log.omega. Floats read back bit for bit.
+left_omega_rad_s and right_omega_rad_s are those of Log.omega. Floats read back bit for bit. A log
+passes through as a stream, so that its length does not matter.
 """
 
 from __future__ import annotations
 
 import csv
 import json
+import shutil
+import tempfile
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack
+from itertools import islice
+from math import nan
+from pathlib import Path
 from typing import IO, Any, TextIO
 
+from host.logs.mcap_reading import require_no_log
 from host.logs.tap import Event
+from host.util.whole_files import naming, whole_file
 from robot.kicks import WHEELS
-from robot.record import KICK_NAMES, STATES
+from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 
 _WHEEL = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct", "omega_rad_s")
 # The order is a promise; new columns come last.
@@ -21,35 +32,181 @@ COLUMNS = (
     + tuple(f"{side}_{name}" for side in WHEELS for name in _WHEEL)
     + ("kick", "state", "late_s", "missed")
 )
+_NAMED = {"kick": KICK_NAMES, "state": STATES}
+# Where a row's values stand in a record that is followed by the wheels' speeds.
+_PLACES = tuple([*NAMES, *(side + "_omega_rad_s" for side in WHEELS)].index(n) for n in COLUMNS)
+_ANGLES = tuple(NAMES.index(side + "_phi_rad") for side in WHEELS)
+_TIME = NAMES.index("t_s")
+# How many rows of an .npz file are converted at a time.
+_BLOCK = 4096
+
+Row = tuple[Any, ...]
 
 
-def columns(arrays: dict[str, Any]) -> dict[str, Any]:
-    """A log's arrays in the order of COLUMNS, with state and kick as words; no kick is empty."""
-    import numpy as np
+def save_csv(stream: Iterable[Event | Record], path: str | Path) -> int:
+    """Write the table as a file of comma-separated values, which appears when it is whole.
 
-    named = {
-        "kick": np.array(KICK_NAMES)[arrays["kick"]],
-        "state": np.array(STATES)[arrays["state"]],
-    }
-    return {name: named.get(name, arrays.get(name)) for name in COLUMNS}
+    Args:
+        stream: A log's events and records, in their order.
+        path: The file; what it held is replaced, unless that is a log.
+
+    Returns:
+        How many rows it has.
+
+    Raises:
+        LogError: The file is a log.
+        OSError: It cannot be written.
+    """
+    require_no_log(path)
+    with whole_file(path) as draft, draft.open("w", encoding="utf-8", newline="") as out:
+        return write_csv(stream, out)
 
 
-def write_csv(arrays: dict[str, Any], out: TextIO) -> None:
-    """Write the table as comma-separated values below a line of column names."""
+def write_csv(stream: Iterable[Event | Record], out: TextIO) -> int:
+    """Write the table as comma-separated values below a line of column names.
+
+    Args:
+        stream: A log's events and records, in their order.
+        out: Where to write.
+
+    Returns:
+        How many rows there are.
+    """
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(COLUMNS)
-    writer.writerows(zip(*(column.tolist() for column in columns(arrays).values()), strict=True))
+    count = 0
+    for row in _rows(stream):
+        writer.writerow(row)
+        count += 1
+    return count
 
 
-def write_npz(
-    arrays: dict[str, Any], info: dict[str, Any], events: list[Event], out: IO[bytes]
-) -> None:
-    """Write the columns as arrays of an .npz file, and `info` and `events` as JSON text."""
+def save_npz(stream: Iterable[Event | Record], info: dict[str, Any], path: str | Path) -> int:
+    """Write the columns as arrays of an .npz file, and `info` and `events` as JSON text.
+
+    The columns wait in temporary files beside it, because an .npz file has one after the other.
+
+    Args:
+        stream: A log's events and records, in their order.
+        info: What was run, as in Log.
+        path: The file; what it held is replaced, unless that is a log.
+
+    Returns:
+        How many rows it has.
+
+    Raises:
+        LogError: The file is a log.
+        OSError: It cannot be written.
+    """
+    require_no_log(path)
+    events: list[Event] = []
+    with ExitStack() as stack:
+        draft = stack.enter_context(whole_file(path))
+        stack.enter_context(naming(path))
+        # A device or a pipe has no draft, and no other file belongs beside it.
+        folder = None if draft == Path(path).resolve() else draft.parent
+        files = {name: stack.enter_context(tempfile.TemporaryFile(dir=folder)) for name in COLUMNS}
+        count = _fill(files, _rows(_keep_events(stream, events)))
+        _write_archive(draft, files, count, {"info": info, "events": events})
+    return count
+
+
+def _keep_events(stream: Iterable[Event | Record], events: list[Event]) -> Iterator[Event | Record]:
+    for item in stream:
+        if isinstance(item, dict):
+            events.append(item)
+        yield item
+
+
+def _fill(files: Mapping[str, IO[bytes]], rows: Iterator[Row]) -> int:
+    """Write the bytes of each column to its file. Returns how many rows there were."""
     import numpy as np
 
-    np.savez_compressed(
-        out,
-        **columns(arrays),
-        info=json.dumps(info, allow_nan=False),
-        events=json.dumps(events, allow_nan=False),
-    )
+    count = 0
+    while block := list(islice(rows, _BLOCK)):
+        count += len(block)
+        for name, values in zip(COLUMNS, zip(*block, strict=True), strict=True):
+            files[name].write(np.array(values, _dtype(name)).tobytes())
+    return count
+
+
+def _dtype(name: str) -> Any:
+    """numpy's type of a column."""
+    import numpy as np
+
+    if name in _NAMED:
+        return np.array(_NAMED[name]).dtype
+    codes = {channel.name: channel.code for channel in CHANNELS}
+    return np.dtype(np.float64 if codes.get(name, "d") in "df" else np.int64)
+
+
+def _write_archive(
+    path: Path, files: Mapping[str, IO[bytes]], count: int, texts: dict[str, Any]
+) -> None:
+    import numpy as np
+
+    form = np.lib.format
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, file in files.items():
+            file.seek(0)
+            with archive.open(name + ".npy", "w", force_zip64=True) as member:
+                form.write_array_header_1_0(
+                    member,
+                    {
+                        "descr": form.dtype_to_descr(_dtype(name)),
+                        "fortran_order": False,
+                        "shape": (count,),
+                    },
+                )
+                shutil.copyfileobj(file, member)
+        for name, value in texts.items():
+            with archive.open(name + ".npy", "w", force_zip64=True) as member:
+                form.write_array(member, np.array(json.dumps(value, allow_nan=False)))
+
+
+def _rows(stream: Iterable[Event | Record]) -> Iterator[Row]:
+    """Yield the rows of a log's records, with state and kick as words; no kick is empty."""
+    named = [(COLUMNS.index(name), words) for name, words in _NAMED.items()]
+    for record, speeds in _with_speeds(stream):
+        values = (*record, *speeds)
+        row = [values[place] for place in _PLACES]
+        for place, words in named:
+            row[place] = words[row[place]]
+        yield tuple(row)
+
+
+def _with_speeds(stream: Iterable[Event | Record]) -> Iterator[tuple[Record, list[float]]]:
+    """Yield each record and the wheels' speeds (rad/s) as Log.omega has them.
+
+    The first record, and the first one after a restart, waits for the speeds of the next.
+    """
+    before: Record | None = None
+    waiting: list[Record] = []
+    for item in stream:
+        if isinstance(item, dict):
+            before = None if item["event"] == "restart" else before
+            continue
+        if before is None:
+            waiting.append(item)
+        else:
+            speeds = [
+                _ratio(item[angle] - before[angle], item[_TIME] - before[_TIME])
+                for angle in _ANGLES
+            ]
+            for record in waiting:
+                yield record, speeds
+            waiting.clear()
+            yield item, speeds
+        before = item
+    for record in waiting:
+        yield record, [nan] * len(_ANGLES)
+
+
+def _ratio(turn: float, time: float) -> float:
+    """A quotient by the rules of IEEE 754, as numpy computes it: infinite or NaN for no time."""
+    if time:
+        return turn / time
+    import numpy as np
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.float64(turn) / np.float64(time))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 from typing import NamedTuple, cast
 
 from host.experiments.registry import BODIES, ROBOT
-from host.runs.contract import Experiment
+from host.runs.contract import Experiment, Findings, Row
 from host.runs.registry import Entry, entry_of
 from host.runs.runner import Draw
 from host.theory.studies.registry import TABLE as STUDIES
@@ -27,7 +28,7 @@ class Found(NamedTuple):
         kind: A key of KINDS.
         entry: Its options and claims.
         work: Its module.
-        draw: The function that draws its figure.
+        draw: The function that draws its figure. matplotlib is imported when it is called.
     """
 
     kind: str
@@ -43,4 +44,17 @@ def find(name: str) -> Found:
     _, works, figures = KINDS[kind]
     module = "." + name.replace("-", "_")
     work = cast("Experiment", importlib.import_module(works + module))
-    return Found(kind, entry, work, cast("Draw", importlib.import_module(figures + module).draw))
+    return Found(kind, entry, work, _drawing(figures + module))
+
+
+def _drawing(module: str) -> Draw:
+    def draw(rows: list[Row], findings: Findings, stem: Path) -> list[Path]:
+        from host.figures.style import save
+
+        figure = importlib.import_module(module).draw(rows, findings)
+        png = save(figure, f"{stem}.png")
+        # The layout takes as long as the drawing, and is the same for both.
+        figure.set_layout_engine("none")
+        return [png, save(figure, f"{stem}.svg")]
+
+    return draw

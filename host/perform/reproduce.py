@@ -37,12 +37,12 @@ class Reproduction(NamedTuple):
     Attributes:
         claims: The claims, in the order of their numbers.
         skipped: Why a claim was not measured, by its id.
-        page: The path of the report.
+        page: The path of the report; None if it could not be written.
     """
 
     claims: list[Claim]
     skipped: dict[str, str]
-    page: Path
+    page: Path | None
 
 
 def claim_ids() -> list[str]:
@@ -115,7 +115,11 @@ def reproduce(
     run(TABLE, uri)
     run(STUDIES, None)
     name = "-".join(["report", *(wanted if only else [])])
-    page = report.write(
-        Path(out) / f"{name}.html", [claims[number] for number in wanted], summaries, skipped
-    )
-    return Reproduction([claims[number] for number in wanted], skipped, page)
+    found = [claims[number] for number in wanted]
+    page: Path | None = Path(out) / f"{name}.html"
+    try:
+        report.write(Path(out) / f"{name}.html", found, summaries, skipped)
+    except OSError as error:  # the claims are known all the same
+        say(f"the report cannot be written: {error.filename}: {error.strerror}")
+        page = None
+    return Reproduction(found, skipped, page)

@@ -8,13 +8,11 @@ import hashlib
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.runs.contract import Cell, Row
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from host.util.whole_files import whole_file, write_text
 
 _CELLS = "cells.jsonl"
 
@@ -61,7 +59,7 @@ class Study:
                 f"another run works in {folder} now",
                 "wait until it ends, or name another folder with --out",
             ) from None
-        except WrongUse:
+        except (WrongUse, OSError):
             self.close()
             raise
 
@@ -113,25 +111,16 @@ class Study:
         """Write the rows as CSV, one line each."""
         path = self.folder / f"{name}.csv"
         columns = list(dict.fromkeys(column for row in rows for column in row))
-        with path.open("w", encoding="utf-8", newline="") as out:
+        with whole_file(path) as draft, draft.open("w", encoding="utf-8", newline="") as out:
             writer = csv.DictWriter(out, columns)
             writer.writeheader()
             writer.writerows(rows)
         return path
 
-    def write_figure(self, name: str, figure: Figure) -> list[Path]:
-        """Write a figure as PNG and SVG."""
-        paths = [self.folder / f"{name}.{kind}" for kind in ("png", "svg")]
-        for path in paths:
-            figure.savefig(path)
-            # The layout takes as long as the drawing, and is the same for both.
-            figure.set_layout_engine("none")
-        return paths
-
     def write(self, name: str, text: str) -> Path:
         """Write a text to a file of this name."""
         path = self.folder / name
-        path.write_text(text, encoding="utf-8")
+        write_text(path, text)
         return path
 
 

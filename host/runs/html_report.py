@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from host.runs.claims import FAILS, HOLDS, UNDECIDED, Claim
+from host.util.whole_files import write_text
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; }
@@ -73,7 +74,7 @@ def write(
         *(_experiment(summary) for summary in summaries),
         "</body>\n</html>\n",
     ]
-    path.write_text("".join(parts), encoding="utf-8")
+    write_text(path, "".join(parts))
     return path
 
 
@@ -101,7 +102,6 @@ def _row(number: str, claim: str, paper: str, measured: str, verdict: str, note:
 
 
 def _experiment(summary: dict[str, Any]) -> str:
-    figure = base64.b64encode(Path(summary["figures"][0]).read_bytes()).decode()
     name = escape(summary["experiment"])
     options = ", ".join(f"{key} {value}" for key, value in summary["options"].items())
     spoiled = f"; {len(summary['spoiled'])} tries did not count" if summary["spoiled"] else ""
@@ -109,5 +109,12 @@ def _experiment(summary: dict[str, Any]) -> str:
         f"<h2>{name}</h2>\n<p>{summary['trials']} rows ({escape(options)}){spoiled}; table, logs"
         " and summary in"
         f" <code>{escape(summary['folder'])}</code></p>\n"
-        f'<img alt="figure of {name}" src="data:image/png;base64,{figure}">\n'
+        f"{_figure(name, summary)}\n"
     )
+
+
+def _figure(name: str, summary: dict[str, Any]) -> str:
+    if not summary["figures"]:
+        return f"<p>{escape(summary['unwritten']['figure'])}</p>"
+    picture = base64.b64encode(Path(summary["figures"][0]).read_bytes()).decode()
+    return f'<img alt="figure of {name}" src="data:image/png;base64,{picture}">'

@@ -5,22 +5,22 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 from host.errors import KickctlError
 from host.runs.contract import Cell, Findings, Row, Setting
 from host.runs.folder import Study
 from host.util.progress import progress
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+T = TypeVar("T")
 # The rows of a cell, and why earlier tries of it did not count.
 Outcome = tuple[list[Row], list[str]]
 Result = tuple[Cell, list[Row], list[str]]
 Work = Callable[[Cell], Outcome]
-Draw = Callable[[list[Row], Findings], "Figure"]
+# Draws the figure of rows and findings, and writes it to STEM.png and STEM.svg. Returns the paths.
+Draw = Callable[[list[Row], Findings, Path], list[Path]]
 
 
 @contextmanager
@@ -120,9 +120,38 @@ def finish(
     study: Study,
     about: dict[str, Any],
 ) -> dict[str, Any]:
-    """Write the table, the figure that `draw` makes, and the summary. Returns the summary."""
-    figures = study.write_figure(name, draw(rows, findings))
+    """Write the table, the figure and the summary, as far as disk and matplotlib allow.
+
+    Args:
+        name: The run's name.
+        rows: All rows.
+        findings: What they come to.
+        draw: Draws the figure.
+        study: The run's folder.
+        about: The run's settings.
+
+    Returns:
+        The summary. Under "unwritten" it says which files are missing, and why.
+    """
+    unwritten: dict[str, str] = {}
+
+    def attempt(file: str, write: Callable[[], T], otherwise: T) -> T:
+        """What `write` returns; it may fail in any way, and the findings are still told."""
+        try:
+            return write()
+        except OSError as error:
+            unwritten[file] = f"{error.filename or file} cannot be written: {error.strerror}"
+        except Exception as error:  # noqa: BLE001 - drawing may fail in any way
+            unwritten[file] = f"{file} failed with {type(error).__name__}: {error}"
+        return otherwise
+
     logs = study.folder / "logs"
+    texts = findings.files.items()
+    kept = [attempt(file, partial(study.write, file, text), None) for file, text in texts]
+    table = attempt("table", lambda: study.write_table(name, rows), None)
+    none: list[Path] = []
+    figures = attempt("figure", lambda: draw(rows, findings, study.folder / name), none)
+    path = study.folder / "summary.json"
     summary = {
         **about,
         "claims": [claim.as_dict() for claim in findings.claims],
@@ -130,10 +159,14 @@ def finish(
         "trials": len(rows),
         "spoiled": study.spoiled(),
         "folder": str(study.folder),
-        "table": str(study.write_table(name, rows)),
+        "table": table and str(table),
         "figures": [str(path) for path in figures],
-        "files": [str(study.write(file, text)) for file, text in findings.files.items()],
+        "files": [str(path) for path in kept if path],
         "logs": str(logs) if logs.exists() else None,
+        "summary": str(path),
+        "unwritten": unwritten,
     }
-    study.write("summary.json", json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    text = json.dumps(summary, indent=1, allow_nan=False) + "\n"
+    if attempt("summary", lambda: study.write(path.name, text), None) is None:
+        summary["summary"] = None
     return summary

@@ -1,4 +1,4 @@
-"""^C, held back while it could do harm."""
+"""Interrupts: ^C, SIGTERM and a terminal that closes (SIGHUP), held back while they could do harm."""
 
 from __future__ import annotations
 
@@ -6,22 +6,33 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Hold back ^C until the end of the block, for what must be done as a whole or not at all.
+    """Hold back interrupts until the end of the block, for what must be done whole or not at all.
 
-    Blocks may be nested: the outermost one hands ^C on, also when the block fails.
+    An interrupt while compiled code is loaded would crash the interpreter, and one while a log is
+    written would leave half a message in it. Blocks may be nested: the outermost one hands the
+    first interrupt on, also when the block fails. Signals without a handler keep their effect.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     kept: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: kept.append(number))
+    before: dict[int, Any] = {}
     try:
+        for number in SIGNALS:
+            handler = signal.getsignal(number)
+            if callable(handler):
+                before[number] = handler
+                signal.signal(number, lambda number, frame: kept.append(number))
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for held, handler in before.items():
+            signal.signal(held, handler)
         if kept:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(kept[0])

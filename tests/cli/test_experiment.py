@@ -362,7 +362,7 @@ def test_after_an_experiment_the_robot_stands_still(toy, desk, tmp_path):
 
 def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
     status, out, _ = kickctl("reproduce", "--only", "r8,R10", "--json")
-    claims = json.loads(out)
+    claims = json.loads(out)["claims"]
     assert status == 0
     assert [claim["id"] for claim in claims] == ["R8", "R10"]
     assert set(claims[0]) == {

@@ -16,7 +16,7 @@ from host.theory.model.wheel import Wheel
 
 def test_the_command_lists_eight_fixpoints(kickctl):
     status, out, _ = kickctl("theory", "fixpoints", "--k", "1.4", "--tau", "0.25", "--json")
-    points = json.loads(out)
+    points = json.loads(out)["fixpoints"]
     assert status == 0
     assert [point["phi"] for point in points] == pytest.approx([n * pi / 4 for n in range(8)])
     assert [point["stable"] for point in points] == [True, False] * 4

@@ -72,7 +72,7 @@ def test_record_then_list_export_replay(kickctl):
     result = json.loads(out)
     assert (status, result["missing"]) == (0, 0)
     assert 100 <= result["ticks"] <= 103
-    listed = json.loads(kickctl("log", "list", "--json")[1])
+    listed = json.loads(kickctl("log", "list", "--json")[1])["logs"]
     assert [(row["path"], row["ticks"]) for row in listed] == [(result["log"], result["ticks"])]
     assert kickctl("log", "export", result["log"], "--format", "npz")[0] == 0
     table = np.load(result["log"].replace(".mcap", ".npz"))
@@ -99,8 +99,12 @@ def test_replay_finds_a_changed_bit(kickctl):
     assert "left_x1" in json.loads(out)["first_mismatch"]
 
 
+def _params(kickctl):
+    return json.loads(kickctl("params", "list", "--json")[1])["params"]
+
+
 def test_params_list_has_what_scripts_rely_on(kickctl):
-    rows = {row["name"]: row for row in json.loads(kickctl("params", "list", "--json")[1])}
+    rows = {row["name"]: row for row in _params(kickctl)}
     assert set(rows) >= {
         "a",
         "tau_s",

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from host.figures.style import SIZE, styled
+from host.figures.style import SIZE, save, styled
 from host.logs.log import Log
 from host.logs.tap import Event
 from robot.kicks import WHEELS
@@ -113,8 +113,7 @@ def draw(
         speeds.set_xlim(first_s, last_s)
         speeds.set_xlabel("time since the kick (s)" if kicks else "time (s)")
         figure.align_ylabels()
-        figure.savefig(path, format="png")
-    return Path(path)
+    return save(figure, path)
 
 
 def _line(

@@ -16,7 +16,7 @@ from mcap.writer import Writer
 
 from host.logs import log_folder
 from host.logs.log import Log
-from host.logs.log_folder import list_logs, new_path
+from host.logs.log_folder import in_folder, list_logs
 from host.logs.mcap_files import LogError, McapTap
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, STRUCT, Record, unpack
 from tests.fakes import Rig, eventful
@@ -324,13 +324,13 @@ def test_new_logs_have_names_of_their_own_in_the_present_folder(tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(log_folder, "datetime", Now)
     log = running(3)
-    names = [log.save(new_path("kick")).relative_to("logs").name for _ in range(3)]
+    names = [in_folder("kick", log.save).relative_to("logs").name for _ in range(3)]
     assert names == [
         "kick-20261122-153012.mcap",
         "kick-20261122-153012-2.mcap",
         "kick-20261122-153012-3.mcap",
     ]
-    assert new_path("record").name == "record-20261122-153012.mcap"
+    assert in_folder("record", log.save).name == "record-20261122-153012.mcap"
 
 
 def test_the_list_of_logs_separates_whole_broken_and_foreign_files(tmp_path):

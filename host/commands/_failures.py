@@ -1,0 +1,72 @@
+"""What ended a command, in words: what happened, why, and what to do next."""
+
+from __future__ import annotations
+
+import errno
+
+from host.errors import Interrupted, KickctlError, NotDone, WrongUse
+from host.util.installation import install_command
+
+_FULL = "is the disk full? Make room, or choose another place"
+_NOT_ALLOWED = "choose a place that you may read and write"
+_NOT_THERE = "is every folder of that name there?"
+_REMEDIES = {
+    errno.ENOSPC: _FULL,
+    errno.EDQUOT: _FULL,
+    errno.EACCES: _NOT_ALLOWED,
+    errno.EPERM: _NOT_ALLOWED,
+    errno.EROFS: _NOT_ALLOWED,
+    errno.ENOENT: _NOT_THERE,
+    errno.ENOTDIR: _NOT_THERE,
+    errno.EISDIR: "name a file, not a folder",
+    errno.EFBIG: "files may not grow that long here: see `ulimit -f`",
+    errno.EIO: "is the disk or the terminal gone?",
+    errno.ENAMETOOLONG: "choose a shorter name",
+    errno.EMFILE: "too many files are open: see `ulimit -n`",
+}
+
+
+def in_words(error: BaseException) -> KickctlError | None:
+    """The words for what ended a command.
+
+    Args:
+        error: What was raised. Its notes, if it has any, say what was kept.
+
+    Returns:
+        What happened, as a KickctlError; None for what only a mistake in this program can raise.
+    """
+    failure = _failure(error)
+    notes = getattr(error, "__notes__", [])
+    if failure is not None and notes:
+        failure.hint = "\n  ".join([*filter(None, [failure.hint]), *notes])
+    return failure
+
+
+def _failure(error: BaseException) -> KickctlError | None:
+    match error:
+        case KickctlError():
+            return error
+        case KeyboardInterrupt():
+            failure: KickctlError = Interrupted("interrupted")
+        case OSError():
+            failure = NotDone(os_words(error), _REMEDIES.get(error.errno or 0, ""))
+        case UnicodeError():
+            failure = WrongUse(
+                f"there are letters that cannot be used here: {error}", "write it in plain letters"
+            )
+        case ImportError():
+            failure = NotDone(
+                f"a library is missing or cannot be loaded: {error}",
+                f"install it: {install_command()}",
+            )
+        case MemoryError():
+            failure = NotDone("this machine has not enough memory", "ask for less at a time")
+        case _:
+            return None
+    return failure
+
+
+def os_words(error: OSError) -> str:
+    """What the operating system has refused, and where."""
+    place = error.filename if error.filename is not None else "standard output"
+    return f"{place} cannot be written or read: {error.strerror or error}"
