@@ -5,7 +5,7 @@ from random import Random
 
 from robot.motors import Battery
 from sim_motor.clock import Clock, VirtualClock
-from sim_motor.constants import data, load
+from sim_motor.constants import Constants, data, load
 from sim_motor.wheel_motor import SimMotor, Truth
 from sim_motor.world import Scene, World, alone
 
@@ -35,7 +35,7 @@ class SimBrick:
         seed: Random seed of the start phases, of the small differences between the motors, and of
             the clock's jitter.
         clock: A VirtualClock by default; robot.motors.MonotonicClock for real time.
-        motor: A table of motors.toml, or of the user's own file.
+        motor: A table of motors.toml or of the user's own file, or a motor's constants.
         battery_v: Open-circuit voltage, V; nominal by default.
         mount: For each motor, -1 if it is mounted mirrored, else 1.
         jitter: Whether the default clock is late as the brick is.
@@ -48,14 +48,14 @@ class SimBrick:
         seed: int,
         *,
         clock: Clock | None = None,
-        motor: str = "pybricks",
+        motor: str | Constants = "pybricks",
         battery_v: float | None = None,
         mount: tuple[int, int] = (1, 1),
         jitter: bool = True,
         scene: Scene | None = None,
     ) -> None:
         random = Random(f"brick {seed}")
-        published = load(motor)
+        published = load(motor) if isinstance(motor, str) else motor
         open_v = _checked(published.battery_v if battery_v is None else battery_v)
         self.clock: Clock = VirtualClock(seed, jitter=jitter) if clock is None else clock
         self.seed = seed

@@ -17,7 +17,7 @@ from robot.kick_requests import parse
 from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION
 from robot.params import Params
 from sim_motor.batch import run
-from sim_motor.constants import load
+from sim_motor.constants import Constants, load
 
 
 class KickCell(TypedDict):
@@ -108,7 +108,7 @@ def tally(
     seed: int,
     *,
     params: Params,
-    motor: str = "pybricks",
+    motor: Constants | None = None,
     battery_v: float | None = None,
 ) -> list[Counts]:
     """Kick simulated wheels that have settled, each at a phase by chance, and count.
@@ -120,14 +120,16 @@ def tally(
         wheels: How many wheels. Those that rest before the kick do not count.
         seed: The random seed.
         params: The robot's parameters.
-        motor: The wheels have specimens of this motor, within its published spread.
+        motor: The wheels have specimens of this motor, within its published spread; by default of
+            the published one.
         battery_v: The battery's voltage, V; None for the motor's nominal one.
 
     Returns:
         A row for each direction and bin of phases in which a wheel met the kick.
     """
     rng = np.random.default_rng(seed)
-    motors = load(motor).specimens(min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN), rng)
+    specimens = min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN)
+    motors = (motor or load()).specimens(specimens, rng)
     settle, watch = (
         round(min(_PATIENCE_S, time_s + _MEMORY_TAU * params.tau_s) / params.tick_s)
         for time_s in (_SETTLE_S, _WATCH_S)

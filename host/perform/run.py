@@ -21,7 +21,6 @@ from host.runs.runner import do_cells, finish, open_study, simulate
 from host.util.extras import need
 from host.util.provenance import commit, sources
 from robot import __version__
-from sim_motor.constants import load as constants
 
 RESULTS = Path("results")
 DEFAULT_SEED = 1
@@ -79,7 +78,7 @@ def perform(
         settings["brick"] = uri
         if simulated is not None:
             # By value: your own motor of this name may have other constants tomorrow.
-            settings["motor"] = asdict(constants(setting.motor))
+            settings["motor"] = asdict(setting.constants)
     settings["seed"] = setting.seed
     batch = simulated is not None and found.work.simulate is not None
     if scheduler and not batch:

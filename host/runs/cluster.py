@@ -1,6 +1,7 @@
 """Computes the cells of a run on a Dask cluster.
 
-The result of a cell does not depend on where it is computed, or how often.
+The result of a cell does not depend on where it is computed, or how often: workers must have the
+sources of this computer, and get the motor's constants from it (see Setting).
 """
 
 from __future__ import annotations
@@ -8,12 +9,33 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Generator
 from concurrent.futures import CancelledError
+from functools import partial
+from importlib.metadata import PackageNotFoundError, version
+from queue import Empty, SimpleQueue
+from time import monotonic
+from typing import TYPE_CHECKING, Any
 
-from host.errors import NoLink, WrongUse
+from host.errors import NoLink, NotDone, WrongUse
 from host.runs.contract import Cell, Row, Setting
 from host.util.installation import install_command
+from host.util.provenance import sources
 
-CONNECT_S = 10.0
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+# How long (s) the scheduler may take to answer; how long it may have no worker at first, and after
+# it has lost all; and how often to look while no result comes.
+ANSWER_S, FIRST_WORKER_S, NEXT_WORKER_S, LOOK_S = 8.0, 8.0, 14.0, 1.0
+
+_RESUME = "mend it, and run the same command again: it resumes the run"
+# What a worker does. It is text, which a worker without kickctl and of any version of Python can
+# read: Dask waits for ever for one that could not unpickle its task.
+_TASK = """(
+    lambda cluster:
+        ("differs", __import__("distributed").get_worker().address, differences)
+        if (differences := getattr(cluster, "compare", lambda _: "another version")(computing))
+        else ("rows", "", __import__("pickle").loads(work)())
+)(__import__("host.runs.cluster", fromlist=["cluster"]))"""
 
 
 def compute_on_cluster(
@@ -22,12 +44,24 @@ def compute_on_cluster(
     cells: list[Cell],
     setting: Setting,
 ) -> Generator[tuple[Cell, list[Row]]]:
-    """Yields (cell, rows) as workers of the Dask scheduler at `address` complete them.
+    """Compute the cells of a run on the workers of a Dask scheduler.
 
-    Raises WrongUse and NoLink.
+    Args:
+        address: The scheduler's, such as tcp://host:8786.
+        simulate: Computes a cell.
+        cells: What to compute.
+        setting: What the cells share.
+
+    Yields:
+        (cell, its rows), in the order in which they are complete.
+
+    Raises:
+        WrongUse: The address is none, or the package distributed is missing here.
+        NoLink: There is no scheduler or no worker, or they were lost.
+        NotDone: A worker would compute other numbers, or lacks a package.
     """
     try:
-        from distributed import Client, as_completed
+        from distributed import Client
         from distributed.scheduler import KilledWorker
     except ImportError as error:
         raise WrongUse(
@@ -38,21 +72,108 @@ def compute_on_cluster(
         raise WrongUse(
             f"'{address}' is no address of a Dask scheduler", "it is like tcp://HOST:8786"
         )
+    start_s = monotonic()
     try:
-        client = Client(address, timeout=CONNECT_S, set_as_default=False)
+        client = Client(address, timeout=ANSWER_S, set_as_default=False)
     except (OSError, ValueError) as error:
         raise NoLink(
             f"no Dask scheduler answers at {address}: {error}",
-            "start one: dask scheduler, and dask worker ADDRESS",
+            f"start one: dask scheduler, and dask worker {address}",
         ) from error
     with client:
-        futures = {client.submit(simulate, cell, setting, pure=False): cell for cell in cells}
-        for future in as_completed(futures, loop=client.loop):
+        futures = {
+            client.submit(eval, _TASK, _names(simulate, cell, setting), pure=False): cell
+            for cell in cells
+        }
+        for future in _as_completed(client, address, list(futures), start_s):
             try:
-                rows = future.result()
+                outcome, worker, result = future.result()
             except (CancelledError, KilledWorker) as error:
-                raise NoLink(
-                    f"the Dask cluster at {address} was lost: {error}",
-                    "mend it, and run the same command again: it resumes the run",
+                raise NoLink(f"the Dask cluster at {address} was lost: {error}", _RESUME) from error
+            except ImportError as error:
+                raise NotDone(
+                    f"a Dask worker of {address} lacks a package: {error}",
+                    "install this release of kickctl there, with what its extras need, start the"
+                    " worker again, and run the same command again",
                 ) from error
-            yield futures[future], rows
+            if outcome == "differs":
+                raise NotDone(
+                    f"the Dask worker at {worker} would compute other numbers than this computer:"
+                    f" it has {result}",
+                    "install there what this computer has, start the worker again, and run the"
+                    " same command again",
+                )
+            yield futures[future], result
+
+
+def _names(
+    simulate: Callable[[Cell, Setting], list[Row]], cell: Cell, setting: Setting
+) -> dict[str, Any]:
+    """What _TASK has names for."""
+    from distributed.protocol.pickle import dumps
+
+    return {"work": dumps(partial(simulate, cell, setting)), "computing": computing()}
+
+
+def computing() -> dict[str, str]:
+    """What decides about numbers, and its version here; empty for a package that is not here."""
+    return {"the sources": sources(), **{name: _version(name) for name in ("numpy", "mujoco")}}
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""
+
+
+def compare(theirs: dict[str, str]) -> str:
+    """What of `computing` this computer has in another version; empty if nothing."""
+    return ", ".join(
+        f"{name} {own} instead of {theirs[name]}"
+        for name, own in computing().items()
+        if own and theirs[name] and own != theirs[name]
+    )
+
+
+def _as_completed(
+    client: Client, address: str, futures: list[Future[Any]], start_s: float
+) -> Generator[Future[Any]]:
+    """Yields the futures as they are complete.
+
+    Raises NoLink if the scheduler falls silent, or has no worker for too long after start_s.
+    """
+    done: SimpleQueue[Future[Any]] = SimpleQueue()
+    for future in futures:
+        future.add_done_callback(done.put)
+    deadline_s = start_s + FIRST_WORKER_S
+    for _ in futures:
+        while True:
+            try:
+                future = done.get(timeout=LOOK_S)
+            except Empty:
+                if _count_workers(client, address):
+                    deadline_s = monotonic() + NEXT_WORKER_S
+                elif monotonic() > deadline_s:
+                    raise NoLink(
+                        f"the Dask scheduler at {address} has no worker",
+                        f"start one: dask worker {address}; then run the same command again, which"
+                        " resumes the run",
+                    ) from None
+            else:
+                break
+        deadline_s = monotonic() + NEXT_WORKER_S
+        yield future
+
+
+def _count_workers(client: Client, address: str) -> int:
+    """How many workers the scheduler has now. Raises NoLink if it does not answer."""
+    if client.scheduler is None:
+        return 0
+    try:
+        return len(client.sync(client.scheduler.ncores, callback_timeout=ANSWER_S))
+    except OSError as error:
+        raise NoLink(
+            f"the Dask cluster at {address} was lost: its scheduler does not answer",
+            _RESUME,
+        ) from error

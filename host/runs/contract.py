@@ -17,7 +17,7 @@ from typing import Any, Protocol
 from host.client.robot import Robot
 from host.logs.log import Log
 from host.runs.claims import Claim
-from sim_motor.constants import load
+from sim_motor.constants import Constants, load
 
 Cell = dict[str, Any]
 Row = dict[str, Any]
@@ -33,12 +33,21 @@ class Setting:
         options: The run's own options by name.
         motor: The motor of the simulated brick, as in sim://?motor=NAME.
         battery_v: The open-circuit voltage of its battery, V; None for the motor's nominal one.
+        constants: The constants of this motor, looked up where the setting was made. Cells use
+            these: on another computer the user's own motor of this name may be another one.
+
+    Raises:
+        ValueError: There is no such motor.
     """
 
     seed: int
     options: Options
     motor: str = "pybricks"
     battery_v: float | None = None
+    constants: Constants = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "constants", load(self.motor))
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
         """The random seed of a cell. It does not depend on other cells or on the machine."""
@@ -62,7 +71,7 @@ class Setting:
         ]
         if self.motor != Setting.motor:
             made_for.append(f"motor = {Setting.motor} (here {self.motor})")
-        if self.battery_v not in (None, nominal_v := load(self.motor).battery_v):
+        if self.battery_v not in (None, nominal_v := self.constants.battery_v):
             made_for.append(f"battery = {nominal_v:g} V (here {self.battery_v:g} V)")
         return "the claim is made for " + ", ".join(made_for) if made_for else ""
 

@@ -131,7 +131,7 @@ def simulate(cell: ChunkCell, setting: Setting) -> list[Counts]:
         cell["kicks"],
         setting.seed_of(cell),
         params=Params(),
-        motor=setting.motor,
+        motor=setting.constants,
         battery_v=setting.battery_v,
     )
 

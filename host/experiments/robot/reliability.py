@@ -27,7 +27,6 @@ from robot.kick_requests import parse
 from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS
 from robot.params import Params
 from sim_motor.batch import run
-from sim_motor.constants import load
 
 LENGTHS = tuple(range(1, 11))
 TURN_S = 0.5
@@ -95,7 +94,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Trial]:
     rng = np.random.default_rng(setting.seed_of(cell))
     asked = request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
     kick = parse({"id": "reliability", **asked}, (0, 0), Params(), _SETTLE_TICKS)
-    published, trials = load(setting.motor), setting.options["trials"]
+    published, trials = setting.constants, setting.options["trials"]
     rows: dict[int, list[Trial]] = {1: [], -1: []}
     batches = 0
     while min(map(len, rows.values())) < trials:

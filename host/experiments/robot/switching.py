@@ -61,7 +61,7 @@ class Condition:
 
     def constants(self, setting: Setting) -> Constants:
         """The constants of motor and wheel."""
-        published = load(self.motor or setting.motor)
+        published = load(self.motor) if self.motor else setting.constants
         latency_s = published.latency_s if self.latency_s is None else self.latency_s
         return replace(
             published, latency_s=latency_s, motor_inertia=self.inertia * published.motor_inertia

@@ -130,7 +130,7 @@ def _run_into_wall(cell: OneHit | SeriesCell, setting: Setting, *, stop: bool) -
     """Send a simulated robot off; to `stop`, end when it has bounced, else after SERIES_S."""
     seed = setting.seed_of(cell)
     scene = Scene(**{name: float(value) for name, value in world(cell).items()})
-    brick = SimBrick(seed, motor=setting.motor, battery_v=setting.battery_v, scene=scene)
+    brick = SimBrick(seed, motor=setting.constants, battery_v=setting.battery_v, scene=scene)
     loop = Loop(brick.motors, brick.battery, brick.clock, seed)
     log = Log()
 

@@ -96,7 +96,7 @@ def test_a_cluster_that_is_lost_in_the_middle_is_reported_in_words(scramble):
 
 
 def test_a_missing_scheduler_is_reported_in_words(monkeypatch):
-    monkeypatch.setattr("host.runs.cluster.CONNECT_S", 0.5)
+    monkeypatch.setattr("host.runs.cluster.ANSWER_S", 0.5)
     with pytest.raises(NoLink, match="no Dask scheduler answers"):
         next(compute_on_cluster("tcp://127.0.0.1:1", kick_map.simulate, [], Setting(1, {})))
 
