@@ -21,12 +21,11 @@ _CHECKSUM_BYTES = 32
 
 def place(kind: str) -> Path | None:
     """The folder for a kind of content, or None if this user has no home folder."""
-    root = os.environ.get("NUMBA_CACHE_DIR")
-    if not root:
-        home = os.path.expanduser("~")  # noqa: PTH111 - Path.home() raises where this gives "~"
-        root = os.environ.get("XDG_CACHE_HOME") or os.path.join(home, ".cache")  # noqa: PTH118
-        if not os.path.isabs(root):  # noqa: PTH117
-            return None
+    numbas = os.environ.get("NUMBA_CACHE_DIR")
+    named = numbas or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+    root = os.path.expanduser(named)  # noqa: PTH111 - Path's raises where this leaves the "~"
+    if root.startswith("~") or not (numbas or os.path.isabs(root)):  # noqa: PTH117
+        return None
     return Path(root, "kickctl", "compiled", kind)
 
 

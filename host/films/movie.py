@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
+from select import select
+from signal import SIGKILL
+from tempfile import TemporaryFile
 from types import TracebackType
 from typing import Any, Self
 
@@ -18,6 +22,8 @@ from host.util.extras import need
 Picture = NDArray[np.uint8]
 
 FPS = 25
+# How long (s) ffmpeg may take for a picture, or for the end of the film.
+PATIENCE_S = 120.0
 # How many colours a GIF has, and from how many of its pictures they are chosen.
 _COLOURS, _SAMPLES = 64, 12
 
@@ -108,29 +114,55 @@ class _Mp4:
         source = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i pipe:"
         film = "-c:v libx264 -crf 22 -pix_fmt yuv420p -movflags +faststart -f mp4 -y"
         command = [get_ffmpeg_exe(), "-loglevel", "error", *source.split(), *film.split()]
+        # A file, because ffmpeg would wait for a reader of a full pipe.
+        self._errors = TemporaryFile()  # noqa: SIM115 - closed in `finish`
         self._process = subprocess.Popen(
             [*command, str(path.resolve())],
+            bufsize=0,
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
+            stderr=self._errors,
             start_new_session=True,
         )
+        assert self._process.stdin is not None
+        self._pipe = self._process.stdin.fileno()
+        os.set_blocking(self._pipe, False)
 
     def add(self, picture: Picture) -> None:
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(picture.data)
-        except BrokenPipeError:
-            raise self._failure(self._process.communicate()[1]) from None
+        left = picture.data.cast("B")
+        while left:
+            if not select([], [self._pipe], [], PATIENCE_S)[1]:
+                self._process.kill()
+                raise self._failure()
+            try:
+                left = left[os.write(self._pipe, left) :]
+            except BrokenPipeError:
+                raise self._failure() from None
 
     def finish(self) -> None:
-        if self._process.poll() is None:
-            errors = self._process.communicate()[1]
-            if self._process.returncode:
-                raise self._failure(errors)
+        """End the film. Raises NotDone if it is not whole, unless `add` has said so."""
+        if self._process.stdin is None or self._process.stdin.closed:
+            return
+        self._process.stdin.close()
+        try:
+            failed = self._process.wait(PATIENCE_S) != 0
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            failed = True
+        if failed:
+            raise self._failure()
+        self._errors.close()
 
-    def _failure(self, errors: bytes) -> NotDone:
-        lines = errors.decode(errors="replace").strip().splitlines()
+    def _failure(self) -> NotDone:
+        """What went wrong, when ffmpeg has ended or was ended."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        with self._errors:
+            if self._process.wait() == -SIGKILL:
+                cause = f"ffmpeg did nothing for {PATIENCE_S:g} s"
+                return NotDone(f"the film {self._path} could not be written: {cause}", "try again")
+            self._errors.seek(0)
+            lines = self._errors.read().decode(errors="replace").strip().splitlines()
         cause = lines[-1] if lines else "ffmpeg ended early"
         return NotDone(f"the film {self._path} could not be written: {cause}", "is the disk full?")
 

@@ -226,15 +226,15 @@ def _kept() -> dict[str, Any]:
     """The kept plans by key; none if the file does not exist or cannot be read."""
     try:
         kept = json.loads(_file().read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RuntimeError):  # the last one without a home folder
         return {}
     return kept if isinstance(kept, dict) else {}
 
 
 def _keep(plans: dict[str, Any]) -> None:
     """Keep the newest plans if the disk has room. If not, the next command computes its plan."""
-    new = _file().with_suffix(f".{os.getpid()}")
-    with suppress(OSError):
+    with suppress(OSError, RuntimeError):
+        new = _file().with_suffix(f".{os.getpid()}")
         new.parent.mkdir(parents=True, exist_ok=True)
         text = json.dumps(dict(list(plans.items())[-_KEPT:]), allow_nan=False)
         new.write_text(text, encoding="utf-8")

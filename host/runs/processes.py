@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from collections.abc import Callable, Generator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import active_children, get_context
+from multiprocessing import active_children, get_context, parent_process
 
 from host.errors import NotDone
 from host.runs.contract import Cell, Row, Setting
@@ -28,11 +29,8 @@ def compute_in_processes(
         yield from ((cell, simulate(cell, setting)) for cell in cells)
         return
     others = set(active_children())
-    # Spawned, because a fork would copy locks that other threads hold, but not the threads. A
-    # terminal sends ^C to all processes; only this one obeys it.
-    pool = ProcessPoolExecutor(
-        processes, get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_IGN)
-    )
+    # Spawned, because a fork would copy locks that other threads hold, but not the threads.
+    pool = ProcessPoolExecutor(processes, get_context("spawn"), _begin)
     try:
         futures = {pool.submit(simulate, cell, setting): cell for cell in cells}
         for future in as_completed(futures):
@@ -40,9 +38,27 @@ def compute_in_processes(
     except BrokenProcessPool as error:
         raise NotDone(
             "something ended a process of the simulation",
-            "run the same command again, which resumes the run; it may need more memory",
+            "run the same command again, which resumes the run; it may need more memory. In a"
+            " script of your own, what starts the run must stand below:"
+            " if __name__ == '__main__':",
         ) from error
     finally:
         for process in set(active_children()) - others:
             process.terminate()
         pool.shutdown(cancel_futures=True)
+
+
+def _begin() -> None:
+    """Set a new process up.
+
+    A terminal sends ^C to all processes; only the first one obeys it. If that is killed, nothing
+    else ends the others, which wait for work.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    if (parent := parent_process()) is not None:
+        parent.join()
+        os._exit(1)

@@ -1,6 +1,7 @@
 """Compiled functions on disk: the same bits, not another function's, no harm if it fails."""
 
 import os
+import pwd
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import sim_motor.kept_files
+from sim_motor.constants import load
 from tests.sim.motor.compiled_line import build, counts, line
 
 ROOT = Path(__file__).parents[3]
@@ -21,6 +23,17 @@ def folder(tmp_path, monkeypatch):
     sim_motor.kept_files._say_once.cache_clear()
     yield Path(line.__globals__["jit"](lambda: 0)._cache.cache_path)
     sim_motor.kept_files._say_once.cache_clear()
+
+
+@pytest.fixture
+def homeless(monkeypatch):
+    """A user without HOME and without an entry in the table of users."""
+
+    def unknown(uid):
+        raise KeyError(uid)
+
+    monkeypatch.delenv("HOME", raising=False)
+    monkeypatch.setattr(pwd, "getpwuid", unknown)
 
 
 def run(script):
@@ -115,14 +128,29 @@ def test_where_nothing_can_be_kept_it_is_said_once_and_all_works(capsys, tmp_pat
     assert "Not a directory" in err
 
 
-def test_without_a_home_folder_nothing_is_kept(capsys, tmp_path, monkeypatch):
+@pytest.mark.parametrize("named", [{}, {"NUMBA_CACHE_DIR": "~/.c"}, {"XDG_CACHE_HOME": "~/.c"}])
+def test_without_a_home_folder_nothing_is_kept(capsys, tmp_path, monkeypatch, homeless, named):
     for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name)
-    monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    for name, value in named.items():
+        monkeypatch.setenv(name, value)
     assert sim_motor.kept_files.place("kind") is None
     assert line(3.0)(2.0) == 6.0
     assert "no home folder" in capsys.readouterr().err
     assert not (tmp_path / "~").exists()
+
+
+def test_without_a_home_folder_there_are_no_own_motors(tmp_path, monkeypatch, homeless):
+    for name in ("KICK_MOTORS", "XDG_CONFIG_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(ValueError, match="there is no motor 'mine'"):
+        load("mine")
+
+
+def test_a_home_folder_that_is_named_by_a_tilde_is_found(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "~/own")
+    assert sim_motor.kept_files.place("kind") == tmp_path / "own/kickctl/compiled/kind"
 
 
 def test_a_full_disk_leaves_nothing_behind(capsys, folder, monkeypatch):

@@ -2,6 +2,8 @@
 
 import operator
 import os
+import subprocess
+import sys
 import time
 from multiprocessing import active_children
 
@@ -41,3 +43,38 @@ def test_a_process_that_dies_is_an_error_in_words():
 def test_an_error_in_a_cell_is_that_error_here():
     with pytest.raises(ZeroDivisionError):
         list(processes.compute_in_processes(operator.truediv, [1, 2], 0))
+
+
+def test_processes_end_when_the_first_one_is_killed(tmp_path):
+    """Their common standard output ends when the last of them does."""
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import os, time\n"
+        "from host.runs import processes\n"
+        "def work(cell, setting):\n"
+        "    print('works', flush=True)\n"
+        "    time.sleep(3600.0)\n"
+        "if __name__ == '__main__':\n"
+        "    os.sched_getaffinity = lambda pid: {0, 1}\n"
+        "    list(processes.compute_in_processes(work, [1, 2], None))\n"
+    )
+    with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE) as first:
+        assert first.stdout.readline() == b"works\n"
+        first.kill()
+        first.stdout.read()
+
+
+def test_a_script_without_a_main_block_gets_the_remedy(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import operator, os\n"
+        "from host.errors import NotDone\n"
+        "from host.runs import processes\n"
+        "os.sched_getaffinity = lambda pid: {0, 1}\n"
+        "try:\n"
+        "    list(processes.compute_in_processes(operator.mul, [1, 2], 3))\n"
+        "except NotDone as error:\n"
+        "    print(error.hint)\n"
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
+    assert "__name__ == '__main__'" in done.stdout
