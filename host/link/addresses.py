@@ -17,10 +17,9 @@ from host.link.settings import parse_setting
 from host.link.transport import Link, TcpLink
 from host.util.interrupts import uninterrupted
 from robot.program import PORT
-from robot.serial_line import BAUD
+from robot.serial_line import BAUD, FASTEST_BAUD
 
 SIM = "sim://"
-FASTEST_BAUD = 4_000_000
 
 _FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
 _SCHEMES = ("sim", "tcp", "ssh", "serial")
@@ -140,7 +139,10 @@ def make_link(uri: str, seed: int | None = None) -> Link:
         return _serial(parts)
     from host.link.ssh import SshLink
 
-    return SshLink(uri)
+    try:
+        return SshLink(uri)
+    except ValueError as error:
+        raise no_address(uri, str(error)) from error
 
 
 def _sim(parts: _Parts, seed: int | None) -> Link:
