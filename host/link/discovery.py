@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+import socket
 import threading
 import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
+from ipaddress import IPv4Address, IPv6Address, ip_address
 
 from zeroconf import (
+    Error,
     InterfaceChoice,
     IPVersion,
     ServiceBrowser,
@@ -26,11 +32,15 @@ ROBOT = "_kickctl._tcp.local."
 BRICK = "_sftp-ssh._tcp.local."
 USER = "ev3dev.robot.user"
 _ASK_MS = 1500
+_LOOK_UPS = 32
 
 
 @dataclass(frozen=True)
 class Found:
-    """A robot, or a brick that runs none as far as anybody knows. `uri` is its address."""
+    """A robot, or a brick that runs none as far as anybody knows.
+
+    uri: its address. addresses: all that it has in the network, the easiest to reach first.
+    """
 
     name: str
     kind: str
@@ -46,7 +56,7 @@ class Found:
 def look_around(
     seconds: float, interfaces: InterfaceChoice | list[str] = InterfaceChoice.All
 ) -> list[Found]:
-    """Listen to the network.
+    """Listen to the network, IPv4 and IPv6.
 
     Args:
         seconds: How long.
@@ -61,29 +71,46 @@ def look_around(
     if not 0 < seconds < math.inf:
         raise WrongUse(f"{seconds} is no time to listen", "give a number of seconds, for example 4")
     listener = _Listener()
+    with _network(interfaces) as network:
+        ServiceBrowser(network, [ROBOT, BRICK], listener)
+        time.sleep(seconds)
+        # Side by side, since a name that somebody has left behind answers to nobody.
+        with ThreadPoolExecutor(_LOOK_UPS) as pool:
+            answers = list(pool.map(lambda place: _look_up(network, *place), listener.names()))
+    found = [one for one in answers if one is not None]
+    robots = [one for one in found if one.kind == "robot"]
+    seen = {address for one in robots for address in one.addresses}
+    return robots + [one for one in found if one.kind != "robot" and not seen & set(one.addresses)]
+
+
+@contextmanager
+def _network(interfaces: InterfaceChoice | list[str]) -> Iterator[Zeroconf]:
+    """Multicast DNS on the interfaces, over IPv4 alone if IPv6 does not work here."""
     try:
-        with Zeroconf(interfaces=interfaces, ip_version=IPVersion.V4Only) as network:
-            ServiceBrowser(network, [ROBOT, BRICK], listener)
-            time.sleep(seconds)
-            names = listener.names()
-            answers = [network.get_service_info(kind, name, _ASK_MS) for kind, name in names]
-    except OSError as error:
+        try:
+            network = Zeroconf(interfaces=interfaces, ip_version=IPVersion.All)
+        except (OSError, RuntimeError):
+            network = Zeroconf(interfaces=interfaces, ip_version=IPVersion.V4Only)
+    # zeroconf has a RuntimeError for a machine without any interface.
+    except (OSError, RuntimeError) as error:
         raise NoLink(
             f"the network cannot be asked: {error}",
             "is there a network, and may this user send multicasts?",
         ) from error
-    found = [
-        _found(info)
-        for info in answers
-        if info is not None and info.parsed_addresses(IPVersion.V4Only)
-    ]
-    robots = [one for one in found if one is not None and one.kind == "robot"]
-    seen = {address for one in robots for address in one.addresses}
-    return robots + [
-        one
-        for one in found
-        if one is not None and one.kind != "robot" and not seen & set(one.addresses)
-    ]
+    with network:
+        yield network
+
+
+def _look_up(network: Zeroconf, kind: str, name: str) -> Found | None:
+    """What a service says of itself; None if it does not answer, or is neither robot nor brick.
+
+    Anyone may announce anything: zeroconf refuses names and records that break the rules.
+    """
+    try:
+        info = network.get_service_info(kind, name, _ASK_MS)
+        return None if info is None else _found(info)
+    except (Error, OSError, ValueError):
+        return None
 
 
 class _Listener(ServiceListener):
@@ -111,13 +138,16 @@ class _Listener(ServiceListener):
 
 
 def _found(info: ServiceInfo) -> Found | None:
-    """What a record says; None if it is no brick's. Anyone may send records."""
-    addresses = tuple(info.parsed_addresses(IPVersion.V4Only))
+    """What a record says; None if it is no brick's, or leads nowhere."""
+    addresses = _by_ease(info.parsed_scoped_addresses(IPVersion.All))
+    if not addresses or not info.port:
+        return None
+    place = f"[{addresses[0]}]" if ":" in addresses[0] else addresses[0]
     name = printable(info.name.removesuffix("." + info.type))
     host = printable((info.server or "").rstrip("."))
     if info.type == ROBOT:
         port = "" if info.port == PORT else f":{info.port}"
-        return Found(name, "robot", f"tcp://{addresses[0]}{port}", host, addresses)
+        return Found(name, "robot", f"tcp://{place}{port}", host, addresses)
     user = info.properties.get(USER.encode())
     if not user:
         return None
@@ -129,7 +159,28 @@ def _found(info: ServiceInfo) -> Found | None:
     return Found(
         name,
         f"EV3 brick; {deploy_command()} brings the robot's program to it",
-        f"ssh://{login}@{addresses[0]}",
+        f"ssh://{login}@{place}",
         host,
         addresses,
     )
+
+
+def _by_ease(texts: list[str]) -> tuple[str, ...]:
+    """Addresses, those first that are the easiest to reach and to type.
+
+    An IPv6 address of one cable only (fe80::...) leads nowhere without its interface.
+    """
+    addresses = [ip_address(text) for text in texts]
+    local = [one for one in addresses if one.version == 6 and one.is_link_local]
+    lasting = [one for one in addresses if one not in local]
+    lasting.sort(key=lambda one: one.version)
+    return tuple(_text(one) for one in lasting + [one for one in local if "%" in str(one)])
+
+
+def _text(address: IPv4Address | IPv6Address) -> str:
+    """An address with its interface's name instead of its number."""
+    text, percent, scope = str(address).partition("%")
+    if scope.isdecimal():
+        with suppress(OSError):  # the number leads there as well
+            scope = socket.if_indextoname(int(scope))
+    return text + percent + scope

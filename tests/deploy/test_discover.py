@@ -5,15 +5,18 @@ import json
 import os
 import socket
 import tempfile
+import threading
 from contextlib import contextmanager
 from types import SimpleNamespace
 
 import pytest
-from zeroconf import ServiceInfo, Zeroconf
+from zeroconf import DNSOutgoing, DNSPointer, IPVersion, ServiceInfo, Zeroconf
+from zeroconf.const import _CLASS_IN, _FLAGS_AA, _FLAGS_QR_RESPONSE, _TYPE_PTR
 
 from host.cli import main
 from host.errors import NoLink, WrongUse
 from host.link import discovery
+from host.link.addresses import make_link
 from host.link.discovery import BRICK, ROBOT, USER, look_around
 
 LOOPBACK = ["127.0.0.1"]
@@ -33,10 +36,15 @@ def _network():
 
 @contextmanager
 def announced(*services):
-    """Services (type, name, port, last number of the address, properties) that answer on loopback."""
+    """Services that answer on loopback.
+
+    Each is (type, name, port, last number of the address or an address, properties).
+    """
     with Zeroconf(interfaces=LOOPBACK) as network:
         for kind, name, port, number, properties in services:
-            addresses = [socket.inet_aton(f"127.0.0.{number}")]
+            address = number if isinstance(number, str) else f"127.0.0.{number}"
+            family = socket.AF_INET6 if ":" in address else socket.AF_INET
+            addresses = [socket.inet_pton(family, address)]
             server = f"{name.replace(' ', '-')}.local."
             info = ServiceInfo(
                 kind, f"{name}.{kind}", port, 0, 0, properties, server, addresses=addresses
@@ -65,7 +73,7 @@ def test_robots_come_first_then_bricks_then_nothing_else():
     assert found[0].host == "other-port.local"
 
 
-def record(kind, name, **properties):
+def record(kind, name, addresses=("127.0.0.6",), **properties):
     """A service's record as it came in, unlike one to send, unchecked."""
     values = {key.encode(): value.encode() for key, value in properties.items()}
     return SimpleNamespace(
@@ -74,7 +82,7 @@ def record(kind, name, **properties):
         server="x.local.",
         port=1,
         properties=values,
-        parsed_addresses=lambda version: ["127.0.0.6"],
+        parsed_scoped_addresses=lambda version: list(addresses),
     )
 
 
@@ -117,10 +125,71 @@ def test_no_time_to_listen(seconds):
         look_around(seconds, LOOPBACK)
 
 
-def test_no_network_is_told_in_words(monkeypatch):
+@pytest.mark.parametrize(
+    "error",
+    [
+        OSError(101, "Network is unreachable"),
+        RuntimeError("No interfaces to listen on: Network is unreachable"),
+    ],
+)
+def test_no_network_is_told_in_words(monkeypatch, error):
     def no_network(**options):
-        raise OSError(101, "Network is unreachable")
+        raise error
 
     monkeypatch.setattr(discovery, "Zeroconf", no_network)
     with pytest.raises(NoLink, match="Network is unreachable"):
         look_around(0.1)
+
+
+def test_a_machine_without_ipv6_listens_over_ipv4(monkeypatch):
+    real = discovery.Zeroconf
+
+    def old(interfaces, ip_version):
+        if ip_version is not IPVersion.V4Only:
+            raise OSError(97, "Address family not supported by protocol")
+        return real(interfaces=interfaces, ip_version=ip_version)
+
+    monkeypatch.setattr(discovery, "Zeroconf", old)
+    assert look_around(0.1, LOOPBACK) == []
+
+
+STRANGE = ("Gateway_00:1e:5e\n", "x" * 63 + "\x00", "a.b.c", "-", "\x7f")
+
+
+def test_strange_names_and_ipv6_in_the_network_hide_nobody():
+    """What zeroconf itself would refuse to announce comes straight from a socket."""
+    packet = DNSOutgoing(_FLAGS_QR_RESPONSE | _FLAGS_AA)
+    for name in STRANGE:
+        for kind in (ROBOT, BRICK):
+            packet.add_answer_at_time(
+                DNSPointer(kind, _TYPE_PTR, _CLASS_IN, 120, f"{name}.{kind}"), 0
+            )
+    with (
+        announced((ROBOT, "runner", 5425, 4, {}), (ROBOT, "six", 5425, "fd00::6", {})),
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender,
+    ):
+        loopback = socket.inet_aton(LOOPBACK[0])
+        sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)
+        heard = threading.Timer(
+            0.5, lambda: [sender.sendto(data, ("224.0.0.251", 5353)) for data in packet.packets()]
+        )
+        heard.start()
+        found = look_around(LONG_S, LOOPBACK)
+        heard.join()
+    assert [one.uri for one in found] == ["tcp://127.0.0.4", "tcp://[fd00::6]"]
+
+
+def test_ipv6_addresses_can_be_typed():
+    def uri(kind, *addresses):
+        found = discovery._found(record(kind, "b", addresses, **{USER: "robot"}))
+        if found is not None:
+            make_link(found.uri)
+        return found and found.uri
+
+    name = socket.if_indextoname(1)
+    assert uri(BRICK, "fe80::1%1") == f"ssh://robot@[fe80::1%{name}]"
+    assert uri(ROBOT, "fe80::1%usb0") == "tcp://[fe80::1%usb0]:1"
+    assert uri(ROBOT, "fe80::1%999999") == "tcp://[fe80::1%999999]:1"
+    assert uri(ROBOT, "fe80::1%1", "fd00::2", "169.254.3.4") == "tcp://169.254.3.4:1"
+    assert uri(ROBOT, "fe80::1%1", "fd00::2") == "tcp://[fd00::2]:1"
+    assert uri(ROBOT, "fe80::1") is None
