@@ -11,9 +11,6 @@ from robot.notify import Notify
 from robot.program import choose_seed, parser, run, say
 from robot.watchdog import Watchdog
 
-# The host is another machine, and needs the token to command the robot.
-EVERYWHERE = "0.0.0.0"  # noqa: S104
-
 PORTS = ("outA", "outB", "outC", "outD")
 
 
@@ -35,6 +32,18 @@ def _claim(root):
     return claim
 
 
+def _everywhere():
+    """The address that stands for all of this machine: IPv6 and IPv4, or IPv4 alone.
+
+    The host is another machine, and needs the token to command the robot.
+    """
+    try:
+        socket.socket(socket.AF_INET6).close()
+    except OSError:  # this kernel has no IPv6
+        return "0.0.0.0"  # noqa: S104
+    return "::"
+
+
 def _give_up(message):
     say(message, sys.stderr)
     return 2
@@ -46,7 +55,7 @@ def main():
     Returns:
         The exit status: 0 when it was ended, 2 if it could not start.
     """
-    arguments = parser("The robot's program on the brick.", host=EVERYWHERE)
+    arguments = parser("The robot's program on the brick.", host=_everywhere())
     arguments.add_argument(
         "--left", default="outB", choices=PORTS, help="port of the left motor (default %(default)s)"
     )

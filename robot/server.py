@@ -136,7 +136,7 @@ class Server(object):
         """Accept TCP connections.
 
         Args:
-            host: The address to listen on.
+            host: The address to listen on; '::' is every address, of IPv4 too.
             port: The port; 0 lets the system choose one.
 
         Returns:
@@ -145,8 +145,11 @@ class Server(object):
         Raises:
             OSError: The system does not give that port.
         """
-        self._listener = socket.socket()
+        six = ":" in host
+        self._listener = socket.socket(socket.AF_INET6 if six else socket.AF_INET)
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if six:
+            self._listener.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
         self._listener.bind((host, port))
         self._listener.listen(128)
         self._listener.setblocking(False)

@@ -184,7 +184,10 @@ def _ip6(text: str) -> str:
         interface = interface.removeprefix("25")
     if percent and not re.fullmatch(r"[\w.:@-]+", interface):
         raise ValueError(f"'{interface}' is no network interface")
-    return str(IPv6Address(address)) + percent + interface
+    number = IPv6Address(address)
+    if number.is_link_local and not percent:
+        raise ValueError("an address that begins with fe80 needs the interface behind it")
+    return str(number) + percent + interface
 
 
 def _name(text: str) -> str:

@@ -99,11 +99,11 @@ class RigLink(SimLink):
 class TcpRobot:
     """A robot's program in a thread, in real time."""
 
-    def __init__(self, **params):
+    def __init__(self, host="127.0.0.1", **params):
         self.loop = Loop((Motor(turn=0.1), Motor(turn=0.1)), None, MonotonicClock(), 1)
         self.loop.set_params({"tick_s": 0.01, **params})
         self.server = Server(self.loop, TOKEN)
-        self.port = self.server.listen("127.0.0.1", 0)
+        self.port = self.server.listen(host, 0)
         self.loop.start()
         self._thread = threading.Thread(target=self.loop.run, args=(self.server.serve,))
         self._thread.start()

@@ -65,6 +65,7 @@ def test_serial_addresses(uri, device, baud):
         ("tcp://[fe80::1%]", "."),
         ("tcp://[fe80::1%usb 0]", "no network interface"),
         ("tcp://[fe80::1%a/b]", "."),
+        ("tcp://[fe80::1]", "needs the interface"),
         ("tcp://[127.0.0.1]", "."),
         ("tcp://[::1]x:5", "."),
         ("tcp://x[::1]", "."),
