@@ -7,6 +7,7 @@ import os
 import sys
 
 from host.errors import WrongUse
+from host.link.logins import parse_login
 from host.util.installation import DEPLOY_SCRIPT, kickctl_command
 
 HELP = "bring the robot's program to a brick over ssh, and start it there"
@@ -28,11 +29,14 @@ If it is not, the one before it runs again.
 The wheels turn as soon as the program is ready, unless it runs as a service: hold the robot up, or
 start the program with --idle.
 
+BRICK is USER@HOST, HOST (also a name of ~/.ssh/config), or ssh://USER@HOST:PORT, where PORT is the
+port of ssh. An IPv6 address before a port stands in brackets.
+
 Environment:
   KICK_ROBOT_ARGS    arguments of the robot's program, from this deploy on:
                      '--idle --left outA --right outD --set polarity_left=-1'
   KICK_TOKEN         the token's file (default ~/.config/kickctl/token)
-  KICK_SSH_OPTIONS   options for ssh, for example '-p 2222 -i key'
+  KICK_SSH_OPTIONS   options for ssh, for example '-p 2222 -i "my key"', quoted as for a shell
 
 Exit status: 0 done, and the program is well; 1 not done, and the brick is as it was; 2 wrong use;
 3 no connection; 4 the brick is not fit (Python, space, battery); 5 no robot's program is well on
@@ -44,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = _DETAILS
     parser.add_argument(
-        "login", nargs="?", metavar="USER@HOST", help="the brick (default robot@ev3dev.local)"
+        "login", nargs="?", metavar="BRICK", help="the brick (default robot@ev3dev.local)"
     )
     for name, text in OPTIONS.items():
         parser.add_argument(
@@ -64,7 +68,8 @@ def run(options: argparse.Namespace) -> int:
     environment = {**os.environ, "KICKCTL": kickctl_command()}
     if options.token is not None:
         environment["KICK_TOKEN"] = options.token
-    login = [] if options.login is None else [options.login]
+    # Checked here by its own rules, and by deploy.sh by the same in shell.
+    login = [] if options.login is None else [str(parse_login(options.login))]
     sys.stdout.flush()
     os.execvpe(  # noqa: S606 - ssh has to find the terminal as it is
         "sh", ["sh", str(DEPLOY_SCRIPT), *(options.given or []), *login], environment

@@ -1,29 +1,31 @@
-"""ssh://[user@]host[:ssh port][?port=]: a robot through the system's ssh.
+"""ssh://[user@]host[:ssh port][?host=][&port=]: a robot through the system's ssh.
 
 ssh knows the user's keys, settings and known hosts.
 """
 
 from __future__ import annotations
 
-import os
-import shlex
+import re
 import socket
 import subprocess
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import IO, Self
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import parse_qsl
 
 from host.errors import NoLink, WrongUse, printable
+from host.link.logins import Login, parse_login, ssh_options
+from host.link.ssh_failures import remedy
 from host.link.transport import CONNECT_TIMEOUT_S, LinkLost, TcpLink
-from host.util.installation import deploy_command
 from robot.program import PORT
 
 _FORM = (
-    "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens elsewhere than"
-    " at its usual port"
+    "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens at another"
+    " port than the usual, and ?host= if it listens at one address of the brick only"
 )
+_HOST = re.compile("[A-Za-z0-9.:%_-]+")
+_PORT = re.compile("[1-9][0-9]{0,4}")
 _END_S = 2.0
 # A second link of a program that is connected asks for no password, so nobody has to be waited for.
 _BATCH = ["-o", "BatchMode=yes"]
@@ -32,32 +34,13 @@ _BATCH_ANSWER_S = 15.0
 _LAST_WORDS = 280
 # ^C reaches ssh too, and must not end it: kickctl still has to stop the motors over this link.
 _RUN = ("sh", "-c", 'trap "" INT; exec ssh "$@"', "sh")
-# What ssh says, and what to do about it; the first that fits.
-_REMEDIES = {
-    "IDENTIFICATION HAS CHANGED": (
-        "a brick with a newly written card has a new key, and this machine remembers the old one: "
-        "`ssh-keygen -R {host}`, then try again"
-    ),
-    "Host key verification failed": (
-        "this machine does not know the brick yet: `ssh robot@{host}` once, and say yes to its key"
-    ),
-    "Permission denied": (
-        "an ev3dev brick's user is robot, with the password maker unless it was changed:"
-        " ssh://robot@{host}; `ssh-copy-id robot@{host}` once spares typing it"
-    ),
-    "Could not resolve hostname": (
-        "the network knows no {host}: `kickctl discover` looks around, or take the address on the"
-        " brick's screen"
-    ),
-    "ssh: not found": "install ssh (Debian, Ubuntu: apt-get install openssh-client)",
-    "open failed": (
-        "ssh works, but the robot's program does not listen there: `{deploy} --status` looks,"
-        " `{deploy}` starts it"
-    ),
-}
-_REMEDY = (
-    "is it switched on, and this its name? Try the address on its screen; `kickctl discover` looks"
-    " around"
+# What a person's settings add to a login by hand is switched off, and ssh has to say why it fails.
+_SETTINGS = (
+    "ConnectTimeout=20",
+    "ServerAliveInterval=5",
+    "RemoteCommand=none",
+    "PermitLocalCommand=no",
+    "LogLevel=INFO",
 )
 
 
@@ -74,32 +57,15 @@ class SshLink(TcpLink):
     answer_s = 60.0
 
     def __init__(self, uri: str) -> None:
-        parts = urlsplit(uri)
-        super().__init__(uri, parts.hostname or "", PORT)
-        options = dict(parse_qsl(parts.query, keep_blank_values=True))
-        port = options.pop("port", str(PORT))
-        if not port.isdigit() or options or parts.path.strip("/"):
-            raise WrongUse(f"'{uri}' is no address of a robot", _FORM)
-        if parts.password is not None:
-            raise WrongUse(
-                "passwords do not belong into addresses, where others see them",
-                "leave it out: ssh asks for it",
-            )
-        self._options = [
-            "-T",
-            "-W",
-            f"127.0.0.1:{port}",
-            "-o",
-            "ConnectTimeout=20",
-            "-o",
-            "ServerAliveInterval=5",
-        ]
-        self._options += ["-p", str(parts.port)] * (parts.port is not None) + shlex.split(
-            os.environ.get("KICK_SSH_OPTIONS", "")
-        )
-        self._login = (
-            f"{parts.username}@{parts.hostname}" if parts.username else str(parts.hostname)
-        )
+        self._login, host, self._port = _parse(uri)
+        port = self._port
+        super().__init__(uri, self._login.host, port)
+        self._user_options = ssh_options()
+        self._options = ["-T", "-W", f"[{host}]:{port}" if ":" in host else f"{host}:{port}"]
+        for setting in _SETTINGS:
+            self._options += ["-o", setting]
+        *own_port, self._target = self._login.words()
+        self._options += own_port + self._user_options
         self._ssh: subprocess.Popen[bytes] | None = None
         self._words: IO[bytes] | None = None
         self._heard = False
@@ -123,7 +89,7 @@ class SshLink(TcpLink):
         self._socket, theirs = socket.socketpair()
         self._socket.settimeout(CONNECT_TIMEOUT_S)
         with theirs:
-            command = [*_RUN, *self._options, "--", self._login]
+            command = [*_RUN, *self._options, "--", self._target]
             self._ssh = subprocess.Popen(
                 command, stdin=theirs.fileno(), stdout=theirs.fileno(), stderr=self._words
             )
@@ -167,8 +133,8 @@ class SshLink(TcpLink):
             with suppress(subprocess.TimeoutExpired):
                 self._ssh.wait(_END_S)
             self._words.seek(0)
-            words = " ".join(self._words.read().decode(errors="replace").split())
-            remedy = next((remedy for sign, remedy in _REMEDIES.items() if sign in words), _REMEDY)
+            said = self._words.read().decode(errors="replace")
+            words = " ".join(said.split())
             shown = printable(
                 words
                 if len(words) <= _LAST_WORDS
@@ -176,5 +142,26 @@ class SshLink(TcpLink):
             )
             raise NoLink(
                 f"no robot answers at {self.uri}: {shown or error}",
-                remedy.format(host=self._address[0], deploy=deploy_command()),
+                remedy(said, self._login, self._user_options, self._port),
             ) from error
+
+
+def _parse(uri: str) -> tuple[Login, str, int]:
+    """The login in ssh://[USER@]HOST[:PORT][?host=][&port=], and where the robot listens there.
+
+    Raises WrongUse.
+    """
+    address, _, query = uri.partition("?")
+    if ":" in address.removeprefix("ssh://").rpartition("@")[0]:
+        raise WrongUse(
+            "passwords do not belong into addresses, where others see them",
+            "leave it out: ssh asks for it",
+        )
+    login = parse_login(address)
+    pairs = parse_qsl(query, keep_blank_values=True)
+    options = dict(pairs)
+    host, port = options.pop("host", "127.0.0.1"), options.pop("port", str(PORT))
+    known = not options and len(pairs) == len(dict(pairs))
+    if not known or not _HOST.fullmatch(host) or not _PORT.fullmatch(port) or int(port) > 65535:
+        raise WrongUse(f"'{printable(uri)}' is no address of a robot", _FORM)
+    return login, host, int(port)

@@ -6,7 +6,10 @@
 #   releases/RELEASE    the robot's program; a folder with this name arrived whole
 #   current, previous   links to the release that runs and to the one before it
 #   arguments           the program's arguments, for example --left outA
+#   robot.pid           the program's process id
 #   robot.log           what it printed since deploy.sh last started it; robot.log.1: before that
+#
+# If the card cannot be written, robot.pid and robot.log are in RUN, which is in memory.
 #
 # Exit status: 0 done; 1 not done, and the brick is as it was; 4 the brick is not fit for it; 5 no
 # robot's program is well now; 6 done, and the program is well, but the robot is in fault.
@@ -17,6 +20,7 @@ TOKEN=$HOME/.config/kickctl/token
 # Where the kernel's devices and the system's settings are; tests set other places.
 CLASS=${KICK_SYSFS:-/sys/class}
 ETC=${KICK_ETC:-/etc}
+RUN=${KICK_RUN:-/run/lock}/kickctl$(printf '%s' "$HOME" | tr / -)
 UNIT=$ETC/systemd/system/kickctl.service
 AVAHI=$ETC/avahi/services/kickctl.service
 
@@ -37,7 +41,23 @@ give_up() { # give_up STATUS WHAT REMEDY
     exit "$1"
 }
 
+card_takes_writes() { # or why says why not
+    why=$( (date >"$HOME/.kickctl-probe" && rm "$HOME/.kickctl-probe") 2>&1) || {
+        rm -f "$HOME/.kickctl-probe" 2>/dev/null || true
+        why=${why##*: }
+        return 1
+    }
+}
+
+need_card() {
+    card_takes_writes ||
+        give_up 4 "the brick's card cannot be written: $why" "if it is full, delete old files\
+ there. If not, Linux has closed it as it is locked or fails: switch the brick off and on, then try\
+ another card"
+}
+
 only_one() {
+    need_card
     mkdir -p "$ROOT"
     exec 9>>"$ROOT/lock"
     flock -n 9 ||
@@ -55,19 +75,26 @@ ask_password() { # before anything is touched
 release() { basename "$(readlink "$ROOT/$1" 2>/dev/null || true)"; }
 
 switch() { # switch LINK RELEASE: in one step, so that the link always leads somewhere
-    ln -sfn "releases/$2" "$ROOT/$1.new"
-    mv -fT "$ROOT/$1.new" "$ROOT/$1"
+    ln -sfn "releases/$2" "$ROOT/$1.new" && mv -fT "$ROOT/$1.new" "$ROOT/$1"
 }
+
+# kept NAME: the path of robot.pid or robot.log, wherever the last start could write them
+kept() { if [ -e "$RUN/robot.pid" ]; then echo "$RUN/$1"; else echo "$ROOT/$1"; fi; }
 
 # The program's process id; nothing if it does not run, or if another process has this number now.
 program_pid() {
-    pid=$(cat "$ROOT/robot.pid" 2>/dev/null) || return 0
+    pid=$(cat "$(kept robot.pid)" 2>/dev/null) || return 0
     case $(readlink "/proc/$pid/cwd" 2>/dev/null) in
     "$(cd "$ROOT" && pwd -P)"/releases/*) echo "$pid" ;;
     esac
 }
 
-port() { sed -n 's/^READY .*:\([0-9]*\)$/\1/p' "$ROOT/robot.log" 2>/dev/null | tail -n 1; }
+ready() { sed -n 's|^READY tcp://||p' "$(kept robot.log)" 2>/dev/null | tail -n 1; }
+
+port() { ready | sed 's/.*://'; }
+
+# What a login may print by itself must not be taken for what deploy.sh wants to know.
+address() { tell "kickctl-address=$(ready | tr -d '[]')="; }
 
 check() { # whether this machine can run the program at all
     version=$(python3 -c '
@@ -76,8 +103,9 @@ print("%d.%d.%d" % sys.version_info[:3])
 sys.exit(sys.version_info < (3, 5))' 2>/dev/null) ||
         give_up 4 "the brick's python3 is ${version:-missing}; the program needs 3.5 or newer" \
             "is this an EV3 with ev3dev-stretch? Its card has Python 3.5.3"
-    free=$(df -Pk "$HOME" | awk 'NR == 2 { print $4 }')
-    [ "$free" -ge "$LEAST_FREE_KB" ] ||
+    need_card
+    free=$(df -Pk "$HOME" | awk 'NR == 2 { print $4 + 0 }')
+    [ "${free:-0}" -ge "$LEAST_FREE_KB" ] ||
         give_up 4 "the brick's card has $((free / 1000)) MB left" \
             "$((LEAST_FREE_KB / 1000)) MB are needed:\
  delete old files there; 'du -ah ~ | sort -h | tail' on the brick shows large ones"
@@ -85,6 +113,7 @@ sys.exit(sys.version_info < (3, 5))' 2>/dev/null) ||
     supply=$CLASS/power_supply/lego-ev3-battery
     [ "$(cat "$supply/technology" 2>/dev/null)" != Li-ion ] || least=$LEAST_LITHIUM_UV
     battery=$(cat "$supply/voltage_now" 2>/dev/null || true)
+    case $battery in *[!0-9]*) battery='' ;; esac
     [ "${battery:-$least}" -ge "$least" ] ||
         give_up 4 "the brick's battery is low: $(volts "$battery") of $(volts "$least") needed" \
             "charge it, or put in fresh cells, and try again"
@@ -93,13 +122,28 @@ sys.exit(sys.version_info < (3, 5))' 2>/dev/null) ||
 
 volts() { [ -n "$1" ] && echo "$1" | awk '{ printf "%.2f V", $1 / 1e6 }' || echo "not measured"; }
 
+is_token() { # is_token TEXT: 32 bytes in hexadecimal
+    case $1 in *[!0-9A-Fa-f]*) return 1 ;; esac
+    [ "${#1}" = 64 ]
+}
+
+show_token() {
+    [ -e "$TOKEN" ] || { tell "kickctl-token=none=" && return; }
+    there=$(tr -d '[:space:]' <"$TOKEN" || true)
+    is_token "$there" || give_up 1 "the brick's file $TOKEN holds no token" \
+        "delete it on the brick (rm $TOKEN), then deploy again to make a new one"
+    tell "kickctl-token=$there="
+}
+
 token() { # keep standard input as the robot's token
-    umask 077
-    mkdir -p "${TOKEN%/*}"
-    cat >"$TOKEN.new"
-    [ ! -s "$TOKEN" ] || cmp -s "$TOKEN" "$TOKEN.new" ||
+    given=$(tr -d '[:space:]')
+    is_token "$given" || give_up 1 "what arrived on the brick is no token" "deploy again"
+    before=$({ tr -d '[:space:]' <"$TOKEN"; } 2>/dev/null || true)
+    [ -z "$before" ] || [ "$before" = "$given" ] ||
         tell "  the brick had another token: machines with that one can no longer command it"
-    mv -f "$TOKEN.new" "$TOKEN"
+    umask 077
+    { mkdir -p "${TOKEN%/*}" && echo "$given" >"$TOKEN.new" && mv -f "$TOKEN.new" "$TOKEN"; } ||
+        give_up 1 "the brick's file $TOKEN cannot be written" "see above why; then deploy again"
 }
 
 adopt() { # adopt RELEASE FOLDER: make a release of an upload, if it is sound
@@ -108,9 +152,12 @@ adopt() { # adopt RELEASE FOLDER: make a release of an upload, if it is sound
     sha256sum --quiet -c SHA256SUMS ||
         discard "$2" "the upload arrived damaged" \
             "try again; if it happens each time, the card may be failing"
-    python3 -m compileall -q robot ||
+    python3 -m compileall -q robot || {
+        card_takes_writes || discard "$2" "the brick's card cannot be written: $why" \
+            "delete old files there; if it happens each time, the card may be failing"
         discard "$2" "the brick's Python cannot read this release" \
             "if you changed it: 'make lint' finds what is too new for Python 3.5"
+    }
     cd ..
     sync # or a loss of power could leave empty files under a good name
     rm -rf "$1"
@@ -148,8 +195,7 @@ stop_program() {
 arguments() { cat "$ROOT/arguments" 2>/dev/null || true; }
 
 keep_arguments() {
-    printf '%s\n' "$1" >"$ROOT/arguments.new"
-    mv -f "$ROOT/arguments.new" "$ROOT/arguments"
+    printf '%s\n' "$1" >"$ROOT/arguments.new" && mv -f "$ROOT/arguments.new" "$ROOT/arguments"
 }
 
 warn() { # of wheels that turn; a service starts with its motors off
@@ -165,7 +211,7 @@ warn() { # of wheels that turn; a service starts with its motors off
 
 start_program() { # start the current release and wait until it is ready and well
     warn
-    rm -f "$ROOT/robot.pid"
+    rm -f "$ROOT/robot.pid" "$RUN/robot.pid" "$RUN/robot.log"
     [ ! -e "$ROOT/robot.log" ] || mv -f "$ROOT/robot.log" "$ROOT/robot.log.1"
     if [ -e "$UNIT" ]; then
         # Or systemd counts the starts of the last minutes.
@@ -179,7 +225,7 @@ start_program() { # start the current release and wait until it is ready and wel
     waited=0
     while [ -z "$(port)" ]; do
         # An empty robot.pid belongs to a program that is about to write its number.
-        if [ -s "$ROOT/robot.pid" ] && [ -z "$(program_pid)" ]; then
+        if [ -s "$(kept robot.pid)" ] && [ -z "$(program_pid)" ]; then
             tell "it ended before it was ready"
             return 1
         elif [ "$waited" -ge $((2 * READY_S)) ]; then
@@ -195,8 +241,12 @@ start_program() { # start the current release and wait until it is ready and wel
 
 examine() { # ask the program how it is; fault becomes yes if the robot is in fault
     fault='' ill=0
+    host=$(ready | sed 's/:[0-9]*$//' | tr -d '[]')
+    # The program listens at each address of the brick, unless its arguments say otherwise. Releases
+    # from before this question know no --host.
+    case $host in 0.0.0.0 | 127.0.0.1) host='' ;; esac
     health=$(cd "$ROOT/current" &&
-        python3 -m robot.health --port "$(port)" --token "$TOKEN") || ill=$?
+        python3 -m robot.health ${host:+--host "$host"} --port "$(port)" --token "$TOKEN") || ill=$?
     tell "$health"
     [ "$ill" != "$IN_FAULT" ] || fault=yes
     [ "$ill" = 0 ] || [ -n "$fault" ]
@@ -243,10 +293,9 @@ activate() {
     old_arguments=$(arguments)
     tell "stopping the robot's program, resetting its motors"
     stop_program
-    switch current "$new"
-    [ -z "${3+given}" ] || keep_arguments "$3"
     tell "starting $new"
-    if { [ -z "$as" ] || install_service; } && start_program; then
+    if switch current "$new" && { [ -z "${3+given}" ] || keep_arguments "$3"; } &&
+        { [ -z "$as" ] || install_service; } && start_program; then
         [ "$old" = "$new" ] || [ -z "$old" ] || switch previous "$old"
         [ ! -e "$UNIT" ] || announce
         prune
@@ -261,7 +310,7 @@ activate() {
 
 last_words() {
     tell "the last words of its log:"
-    tell "$(tail -n 15 "$ROOT/robot.log" 2>/dev/null | sed 's/^/    /')"
+    tell "$(tail -n 15 "$(kept robot.log)" 2>/dev/null | sed 's/^/    /')"
 }
 
 go_back() { # from activate, whose variables it uses; exits
@@ -269,7 +318,7 @@ go_back() { # from activate, whose variables it uses; exits
     again="$old runs again"
     failed_arguments=$(arguments)
     if [ "$failed_arguments" != "$old_arguments" ]; then
-        keep_arguments "$old_arguments"
+        keep_arguments "$old_arguments" || true
         again="$again, with the arguments of before ('$old_arguments'"
         again="$again instead of '$failed_arguments')"
     fi
@@ -279,7 +328,7 @@ go_back() { # from activate, whose variables it uses; exits
             "$mend"
     fi
     tell "starting $old again"
-    switch current "$old"
+    switch current "$old" || true
     # Its own unit file, instead of that of the new one.
     [ -z "$served" ] || [ -z "$as" ] || install_service || true
     if start_program; then
@@ -331,9 +380,17 @@ no_service() { # from now on the release runs when deploy.sh starts it
 run() { # run [ARGUMENT ...]: become the robot's program; robot.pid keeps its number
     cd "$ROOT/current"
     cd "$(pwd -P)" # it stays with its release, even when another becomes current
-    echo $$ >"$ROOT/robot.pid"
+    rm -f "$RUN/robot.pid" "$RUN/robot.log"
+    # The program needs no disk: neither a full card nor a closed one keeps it from starting.
+    log=/dev/null
+    for place in "$ROOT" "$RUN"; do
+        { mkdir -p "$place" && echo $$ >"$place/robot.pid" &&
+            echo "starting ${PWD##*/}" >>"$place/robot.log"; } 2>/dev/null || continue
+        log=$place/robot.log
+        break
+    done
     # shellcheck disable=SC2046 # one word each
-    exec python3 -m robot --token "$TOKEN" $(arguments) "$@" >>"$ROOT/robot.log" 2>&1
+    exec python3 -m robot --token "$TOKEN" $(arguments) "$@" >>"$log" 2>&1
 }
 
 status() {
@@ -347,16 +404,31 @@ status() {
         tell "program  does not run: deploy to start it, deploy with --logs to see its last words"
         exit 5
     fi
-    tell "program  runs as process $(program_pid), $(grep '^READY' "$ROOT/robot.log" | tail -n 1)"
+    tell "program  runs as process $(program_pid), READY tcp://$(ready)"
     state=$(examine) || ill=5
     tell "state    $state"
     [ -z "${ill-}" ] || { tell "         deploy again to end it and start a new one" && exit 5; }
 }
 
 logs() {
-    [ -e "$ROOT/robot.log" ] ||
+    log=$(kept robot.log)
+    [ -e "$log" ] ||
         give_up 1 "the brick has no log" "the robot's program writes one: deploy it first"
-    tail -n 200 "$ROOT/robot.log"
+    case $log in
+    "$ROOT"/*) tell "the last lines of $log:" ;;
+    *) tell "the card could not be written, so the log is in memory; the last lines of $log:" ;;
+    esac
+    tail -n 200 "$log"
 }
+
+# deploy.sh understands the statuses above only. A shell ends with others of its own when, for
+# example, it cannot write a file.
+ended() {
+    status=$?
+    case $status in 0 | 1 | 4 | 5 | 6) return ;; esac
+    give_up 1 "the brick's shell ended with status $status" \
+        "see above why; deploy with --status shows how the robot is"
+}
+trap ended EXIT
 
 "$@"

@@ -42,7 +42,7 @@ SetEnv HOME={folder}/brick/home
 LOGIN = """\
 #!/bin/sh
 unset XDG_CONFIG_HOME KICK_TOKEN
-export KICK_SYSFS={brick}/class KICK_ETC={brick}/etc PATH={brick}/bin:$PATH
+export KICK_SYSFS={brick}/class KICK_ETC={brick}/etc KICK_RUN={brick}/run PATH={brick}/bin:$PATH
 cd
 exec sh -c "$SSH_ORIGINAL_COMMAND"
 """
@@ -106,6 +106,23 @@ class Brick:
     def replace(self, program, script):
         """Have the brick run this shell script instead of one of its programs."""
         write(self.bin / program, f"#!/bin/sh\n{script}\n", 0o755)
+
+    def configure(self, *lines):
+        """Add lines to sshd's settings, before all others, and have it read them."""
+        path = self.folder / "sshd_config"
+        text = path.read_text(encoding="utf-8")
+        log = self.folder / "sshd.log"
+        before = log.read_text(encoding="utf-8").count("Server listening")
+        write(path, "\n".join((*lines, text)))
+        self._sshd.send_signal(signal.SIGHUP)
+        wait_until(lambda: log.read_text(encoding="utf-8").count("Server listening") > before)
+
+    def greet(self, words):
+        """Have each login begin with these words, as the user's .bashrc on the brick might."""
+        login = LOGIN.format(brick=self.folder / "brick")
+        write(
+            self.folder / "login", login.replace("\ncd\n", f"\nprintf '%s' '{words}'\ncd\n"), 0o755
+        )
 
     def reach_through(self, port):
         """Have ssh reach the brick through another port of this machine."""

@@ -19,7 +19,7 @@ def test_the_first_deploy_brings_a_whole_release_and_starts_it(brick, checkout):
     assert status == 0, output
     assert brick.runs() == brick.release() == brick.releases()[0]
     assert brick.release("previous") is None
-    assert "kickctl --brick ssh://brick start" in output
+    assert f"kickctl --brick '{brick.uri()}' start" in output
     current = brick.kickctl / "current"
     assert sorted(path.name for path in (current / "robot").glob("*.py")) == sorted(
         path.name for path in (checkout.folder / "robot").glob("*.py")
@@ -133,7 +133,7 @@ def test_the_closing_words_can_be_typed_as_they_stand(brick, checkout, installed
     done = subprocess.run(
         ["/bin/sh", "-c", hint], env=environment, capture_output=True, text=True, check=True
     )
-    assert done.stdout == "--brick ssh://brick start\n"
+    assert done.stdout == f"--brick {brick.uri()} start\n"
 
 
 def test_only_the_release_before_is_kept(brick, checkout):

@@ -6,7 +6,7 @@ from contextlib import contextmanager, suppress
 
 import pytest
 
-from tests.deploy.brick import needs_sshd, wait_until, write
+from tests.deploy.brick import needs_sshd, wait_until
 
 pytestmark = needs_sshd
 
@@ -100,34 +100,6 @@ def test_no_brick_at_the_address_is_told_in_words(checkout, brick):
     assert status == 3
     assert "Connection refused" in output
     assert "address on its screen" in output
-
-
-def test_a_brick_with_a_new_card_is_told_from_one_that_is_off(brick, checkout):
-    write(
-        brick.folder / "known_hosts",
-        f"[127.0.0.1]:{brick.port} {(brick.folder / 'user_key.pub').read_text(encoding='utf-8')}",
-    )
-    status, output = checkout.deploy()
-    assert status == 3
-    assert "IDENTIFICATION HAS CHANGED" in output
-    assert "ssh-keygen -R brick" in output
-    assert "is it on?" not in output
-
-
-def test_a_brick_never_met_is_told(brick, checkout):
-    write(brick.folder / "known_hosts", "")
-    status, output = checkout.deploy()
-    assert status == 3
-    assert "ssh brick, and say yes" in output
-
-
-def test_a_brick_that_lets_nobody_in_is_told_with_the_password(brick, checkout):
-    write(brick.folder / "user_key.pub", "")
-    status, output = checkout.deploy()
-    assert status == 3
-    assert "Permission denied" in output
-    assert "maker" in output
-    assert "ssh-copy-id robot@brick" in output
 
 
 def test_a_name_that_nobody_has_is_told_with_how_to_find_another(checkout):

@@ -54,7 +54,7 @@ def test_deploy_then_a_kick_through_the_tunnel_reverses_the_wheels(brick, checko
             status, output = checkout.deploy()
             assert status == 0, output
             assert "running (started), battery" in output
-            assert "kickctl --brick ssh://brick kick --mode phase" in output
+            assert f"kickctl --brick '{brick.uri()}' kick --mode phase" in output
             status, out, err = checkout.kickctl(
                 "--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4", "--json"
             )
@@ -148,7 +148,6 @@ def test_a_brick_with_a_new_card(brick, through):
     (brick.folder / "known_hosts").write_text(f"[127.0.0.1]:{brick.port} {key}", encoding="utf-8")
     with pytest.raises(NoLink, match=r"Host key verification failed\.$") as caught:
         connect("ssh://brick")
-    assert "`ssh-keygen -R brick`" in caught.value.hint
     assert "@@" not in caught.value.message
     assert len(caught.value.message) < 400
 
@@ -185,7 +184,7 @@ def test_what_is_no_address(uri):
 
 def test_a_host_name_is_never_an_option_for_ssh(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(NoLink):
+    with pytest.raises(WrongUse):
         connect("ssh://-oProxyCommand=touch%20here")
     assert list(tmp_path.iterdir()) == []
 
