@@ -147,6 +147,9 @@ def run(
         or times.shape not in {(1, ticks), (wheels, ticks)}
     ):
         raise ValueError(f"start and times do not fit {wheels} wheels and {ticks} ticks")
+    volts = motors[0].battery_v if battery_v is None else battery_v
+    if not all(np.isfinite(part).all() for part in (*vars(start).values(), times, volts)):
+        raise ValueError("start, times and battery must be finite numbers")
     if ticks <= DIRECTION_TICKS:
         raise ValueError(
             f"{ticks} ticks are too few to tell a direction: run more than {DIRECTION_TICKS}"
@@ -178,7 +181,7 @@ def run(
         tables(motors),
         np.stack([motor.scalars() for motor in motors]),
         (
-            motors[0].battery_v if battery_v is None else battery_v,
+            volts,
             latency_s,
             motors[0].encoder_counts,
         ),

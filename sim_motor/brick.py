@@ -1,6 +1,6 @@
 """A simulated brick: two motors under the robot, and a battery."""
 
-from math import pi, radians
+from math import isfinite, pi, radians
 from random import Random
 
 from robot.motors import Battery
@@ -102,7 +102,12 @@ class SimBrick:
         Args:
             side: 0 for the left wheel, 1 for the right one.
             torque: In N m, forward positive.
+
+        Raises:
+            ValueError: It is no finite number.
         """
+        if not isfinite(torque):
+            raise ValueError(f"a load of {torque!r} N m cannot be: give a finite number")
         self.motors[side].set_load(torque)
 
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_motor.own_motors import own_motor
+from sim_motor.own_motors import own_file, own_motor
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,8 @@ COAST = 101  # in place of a duty cycle
 GRAVITY = 9.81
 # Computing the tables of this many motors at once fits into the cache of a processor's core.
 _GROUP = 15
+# With rows of entries that sum up to more than this, the series of an exponential loses its digits.
+_LARGEST = 16.0
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,9 @@ def tables(motors: Sequence[Constants]) -> Array:
         Coefficients, (motors, alone or with wheel, |duty| in % or COAST, 14): new speed from speed,
         current, voltage, torque; new current from the same; turned angle from the same; and the new
         current of a locked motor from current and voltage.
+
+    Raises:
+        ValueError: A motor is too fast for the step.
     """
     groups = range(0, len(motors), _GROUP)
     return np.concatenate([_tables(motors[first : first + _GROUP]) for first in groups])
@@ -141,8 +146,18 @@ def _tables(motors: Sequence[Constants]) -> Array:
 
 
 def _exponential(matrices: Array) -> Array:
-    """exp of each matrix in a stack, by its series at a 256th of the size, squared eight times."""
+    """exp of each matrix in a stack, by its series at a 256th of the size, squared eight times.
+
+    Raises:
+        ValueError: An entry is so large that the series would lose all digits, or is not finite.
+    """
     small = matrices / 256
+    if not np.abs(small).sum(axis=-1).max() <= _LARGEST:
+        raise ValueError(
+            "its speed or current would change much faster than in a simulated step of"
+            f" {1000 * SUBSTEP_S:g} ms: inertia or inductance is too small, or resistance, friction"
+            " or a torque constant too large"
+        )
     term, out = small, np.eye(small.shape[-1]) + small
     order = 1
     while True:
@@ -185,7 +200,7 @@ def load(name: str = "pybricks") -> Constants:
     share = values["mass"] / 2
     rolling = values["rolling_resistance"] * share * GRAVITY * values["wheel_radius"]
     start_v = values["break_away_duty"] / 100 * values["battery_voltage"]
-    return Constants(
+    constants = Constants(
         torque_constant=values["torque_constant"],
         emf_constant=values["emf_constant"],
         resistance=values["resistance"],
@@ -204,3 +219,12 @@ def load(name: str = "pybricks") -> Constants:
         wheel_radius=values["wheel_radius"],
         spread=values["spread"],
     )
+    if name not in names():
+        try:
+            constants.tables()
+        except ValueError as error:
+            raise ValueError(
+                f"motor '{name}' in {own_file()} cannot be simulated: {error}; mend that file, or"
+                " calibrate again"
+            ) from error
+    return constants

@@ -182,7 +182,14 @@ def _advanced(
         edges,
         blocks,
     )
-    return found[:, np.argsort(order)]
+    found = found[:, np.argsort(order)]
+    if not np.isfinite(found).all():
+        lost = int(np.flatnonzero(~np.isfinite(found).all(axis=0))[0])
+        raise WrongUse(
+            f"the wheel with constants {parameters[:, lost].tolist()} ran away",
+            "choose a larger tau or I, a smaller k",
+        )
+    return found
 
 
 class Averages(NamedTuple):
@@ -231,10 +238,4 @@ def averages(
     last = after(measured_s, start)
     mean = (last[PHI] - start[PHI]) / measured_s
     variance = last[4] / measured_s - (mean - start[OMEGA]) ** 2
-    if not np.isfinite(last).all():
-        lost = int(np.flatnonzero(~np.isfinite(last).all(axis=0))[0])
-        raise WrongUse(
-            f"the wheel with constants {parameters[:, lost].tolist()} ran away",
-            "choose a larger tau or I, a smaller k",
-        )
     return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), last[: OMEGA + 1])

@@ -274,6 +274,9 @@ def entry_of(changes, lack=()):
         (entry_of({"latency": "nan"}), "in latency"),
         (entry_of({"backlash": '"much"'}), "in backlash"),
         ("odd = 3", "lacks torque_constant"),
+        (entry_of({"inductance": 1e-12}), "cannot be simulated: .* too small"),
+        (entry_of({"inertia": 1e-300}), "cannot be simulated: .* too small"),
+        (entry_of({"torque_constant": 1e300}), "cannot be simulated: .* too large"),
     ],
 )
 def test_a_bad_file_of_own_motors_is_reported_in_words(text, words, tmp_path, monkeypatch):

@@ -179,6 +179,10 @@ def test_times_that_do_not_fit_are_refused():
         batch.run(2, 100, 0, times=np.arange(100) * 0.003)
     with pytest.raises(ValueError, match="do not fit"):
         batch.run(2, 100, 0, start=batch.random_start(3, np.random.default_rng(0), load()))
+    lost = batch.Start(np.zeros((2, 6)), np.full((2, 2), np.nan))
+    for wrong in ({"start": lost}, {"battery_v": np.inf}, {"times": np.full(100, np.nan)}):
+        with pytest.raises(ValueError, match="finite"):
+            batch.run(2, 100, 0, **wrong)
 
 
 def test_a_jump_is_bounded_as_in_the_robot():

@@ -3,7 +3,7 @@
 Time, latency, encoder, refusals, and that looking changes nothing.
 """
 
-from math import nan, pi
+from math import inf, nan, pi
 
 import numpy as np
 import pytest
@@ -245,6 +245,12 @@ def test_a_fuller_battery_runs_faster():
 def test_a_brick_that_cannot_be_is_refused(wrong):
     with pytest.raises(ValueError, match=r"give more than|there is no motor|mount is 1 or -1"):
         SimBrick(1, **wrong)
+
+
+@pytest.mark.parametrize("torque", [nan, inf])
+def test_a_load_is_a_finite_number(torque):
+    with pytest.raises(ValueError, match="give a finite number"):
+        SimBrick(1).set_load(0, torque)
 
 
 # Seeds.
