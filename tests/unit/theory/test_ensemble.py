@@ -279,6 +279,8 @@ def test_a_stiff_wheel_is_refused_by_name(wheel):
 def test_a_wheel_that_runs_away_is_refused():
     with pytest.raises(WrongUse, match="ran away"):
         averages(starts(1, (1.0, 0.0, 0.0, 1e300)), columns([Wheel()]), 0.0, 1.0)
+    with pytest.raises(WrongUse, match="ran away"):
+        advance(starts(1, (1.0, 0.0, math.nan, 1.0)), columns([Wheel()]), 1.0)
 
 
 def test_states_that_are_none_of_these_wheels_are_refused():
