@@ -7,6 +7,7 @@ import binascii
 import os
 import stat
 
+from robot.user_folders import config_folder
 from robot.wire import TOKEN_BYTES
 
 
@@ -18,13 +19,14 @@ def default_path():
     """Where the token is kept.
 
     Returns:
-        The path in $KICK_TOKEN, or that of a file in the user's configuration folder.
+        The path in $KICK_TOKEN, or that of a file in the user's configuration folder; empty if
+        there is neither.
     """
     named = os.environ.get("KICK_TOKEN")
     if named:
         return named
-    folder = os.environ.get("XDG_CONFIG_HOME") or os.path.join(os.path.expanduser("~"), ".config")
-    return os.path.join(folder, "kickctl", "token")
+    folder = config_folder()
+    return os.path.join(folder, "token") if folder else ""
 
 
 def load(path):
@@ -39,6 +41,7 @@ def load(path):
     Raises:
         TokenError: The file is missing, others may read it, or it holds no token.
     """
+    _require_place(path)
     try:
         with open(path, "r") as file:
             mode = os.fstat(file.fileno()).st_mode
@@ -74,6 +77,7 @@ def load_or_make(path):
     Raises:
         TokenError: The file cannot be made or used.
     """
+    _require_place(path)
     try:
         os.makedirs(os.path.dirname(path) or ".", mode=0o700, exist_ok=True)
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -84,3 +88,10 @@ def load_or_make(path):
     with os.fdopen(handle, "w") as file:
         file.write(binascii.hexlify(os.urandom(TOKEN_BYTES)).decode("ascii") + "\n")
     return load(path), True
+
+
+def _require_place(path):
+    if not path:
+        raise TokenError(
+            "this user has no home folder for the token: name its file by KICK_TOKEN or --token"
+        )

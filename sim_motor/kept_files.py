@@ -15,18 +15,20 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
+from robot.user_folders import cache_folder
+
 MOST_BYTES = 128 * 2**20
 _CHECKSUM_BYTES = 32
 
 
 def place(kind: str) -> Path | None:
     """The folder for a kind of content, or None if this user has no home folder."""
-    numbas = os.environ.get("NUMBA_CACHE_DIR")
-    named = numbas or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    if not named:
+        folder = cache_folder()
+        return Path(folder, "compiled", kind) if folder else None
     root = os.path.expanduser(named)  # noqa: PTH111 - Path's raises where this leaves the "~"
-    if root.startswith("~") or not (numbas or os.path.isabs(root)):  # noqa: PTH117
-        return None
-    return Path(root, "kickctl", "compiled", kind)
+    return None if root.startswith("~") else Path(root, "kickctl", "compiled", kind)
 
 
 def load(kind: str, name: str) -> bytes | None:

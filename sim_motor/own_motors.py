@@ -9,6 +9,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from robot.user_folders import config_folder
+
 Entry = dict[str, list[Any]]  # name -> [value, unit, source]
 
 _MAY_BE_ZERO = {
@@ -22,11 +24,13 @@ _MAY_BE_ZERO = {
 }
 
 
-def own_file() -> Path:
-    """Its path: $KICK_MOTORS, or a file in the user's configuration folder."""
-    folder = os.environ.get("XDG_CONFIG_HOME") or "~/.config"
-    path = os.environ.get("KICK_MOTORS") or f"{folder}/kickctl/motors.toml"
-    return Path(os.path.expanduser(path))  # noqa: PTH111 - Path's raises without a home folder
+def own_file() -> Path | None:
+    """Where they are: $KICK_MOTORS, or a file in the user's folder for settings, if there is one."""
+    named = os.environ.get("KICK_MOTORS")
+    if named:
+        return Path(os.path.expanduser(named))  # noqa: PTH111 - Path.expanduser raises without home
+    folder = config_folder()
+    return Path(folder, "motors.toml") if folder else None
 
 
 def own_motor(name: str, published: dict[str, Entry]) -> Entry:
@@ -44,10 +48,10 @@ def own_motor(name: str, published: dict[str, Entry]) -> Entry:
     """
     path = own_file()
     known = [motor for motor in published if motor != "robot"]
-    if name == "robot" or not path.exists():
+    if name == "robot" or path is None or not path.exists():
         raise ValueError(
             f"there is no motor '{name}': published are {', '.join(known)}, and your own would be"
-            f" in {path}"
+            f" in {path or 'a file that KICK_MOTORS names'}"
         )
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))

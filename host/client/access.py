@@ -30,7 +30,7 @@ def find_token(link: Link, path: str | None = None) -> bytes | None:
     if own is not None:
         return own
     place = path or default_path()
-    if path is None and not Path(place).exists():
+    if path is None and not (place and Path(place).exists()):
         return None
     try:
         secret: bytes = load(place)

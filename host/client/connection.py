@@ -108,7 +108,7 @@ class Connection(LastingLink):
                     "this machine does not have the robot's token, so it may only look, and stop"
                     " the robot",
                     f"`{deploy_command()}` gives it to both; or copy the robot's token file to"
-                    f" {default_path()}, mode 600",
+                    f" {default_path() or 'a file that KICK_TOKEN names'}, mode 600",
                 )
             return self._exchange(
                 lambda: self._talk.request(command, arguments or {}, sealed), command

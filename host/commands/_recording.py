@@ -109,7 +109,12 @@ def conclude(
     if recording.failure:
         files["log_error"] = recording.failure
     if not options.json:
-        print(f"{sentence}\nlog {recording.path}", flush=True)
+        words = f"{sentence}\nlog {recording.path}"
+        try:
+            print(words, flush=True)
+        except OSError as error:  # nobody reads them there; somebody may on standard error
+            error.add_note(words)
+            raise
     try:
         files["figure"] = str(draw(recording.path.with_suffix(".png")))
     except KeyboardInterrupt:

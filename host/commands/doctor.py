@@ -118,8 +118,9 @@ def _libraries() -> Iterator[Finding]:
 
 def _token(path: str | None) -> Iterator[Finding]:
     chosen = path or default_path()
-    if not Path(chosen).exists():
-        yield Finding("token", f"none at {chosen}; only a robot on another machine needs one")
+    if not (chosen and Path(chosen).exists()):
+        place = f"at {chosen}" if chosen else "and no home folder to keep it in"
+        yield Finding("token", f"none {place}; only a robot on another machine needs one")
         return
     try:
         load(chosen)

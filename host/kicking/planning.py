@@ -28,7 +28,9 @@ from host.kicking.kick_map import (
     tally,
 )
 from host.util.provenance import sources
+from host.util.whole_files import write_text
 from robot.params import Params
+from robot.user_folders import cache_folder
 
 SURE = 0.99
 # The wheels of a plan's own map: enough to tell 99 % from 97 % in one direction. Between small
@@ -219,26 +221,24 @@ def reversal(
 
 
 def _file() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "kickctl", "plans.json")
+    # Without a home folder nothing is kept, for this is where no file can be.
+    return Path(cache_folder() or os.devnull, "plans.json")
 
 
 def _kept() -> dict[str, Any]:
     """The kept plans by key; none if the file does not exist or cannot be read."""
     try:
         kept = json.loads(_file().read_text(encoding="utf-8"))
-    except (OSError, ValueError, RuntimeError):  # the last one without a home folder
+    except (OSError, ValueError):
         return {}
     return kept if isinstance(kept, dict) else {}
 
 
 def _keep(plans: dict[str, Any]) -> None:
     """Keep the newest plans if the disk has room. If not, the next command computes its plan."""
-    with suppress(OSError, RuntimeError):
-        new = _file().with_suffix(f".{os.getpid()}")
-        new.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(dict(list(plans.items())[-_KEPT:]), allow_nan=False)
-        new.write_text(text, encoding="utf-8")
-        new.replace(_file())
+    with suppress(OSError):
+        _file().parent.mkdir(parents=True, exist_ok=True)
+        write_text(_file(), json.dumps(dict(list(plans.items())[-_KEPT:]), allow_nan=False))
 
 
 @cache

@@ -1,0 +1,111 @@
+"""Figures are the project's own, and one that fails swallows no result."""
+
+import json
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+from matplotlib.figure import Figure
+
+from host.figures.robot import kick as figures
+from host.logs.log import Log
+from host.logs.mcap_files import McapTap
+
+# What a matplotlibrc may say.
+FOREIGN = {
+    "text.usetex": True,
+    "text.color": "white",
+    "axes.labelcolor": "white",
+    "axes.facecolor": "black",
+    "figure.facecolor": "black",
+    "savefig.dpi": 20,
+    "savefig.bbox": "tight",
+    "savefig.facecolor": "none",
+    "font.size": 40,
+    "font.family": "monospace",
+    "lines.linewidth": 9,
+    "axes.prop_cycle": mpl.cycler(color=["white"]),
+    "svg.fonttype": "none",
+    "svg.hashsalt": "theirs",
+}
+
+
+@pytest.mark.parametrize("ending", ["png", "svg"])
+def test_figures_are_the_same_whatever_matplotlibrc_says(kickctl, ending):
+    log = Log.load(
+        json.loads(kickctl("kick", "--mode", "phase", "--seed", "1", "--json")[1])["log"]
+    )
+    own = figures.draw(log, Path(f"own.{ending}"), "A kick").read_bytes()
+    with mpl.rc_context(FOREIGN):
+        foreign = figures.draw(log, Path(f"foreign.{ending}"), "A kick").read_bytes()
+        assert mpl.rcParams["text.usetex"] is True
+    if ending == "svg":  # it says when it was drawn
+        own, foreign = (_without_date(text) for text in (own, foreign))
+    assert own == foreign
+
+
+def _without_date(text):
+    return [line for line in text.splitlines() if b"<dc:date>" not in line]
+
+
+def fail(*_, **__):
+    raise RuntimeError("latex could not be found")
+
+
+def full(*_, **__):
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("failure", [fail, full])
+@pytest.mark.parametrize(
+    "verb", [("kick", "--mode", "phase", "--ticks", "4"), ("drive", "forward")]
+)
+def test_the_answer_comes_before_a_figure_that_fails(kickctl, monkeypatch, failure, verb):
+    monkeypatch.setattr(Figure, "savefig", failure)
+    status, out, err = kickctl(*verb, "--seed", "1", "--json")
+    answer = json.loads(out)
+    assert status == 0
+    assert answer["figure"] is None
+    assert answer["figure_error"] in err
+    assert len(Log.load(answer["log"])) > 10
+    status, out, err = kickctl(*verb, "--seed", "1")
+    assert status == 0
+    assert "log logs/" in out
+    assert "figure" not in out
+    assert "no figure" in err
+    assert {path.suffix for path in Path("logs").iterdir()} == {".mcap"}
+
+
+def test_an_interrupt_while_drawing_loses_no_answer(kickctl, monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Figure, "savefig", interrupted)
+    status, out, _ = kickctl("kick", "--mode", "phase", "--seed", "1", "--json")
+    assert status == 130
+    assert json.loads(out)["reversed"] is True
+
+
+def test_a_log_that_finds_no_more_room_loses_no_kick(kickctl, monkeypatch):
+    monkeypatch.setattr(McapTap, "take_records", full)
+    status, out, err = kickctl("kick", "--mode", "phase", "--seed", "1", "--json")
+    answer = json.loads(out)
+    assert status == 1
+    assert answer["reversed"] is True
+    assert answer["log_error"] in err
+    assert Path(answer["figure"]).exists()
+
+
+def test_a_run_is_answered_without_its_files(kickctl, monkeypatch):
+    monkeypatch.setattr(Figure, "savefig", fail)
+    status, out, err = kickctl("theory", "hopf", "--json")
+    assert status == 0
+    assert json.loads(out)["figures"] == []
+    assert "latex could not be found" in err
+    monkeypatch.setattr("host.runs.folder.Study.write_table", full)
+    status, out, err = kickctl("theory", "hopf", "--json")
+    answer = json.loads(out)
+    assert status == 1
+    assert answer["table"] is None
+    assert [claim["id"] for claim in answer["claims"]] == ["M3"]
+    assert "No space left" in answer["unwritten"]["table"]
