@@ -76,8 +76,8 @@ def hear(link: Link, talk: Conversation, arrived: Callable[[], bool], patience_s
         if link.now() > until:
             raise NoLink(
                 f"nothing answers at {link.uri} as a robot does",
-                "is it the robot's port? If so, its program hangs, and its watchdog should have"
-                " stopped the motors: look whether they turn",
+                "is it the robot's port, or its line and baud rate? Its program may hang; nobody"
+                " knows whether the motors turn: look, and stop them by `kickctl stop`",
             )
         talk.feed(link.receive(LOOK_S))
         talk.raise_refusal()

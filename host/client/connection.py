@@ -17,6 +17,7 @@ from host.client.stop import REPEAT_S, Stopped, stop_frame, stop_robot, unconfir
 from host.errors import KickctlError, NoLink, RefusedByRobot
 from host.link.transport import LinkLost
 from host.util.installation import deploy_command
+from host.util.interrupts import uninterrupted
 from robot.token import default_path
 
 if TYPE_CHECKING:
@@ -130,11 +131,12 @@ class Connection(LastingLink):
         """
         ways = [self._stop_aside] if self.link.virtual else [self._stop_aside, self._stop_through]
         failures = []
-        for way in ways if self.link.opens_fast else reversed(ways):
-            try:
-                return way()
-            except NoLink as failure:
-                failures.append(failure)
+        with uninterrupted():  # a second ^C must not end the stop that the first one asked for
+            for way in ways if self.link.opens_fast else reversed(ways):
+                try:
+                    return way()
+                except NoLink as failure:
+                    failures.append(failure)
         raise failures[0]
 
     def _stop_aside(self) -> Stopped:

@@ -28,6 +28,17 @@ class Stopped(NamedTuple):
     state: str
     reason: str
 
+    def sentence(self) -> str:
+        """What is known, and no more: a robot in fault may have a motor that does not obey."""
+        if self.state == "fault":
+            return (
+                f"the robot has obeyed the stop before tick {self.tick}, and is in fault:"
+                f" {self.reason or 'see `kickctl status`'}; look whether the wheels stand still"
+            )
+        if self.state == "unknown":
+            return f"the robot, which runs another release, has obeyed the stop in tick {self.tick}"
+        return f"motors stopped before tick {self.tick}; the robot is {self.state}"
+
 
 def stop_frame(name: str) -> bytes:
     """The frame that stops the motors, with the name of who sends it (at most 40 characters)."""
@@ -62,7 +73,9 @@ def confirmation(kind: int, payload: bytes) -> Stopped | None:
 def answered(result: dict[str, Any]) -> Stopped:
     """A robot's answer to STOP. Raises KeyError, TypeError or ValueError if it is none."""
     said = {"state": "unknown", "reason": "", **result}
-    return Stopped(int(said["tick"]), printable(str(said["state"])), printable(str(said["reason"])))
+    if said["state"] not in (*_AT_REST, "unknown"):
+        raise ValueError(f"a stopped robot is not '{said['state']}'")
+    return Stopped(int(said["tick"]), str(said["state"]), printable(str(said["reason"])))
 
 
 def stop_robot(link: Link, name: str = "kickctl", patience_s: float | None = None) -> Stopped:

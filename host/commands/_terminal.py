@@ -80,8 +80,7 @@ def robot_of(
             yield robot
         except KeyboardInterrupt:
             if moves:
-                robot.stop()
-                say("interrupted: motors stopped")
+                say(f"interrupted: {robot.stop_at_once().sentence()}")
             raise
 
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.client.stop import Stopped, stop_robot
+from host.client.stop import stop_robot
 from host.commands._terminal import answer, say
 from host.link.addresses import chosen, make_link
 
@@ -19,13 +19,5 @@ def run(options: argparse.Namespace) -> int:
     if link.virtual:
         say(f"simulated robot, embedded ({link.uri}); no other robot is stopped")
     stopped = stop_robot(link)
-    answer(options, {"state": stopped.state, "tick": stopped.tick}, _sentence(stopped))
+    answer(options, {"state": stopped.state, "tick": stopped.tick}, stopped.sentence())
     return 0
-
-
-def _sentence(stopped: Stopped) -> str:
-    if stopped.state == "fault":
-        return f"stopped before tick {stopped.tick}, and the robot is in fault: {stopped.reason}"
-    if stopped.state == "unknown":
-        return f"the robot, which runs another release, has stopped before tick {stopped.tick}"
-    return f"motors stopped before tick {stopped.tick}; the robot is {stopped.state}"

@@ -1,5 +1,6 @@
 """A stop waits for nothing, and never says that motors are off when nobody has seen it."""
 
+import signal
 import socket
 import threading
 
@@ -155,6 +156,20 @@ def test_a_stop_and_a_start_follow_each_other(machine):
             robot.start()
         robot.wait(0.2)
         assert robot.status()["state"] == "running"
+
+
+def test_an_impatient_second_interrupt_does_not_end_the_stop(machine, monkeypatch):
+    real = TcpLink.open
+
+    def interrupted(link):
+        signal.raise_signal(signal.SIGINT)
+        real(link)
+
+    with Robot(machine.link(), TOKEN) as robot:
+        monkeypatch.setattr(TcpLink, "open", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            robot.stop()
+        assert STATES[machine.loop.safety.state] == "stopped"
 
 
 # It needs nothing of the robot but to understand STOP
@@ -320,6 +335,9 @@ def test_no_frame_of_another_protocol_makes_it_fail(kind, payload):
         {"id": None, "result": None},
         {"id": None, "result": {}},
         {"id": None, "result": {"tick": None}},
+        {"id": None, "result": {"tick": 3, "state": "running"}},
+        {"id": None, "result": {"tick": 3, "state": "held", "reason": "x"}},
+        {"id": None, "result": {"tick": 3, "state": None}},
         {"id": None, "result": [1]},
         {"id": 1, "result": {"tick": 3}},
         {"result": {"tick": 3}},
@@ -327,6 +345,16 @@ def test_no_frame_of_another_protocol_makes_it_fail(kind, payload):
 )
 def test_an_answer_that_is_none_to_a_stop_confirms_none(message):
     assert confirmation(wire.REPLY, wire.dump(message)) is None
+
+
+@pytest.mark.parametrize(
+    ("state", "claims"), [("stopped", True), ("fault", False), ("unknown", False)]
+)
+def test_only_a_robot_that_says_so_is_said_to_have_its_motors_stopped(state, claims):
+    """A fault may be a motor that does not obey: people have to look."""
+    sentence = Stopped(7, state, "left motor: it does not stop").sentence()
+    assert ("motors stopped" in sentence) == claims
+    assert ("look whether the wheels stand still" in sentence) == (state == "fault")
 
 
 def test_the_embedded_robot_is_stopped_by_its_own_program_alone():
