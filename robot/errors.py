@@ -1,7 +1,7 @@
 """The one way in which the robot says no."""
 
-# In characters. JSON may need twelve bytes for each, so that a refusal fits into a frame even if what
-# it refuses is long.
+# In characters. JSON may need twelve bytes for each, so that a refusal fits into a frame even if
+# what it refuses is long.
 LONGEST_MESSAGE = 200
 
 

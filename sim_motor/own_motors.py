@@ -25,7 +25,7 @@ _MAY_BE_ZERO = {
 
 
 def own_file() -> Path | None:
-    """Where they are: $KICK_MOTORS, or a file in the user's folder for settings, if there is one."""
+    """Where they are: $KICK_MOTORS, else a file in the user's configuration folder."""
     named = os.environ.get("KICK_MOTORS")
     if named:
         return Path(os.path.expanduser(named))  # noqa: PTH111 - Path.expanduser raises without home

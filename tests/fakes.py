@@ -56,7 +56,7 @@ class FakeClock:
 
 
 class FakeMotor(Motor):
-    """A wheel that nears a speed of 0.18 rad/s for each percent of duty with a time constant of 80 ms; read in whole degrees.
+    """A wheel with a speed of 0.18 rad/s for each percent of duty, after 80 ms; in whole degrees.
 
     `fails` names the method that raises MotorFault from now on.
     """

@@ -1,4 +1,4 @@
-"""The robot's own program on the live file tree, a host that talks to it through a relay, and an observer who watches the motors stop."""
+"""The robot's program on the live file tree, a host behind a relay, and an observer."""
 
 import errno
 import os
@@ -158,7 +158,7 @@ class Relay:
 
 
 class Live:
-    """A robot's program, the host `robot` that is connected to it, and the `log` of what that host was sent; a context manager.
+    """A robot's program, the host `robot` connected to it, and the `log` of what that host got.
 
     folder: the mount; program: the module; environment: what its process gets besides; relayed:
     whether the link can be cut.
@@ -252,7 +252,7 @@ class Live:
         inject(self.folder, fault)
 
     def told(self, event, since=0):
-        """The reason of the first such event in the log since its event number `since`, once it is there."""
+        """The reason of the first event of a kind since event number `since`, once it is there."""
 
         def found():
             with suppress(KickctlError):  # what came before the link broke is in the log

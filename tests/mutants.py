@@ -1,4 +1,4 @@
-"""`make mutants`: whether the tests of robot/safety.py take every branch, and notice every small change (mutmut) to it.
+"""`make mutants`: do the tests of robot/safety.py take every branch and notice each mutation?
 
 Runs in a copy, with an interpreter that has mutmut and what the tests need. Returns 1 if a branch
 is missed or a change survives.

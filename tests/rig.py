@@ -72,7 +72,7 @@ class Rig:
         self.served = []
 
     def run(self, ticks=1):
-        """Let the loop's own `run` do so many ticks, without stopping the motors at its end as it would."""
+        """Let the loop's own `run` do some ticks, without stopping the motors at its end."""
         for _ in range(ticks):
             self.clock.wait(self.loop.deadline, self.served.append)
             self.loop.tick()

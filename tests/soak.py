@@ -1,4 +1,4 @@
-"""`make soak`: an hour (or $SOAK_S seconds) of a robot that is kicked, cut off, stopped and broken at random, in real time.
+"""`make soak`: kick, cut off, stop and break a robot at random for an hour ($SOAK_S seconds).
 
 Nothing may be lost: every tick of the robot is in the host's log, which is recorded as a person
 would record it. Nothing may grow: the memory and the open files of the robot's process. Returns 1
@@ -72,7 +72,7 @@ class Vitals:
 
     @property
     def slope(self):
-        """Growth of the memory in kB/h by least squares, without the first quarter, in which everything is used for the first time."""
+        """Growth of the memory in kB/h by least squares, without the first quarter (first uses)."""
         late = self.samples[len(self.samples) // 4 :]
         times, sizes = [time_s for time_s, _, _ in late], [kilobytes for _, kilobytes, _ in late]
         mean_s, mean_kb = sum(times) / len(times), sum(sizes) / len(sizes)

@@ -252,7 +252,7 @@ def _keep_alive(connection: ref[LastingLink], closed: threading.Event) -> None:
 
 
 def _hang_up(link: Link, closed: threading.Event, endings: list[Callable[[], object]]) -> None:
-    """End a connection, and what lives on it. It is not released: that is for who is still there."""
+    """End a connection and what lives on it, without giving control back."""
     closed.set()
     link.close()
     for end in endings:

@@ -1,4 +1,4 @@
-"""Standard input, output and error of the command, so that none of them can end it with a traceback."""
+"""Standard input, output and error of the command: none of them can end it in a traceback."""
 
 from __future__ import annotations
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 HELP = (
-    "show a live table of the wheels; ^C ends it. With --json: a stream of JSON lines, one object for"
-    " each refresh"
+    "show a live table of the wheels; ^C ends it. With --json: a stream of JSON lines, one object"
+    " for each refresh"
 )
 
 REFRESH_S = 0.1

@@ -1,4 +1,4 @@
-"""Interrupts: ^C, SIGTERM and a terminal that closes (SIGHUP), held back while they could do harm."""
+"""Interrupts (^C, SIGTERM, SIGHUP of a closed terminal), held back while they could do harm."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ STARTED, MOVING = 0.9, 0.25
 # A wheel that turns more slowly (rad/s) has no direction, and a body whose wheels all do is at
 # rest. One whose wheels' mean never exceeds the second rocks to and fro, which is no reversal.
 STILL_RAD_S, TRAVELS_RAD_S = 0.5, 3.0
-# A body is stuck if it stays within STUCK_M (m) for the last STUCK_S (s); it has fallen over if a car
-# leans by more than FALLEN_RAD.
+# A body is stuck if it stays within STUCK_M (m) for the last STUCK_S (s); it has fallen over if a
+# car leans by more than FALLEN_RAD.
 STUCK_S, STUCK_M, FALLEN_RAD = 5.0, 0.25, np.pi / 2
 
 

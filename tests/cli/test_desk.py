@@ -1,4 +1,4 @@
-"""The brick on the desk: the robot's program as a process of its own, in real time, driven by kickctl from outside."""
+"""The brick on the desk: a robot in a process of its own, in real time, driven by kickctl."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""A user without a home folder, in a folder that is read-only or not: words, and no folder named ~."""
+"""A user without a home folder gets words, and no folder named ~, read-only or not."""
 
 import pwd
 

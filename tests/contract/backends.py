@@ -46,7 +46,7 @@ class OnFiles:
 
 
 def real():
-    """The first motor of those named in KICK_TEST_PORTS ('outB'), on the machine that the tests run on: the brick."""
+    """The first motor named in KICK_TEST_PORTS ('outB'), on a brick that runs the tests."""
     return OnFiles(SYSFS, os.environ[REAL_PORTS].split(",")[0])
 
 

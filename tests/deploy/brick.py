@@ -1,4 +1,7 @@
-"""A stand-in for the brick: a real sshd on loopback whose logins find themselves in a folder of the test, and a checkout to deploy from."""
+"""A stand-in for the brick: a real sshd on loopback, and a checkout to deploy from.
+
+Who logs in finds a folder of the test as home.
+"""
 
 import contextlib
 import getpass
@@ -75,7 +78,10 @@ def write(path, text, mode=0o644):
 
 
 class Brick:
-    """The machine behind sshd. `home` is where its user lives, `sysfs` its devices, `etc` its settings, `bin` programs of its own."""
+    """The machine behind sshd.
+
+    `home` is its user's folder, `sysfs` its devices, `etc` its settings, `bin` its own programs.
+    """
 
     def __init__(self, folder):
         self.folder = folder

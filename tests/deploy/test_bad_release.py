@@ -1,4 +1,4 @@
-"""A release that is broken, damaged on its way, or started with the wrong arguments: the one before runs again."""
+"""After a broken or damaged release, or wrong arguments, the release before runs again."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""`make faults`: every fault tried many times, and a table of how long the motors ran on at worst and what the host was told.
+"""`make faults`: try every fault many times; how long the motors ran on, what the host heard.
 
 The robot's program, a host and the kernel's files (FUSE, with the motors' physics) are processes of
 their own. Times run from the fault until the files show that no motor is driven, in real time on

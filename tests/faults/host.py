@@ -54,7 +54,7 @@ def fill_disk(live, chance):
 
 
 def jumping_clock(folder):
-    """The environment of a process whose wall clock jumps whenever the file $CLOCK_JUMP is written."""
+    """The environment of a process whose wall clock jumps when the file $CLOCK_JUMP is written."""
     library, jump = folder / "clock_jump.so", folder / "jump"
     subprocess.run(
         ["gcc", "-shared", "-fPIC", "-o", library, ROOT / "tests" / "clock_jump.c"], check=True

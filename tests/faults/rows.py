@@ -1,4 +1,4 @@
-"""The table of faults: how each is brought about, how long the motors may run on, what the host is told."""
+"""The table of faults: how each is caused, how long motors may run on, what the host hears."""
 
 import signal
 from collections.abc import Callable

@@ -11,7 +11,7 @@ from tests.rig import packed
 
 
 def complete(log, link, first=None):
-    """Assert that a log follows the robot's record without a gap, a repetition or a strange event."""
+    """Assert that a log follows the robot's record: no gap, no repetition, no strange event."""
     ticks = [record.tick for record in log.records]
     begin = ticks[0] if first is None else first
     assert ticks == list(range(begin, begin + len(ticks)))

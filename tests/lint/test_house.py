@@ -62,7 +62,7 @@ def strangers(room: str, source: str) -> set[str]:
 
 
 def restated_equations(source: str) -> Iterator[tuple[int, str]]:
-    """Line and kind of every hyperbolic tangent or logistic function that a source writes down, under whatever name it imports them."""
+    """Line and kind of every tanh or logistic function in a source, under any imported name."""
     tree = ast.parse(source)
     imports = (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
     known_as = {alias.asname or alias.name: alias.name for node in imports for alias in node.names}

@@ -1,4 +1,4 @@
-"""A copy of the checkout, the packages built from it, and an environment that has kickctl from the wheel."""
+"""A copy of the checkout, its packages, and an environment with kickctl from the wheel."""
 
 import os
 import shutil
@@ -34,7 +34,7 @@ def succeed(*command, cwd, **environment):
 
 
 def build_wheel(source, target):
-    """Build a wheel of a folder with sources, with the setuptools of this environment and no network."""
+    """Build a wheel of a folder with sources, without a network."""
     options = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir")
     succeed(sys.executable, "-m", "pip", "wheel", *options, target, source, cwd=target)
     (wheel,) = target.glob("*.whl")
@@ -84,7 +84,7 @@ def wheel_of_sdist(sdist, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def installed(wheel, tmp_path_factory):
-    """The bin folder of a new environment that has kickctl from the wheel, and others' packages from this one."""
+    """The bin folder of a new environment: kickctl from the wheel, the rest from this one."""
     folder = tmp_path_factory.mktemp("installed") / "environment"
     venv.create(folder, symlinks=True, with_pip=False)
     python = folder / "bin" / "python"

@@ -1,4 +1,4 @@
-"""kickctl deploy becomes deploy.sh: with its arguments, its terminal, its output and its exit status."""
+"""kickctl deploy becomes deploy.sh, with its arguments, terminal, output and exit status."""
 
 import os
 import pty
@@ -28,7 +28,7 @@ def write_ssh(folder, script):
 
 
 def run(folder, *arguments, **environment):
-    """Run `kickctl deploy` with the ssh of a folder: (exit status, standard output, standard error)."""
+    """Run `kickctl deploy` with the ssh of a folder: (status, standard output, standard error)."""
     done = subprocess.run(
         [sys.executable, "-m", "host", *arguments],
         env={**os.environ, "PATH": f"{folder}:/usr/bin:/bin", "PYTHONPATH": ROOT, **environment},

@@ -1,4 +1,4 @@
-"""What kickctl needs comes from its own metadata, and the commands in hints fit how it was installed."""
+"""What kickctl needs comes from its metadata; hints fit the way it was installed."""
 
 import sys
 from pathlib import Path

@@ -61,7 +61,7 @@ def started(*arguments):
 
 
 def ended(process):
-    """The exit status of a process that is told to end, and what it has written to standard error."""
+    """The exit status of a process after SIGTERM, and what it wrote to standard error."""
     process.terminate()
     try:
         errors = process.communicate(timeout=20)[1]

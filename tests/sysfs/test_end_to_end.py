@@ -1,4 +1,4 @@
-"""The robot's own program, unmodified, on the live tree through python-ev3dev2, and a host that kicks it over TCP."""
+"""The robot's program through python-ev3dev2 on the live tree, kicked over TCP."""
 
 import subprocess
 import sys

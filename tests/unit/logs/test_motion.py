@@ -145,8 +145,8 @@ def test_a_reversing_wheel_is_not_settled_until_it_has_reversed(tau_s):
     )
     answers = np.array([settled(phi[:end], t[:end]) for end in range(1, len(t) + 1)])
     assert answers[(t > 1.1) & (t < 2.0)].all()
-    # Within two windows after the turn, the wheel has turned back in them. The turn shows only after
-    # a tick or two.
+    # Within two windows after the turn, the wheel has turned back in them. The turn shows only
+    # after a tick or two.
     turned = 2.0 + tau_s * ln(2)
     assert not answers[(t > turned + 0.1) & (t < turned + 0.95)].any()
     assert answers[t > turned + 1.1 + 3 * tau_s].all()

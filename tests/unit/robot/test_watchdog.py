@@ -210,7 +210,7 @@ SILENT, DEAD = "the loop was silent for 0.05 s", "the loop's process has died"
 
 
 def watching(stop, silence_s=0.05):
-    """(the loop's end of a link on which one beat was answered, the thread that watches the other)."""
+    """(the loop's end of a link after one answered beat, the thread that watches the other)."""
     one, other = socket.socketpair()
     thread = threading.Thread(target=lambda: watch(other, stop, silence_s=silence_s), daemon=True)
     thread.start()
