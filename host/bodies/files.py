@@ -40,7 +40,7 @@ def write_csv(path: Path, columns: tuple[str, ...], rows: NDArray[np.float64]) -
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
-        writer.writerows(rows.tolist())
+        writer.writerows(row.tolist() for row in rows)  # not all at once: that takes much memory
     return path
 
 
@@ -76,7 +76,7 @@ def write_mcap(
             "kickctl.State", "jsonschema", json.dumps(schema, allow_nan=False).encode()
         )
         channel = writer.register_channel(TOPIC, "json", schema_id)
-        for number, row in enumerate(rows.tolist()):
+        for number, row in enumerate(map(np.ndarray.tolist, rows)):
             time_ns = round(row[0] * 1e9)
             message = json.dumps(dict(zip(columns, row, strict=True)), allow_nan=False)
             writer.add_message(channel, time_ns, message.encode(), time_ns, number)

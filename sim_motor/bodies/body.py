@@ -84,7 +84,7 @@ class Body:
         self._bodies = np.array([model.body(car_name(car) + "car").id for car in range(self.cars)])
         self._drags = np.full(self.cars, preset.body_drag)
         self._kicks: list[Kick] = []
-        self._notes: deque[tuple[Any, ...]] = deque(maxlen=keep)
+        self._notes: deque[Array] = deque(maxlen=keep)
         begin = (
             np.random.default_rng(seed).uniform(0.0, 2 * pi, len(self.wheels))
             if phases is None
@@ -114,21 +114,21 @@ class Body:
     @property
     def rows(self) -> Array:
         """The state every record_s, (times, columns): as many of the last as are kept."""
-        steps, qpos, qvel, x, torque, places, turns = (
-            np.array(values) for values in zip(*self._notes, strict=True)
+        widths = (1, *(len(self.wheels),) * 4, len(self.joints), 3 * self.cars, 4 * self.cars)
+        steps, phi, omega, x, torque, bends, places, turns = np.split(
+            np.array(self._notes), np.cumsum(widths)[:-1], axis=1
         )
-        times_s = steps[:, None] * float(self.model.opt.timestep)
+        count = len(steps)
         poses = np.concatenate(
-            [places[:, self._bodies], _angles_of(turns[:, self._bodies])], axis=2
-        ).reshape(len(steps), -1)
-        wheels = (
-            qpos[:, self._angles],
-            qvel[:, self._speeds],
-            x,
-            _target_position(x, self.neurons.a),
-            torque,
-        )
-        return np.concatenate([times_s, *wheels, qpos[:, self._bends], poses], axis=1)
+            [
+                places.reshape(count, self.cars, 3),
+                _angles_of(turns.reshape(count, self.cars, 4)),
+            ],
+            axis=2,
+        ).reshape(count, -1)
+        target = _target_position(x, self.neurons.a)
+        times_s = steps * float(self.model.opt.timestep)
+        return np.concatenate([times_s, phi, omega, x, target, torque, bends, poses], axis=1)
 
     def kick(self, kick: Kick) -> None:
         """Begin a kick at its `begin`, in steps, on the wheels whose names it has.
@@ -222,8 +222,18 @@ class Body:
     def _note(self) -> None:
         data = self.data
         mujoco.mj_kinematics(self.model, data)
-        noted = (data.qpos, data.qvel, self.neurons.x1, data.ctrl, data.xpos, data.xquat)
-        self._notes.append((self.step, *(values.copy() for values in noted)))
+        # No more than `rows` needs: a long run notes millions.
+        note = (
+            [self.step],
+            data.qpos[self._angles],
+            data.qvel[self._speeds],
+            self.neurons.x1,
+            data.ctrl,
+            data.qpos[self._bends],
+            data.xpos[self._bodies].ravel(),
+            data.xquat[self._bodies].ravel(),
+        )
+        self._notes.append(np.concatenate(note))
 
 
 # MuJoCo would write its warnings into a file of the present folder; `run` looks for them itself.

@@ -1,5 +1,6 @@
 """Cars and trains in MuJoCo: their physics against theory."""
 
+import tracemalloc
 from math import sqrt
 
 import mujoco
@@ -85,3 +86,13 @@ def test_the_same_seed_gives_the_same_bits_and_another_does_not(train):
     count = len(again.rows)
     assert again.rows.tobytes() == train.rows[:count].tobytes()
     assert other.rows.tobytes() != again.rows.tobytes()
+
+
+def test_a_note_of_a_state_takes_no_more_memory_than_its_row():
+    body = build_body(BodyRequest(cars=5))
+    body.run(0.01)
+    tracemalloc.start()
+    body.run(1.0)
+    taken = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert taken / 200 < 2 * body.rows[0].nbytes
