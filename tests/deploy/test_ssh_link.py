@@ -46,7 +46,7 @@ def tunnels():
 @needs_sshd
 @needs_mount
 def test_deploy_then_a_kick_through_the_tunnel_reverses_the_wheels(brick, checkout, tmp_path):
-    """The whole way: deploy.sh, the robot's program on simulated motors, kickctl over ssh, a log."""
+    """The whole way: deploy.sh, the robot on simulated motors, kickctl over ssh, a log."""
     with mounted(tmp_path / "motors", "--seed", "4") as motors:
         brick.sysfs.rename(tmp_path / "unused")
         brick.sysfs.symlink_to(motors)
