@@ -21,8 +21,9 @@ BUSY = "import os\nparent = os.getppid()\nwhile os.getppid() == parent: sum(rang
 
 
 def run():
-    """(whether all tests passed, their output)."""
-    command = [sys.executable, "-m", "pytest", "-q", "--color=no", *TESTS, *sys.argv[1:]]
+    """Run them as `make test` does: (whether all passed, their output)."""
+    options = ("-q", "--color=no", "-n", "auto", "--dist", "worksteal")
+    command = [sys.executable, "-m", "pytest", *options, *TESTS, *sys.argv[1:]]
     done = subprocess.run(
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
     )
