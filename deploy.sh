@@ -348,7 +348,7 @@ listens() {
     0.0.0.0 | 127.0.0.1 | localhost | *[!0-9A-Za-z:.%_-]*) at='' ;;
     ::) at=::1 ;;
     esac
-    [ -z "$at" ] || printf '?host=%s&port=%s' "$at" "$number"
+    [ -z "$at" ] || printf '?host=%s&port=%s' "$(printf '%s' "$at" | sed s/%/%25/)" "$number"
     [ -n "$at" ] || [ "$number" = 5425 ] || printf '?port=%s' "$number"
 }
 
@@ -375,8 +375,13 @@ done
 [ -z "$service" ] || [ "$verb" = deploy ] ||
     fail 2 "--service and --$verb at once" "give one of them"
 
-token=${KICK_TOKEN:-${XDG_CONFIG_HOME:-$HOME/.config}/kickctl/token}
-case $token in /*) ;; *) token=$PWD/$token ;; esac
+token=${KICK_TOKEN:-${XDG_CONFIG_HOME:-${HOME:-\~}/.config}/kickctl/token}
+case $token in
+\~*) fail 2 "there is no home folder for the token file $token" \
+    "name a file by its whole path in KICK_TOKEN" ;;
+/*) ;;
+*) token=$PWD/$token ;;
+esac
 from=$(dirname "$0") # as it was typed, so that the closing words can be typed too
 # In a checkout robot/ lies beside this script; in an installed kickctl it lies one folder higher.
 cd "$(dirname "$(readlink -f "$0")")"
@@ -390,7 +395,7 @@ try:
 except ValueError as error:
     raise SystemExit(str(error))' 2>&1) ||
     fail 2 "KICK_SSH_OPTIONS cannot be understood: $ssh_options" "close its quotes"
-# In /tmp, whatever TMPDIR says: ssh wants a short and plain path for the connection that it shares.
+# In /tmp even if TMPDIR is set: ssh needs a short and plain path for the connection that it shares.
 folder=$(mktemp -d /tmp/kickctl.XXXXXX) ||
     fail 1 "nothing can be written to /tmp" "is this machine's disk full? Mend that, and try again"
 trap leave EXIT

@@ -166,7 +166,8 @@ def _listen(server, options):
         raise Refused(
             "usage",
             "cannot listen on {}:{}: {}".format(options.host, options.port, error),
-            "is another robot running there? Ports are 0 (any that is free) to 65535",
+            "is another robot running there? The host is an address of this machine, and ports"
+            " are 0 (any that is free) to 65535",
         ) from None
 
 

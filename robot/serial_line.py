@@ -95,7 +95,7 @@ class SerialLine(object):
             A link as robot.server.Server.adopt wants it.
 
         Raises:
-            OSError: It cannot be opened now; a person was told, once.
+            OSError: It cannot be opened now. `say` has heard so, once.
         """
         if self._first is not None:
             line, self._first = self._first, None

@@ -85,8 +85,13 @@ def load_or_make(path):
         return load(path), False
     except OSError as error:
         raise TokenError("the token file {} cannot be made: {}".format(path, error)) from error
-    with os.fdopen(handle, "w") as file:
-        file.write(binascii.hexlify(os.urandom(TOKEN_BYTES)).decode("ascii") + "\n")
+    try:
+        with os.fdopen(handle, "w") as file:
+            file.write(binascii.hexlify(os.urandom(TOKEN_BYTES)).decode("ascii") + "\n")
+    except OSError as error:
+        # Or an empty file would be taken for a spoiled token from now on.
+        os.unlink(path)
+        raise TokenError("the token file {} cannot be written: {}".format(path, error)) from error
     return load(path), True
 
 

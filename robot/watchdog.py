@@ -233,7 +233,7 @@ def _say(text):
     """Write to standard error if it takes no time: a stopped terminal could block the watchdog."""
     try:
         if select.select((), [2], (), 0)[1]:
-            os.write(2, text.encode())
+            os.write(2, text.encode("utf-8", "replace"))
     except OSError:
         pass
 

@@ -32,6 +32,8 @@ REAL_TIME = (
     "tests/cli/test_desk.py",
     "tests/contract/test_motor.py",
     "tests/deploy/",
+    "tests/link/test_program_start.py",
+    "tests/link/test_robots_line.py",
     "tests/link/test_serial.py",
     "tests/link/test_stop.py",
     "tests/sysfs/",

@@ -17,6 +17,14 @@ def is_checkout() -> bool:
     return (ROOT / "Makefile").is_file()
 
 
+def _works_there() -> bool:
+    """Whether the working folder, which may be gone by now, is the checkout's."""
+    try:
+        return Path.cwd() == ROOT
+    except OSError:
+        return False
+
+
 def kickctl_command() -> str:
     """What starts this very kickctl in a shell."""
     if shutil.which("kickctl"):
@@ -30,7 +38,7 @@ def deploy_command() -> str:
     """What brings the robot's program to a brick: deploy.sh in a checkout, else kickctl deploy."""
     if not is_checkout():
         return f"{kickctl_command()} deploy"
-    return "./deploy.sh" if Path.cwd() == ROOT else shlex.quote(str(ROOT / "deploy.sh"))
+    return "./deploy.sh" if _works_there() else shlex.quote(str(ROOT / "deploy.sh"))
 
 
 def install_command(extra: str = "") -> str:
@@ -40,6 +48,6 @@ def install_command(extra: str = "") -> str:
         extra: The extra of the package that has them; without it, what kickctl always needs.
     """
     if is_checkout():
-        return "make setup" if Path.cwd() == ROOT else f"make -C {shlex.quote(str(ROOT))} setup"
+        return "make setup" if _works_there() else f"make -C {shlex.quote(str(ROOT))} setup"
     name = f"'kickctl[{extra}]'" if extra else "kickctl"
     return f"{shlex.quote(sys.executable)} -m pip install {name}"

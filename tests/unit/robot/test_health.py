@@ -3,7 +3,10 @@
 Here the program runs in a thread of the test.
 """
 
+import os
 import socket
+import subprocess
+import sys
 import threading
 from contextlib import contextmanager
 
@@ -18,6 +21,8 @@ from robot.sources import of_robot
 from tests.rig import TOKEN, Motor
 
 HOST = "127.0.0.1"
+# Where `python -m robot` finds the robot.
+ROOT = health.__file__.rpartition("robot")[0]
 
 
 @contextmanager
@@ -132,7 +137,15 @@ def test_what_is_no_robot_of_this_release_is_not(answers, words):
 
 @pytest.mark.parametrize(
     "answers",
-    [wire.encode(wire.HELLO, b"[]"), wire.encode(wire.HELLO, b"{}"), hello(nonce="x"), b""],
+    [
+        wire.encode(wire.HELLO, b"[]"),
+        wire.encode(wire.HELLO, b"{}"),
+        wire.encode(wire.HELLO, b'{"error": "no"}'),
+        hello(nonce="x"),
+        hello(nonce=1),
+        hello() + wire.encode_json(wire.AUTH, {"proof": None}),
+        b"",
+    ],
 )
 def test_any_trouble_is_a_line_and_a_status(capsys, monkeypatch, tmp_path, answers):
     (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
@@ -155,3 +168,37 @@ def test_nobody_there(capsys, monkeypatch, tmp_path):
     )
     assert main() == 1
     assert "token" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("host", "asked"),
+    [("0.0.0.0", "127.0.0.1"), ("::", "::1"), ("192.168.0.7", "192.168.0.7")],  # noqa: S104
+)
+def test_a_robot_is_asked_where_it_listens(capsys, monkeypatch, tmp_path, host, asked):
+    def connect(address, timeout):
+        raise OSError("asked at {} {}".format(*address))
+
+    (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
+    (tmp_path / "token").chmod(0o600)
+    monkeypatch.setattr(socket, "create_connection", connect)
+    monkeypatch.setattr("sys.argv", ["health", "--host", host, "--port", "7"])
+    assert main() == health.UNWELL
+    assert "asked at " + asked + " 7" in capsys.readouterr().out
+
+
+def test_a_reason_with_letters_that_the_terminal_does_not_know(tmp_path):
+    (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
+    (tmp_path / "token").chmod(0o600)
+    with robot() as (port, loop):
+        loop.stop("stop frame from 'Zo\u00eb'")
+        done = subprocess.run(
+            [sys.executable, "-m", "robot.health", "--port", str(port)],
+            cwd=ROOT,
+            env=dict(os.environ, PYTHONIOENCODING="ascii", KICK_TOKEN=str(tmp_path / "token")),
+            stdout=subprocess.PIPE,
+            check=False,
+        )
+    assert (done.returncode, done.stdout) == (
+        health.WELL,
+        b"stopped (stop frame from 'Zo\\xeb')\n",
+    )

@@ -81,3 +81,11 @@ def test_no_service_no_word():
     notify = Notify({})
     notify.serve(Rig().loop)
     notify.close()
+
+
+@pytest.mark.parametrize("period", ["", "soon", "-1", "1e6"])
+def test_a_period_that_is_no_number_is_none(systemd, period):
+    notify = Notify({"NOTIFY_SOCKET": systemd.getsockname(), "WATCHDOG_USEC": period})
+    notify.serve(Rig().loop)
+    assert said(systemd) == ["READY=1"]
+    notify.close()

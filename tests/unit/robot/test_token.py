@@ -93,3 +93,19 @@ def test_where_the_token_is_kept(tmp_path, monkeypatch):
 def test_a_bare_file_name_is_in_the_working_folder(tmp_path):
     secret, _ = load_or_make("token-here")
     assert (tmp_path / "token-here").read_text().strip() == secret.hex()
+
+
+def test_a_full_card_leaves_no_empty_token_behind(tmp_path, monkeypatch):
+    path = tmp_path / "token"
+    fdopen = os.fdopen
+
+    def full(handle, mode):
+        os.close(handle)
+        return fdopen(os.open("/dev/full", os.O_WRONLY), mode)
+
+    monkeypatch.setattr(os, "fdopen", full)
+    with pytest.raises(TokenError, match=r"cannot be written: .*No space left"):
+        load_or_make(str(path))
+    assert not path.exists()
+    monkeypatch.undo()
+    assert load_or_make(str(path))[1]
