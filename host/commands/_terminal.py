@@ -31,8 +31,8 @@ def answered() -> bool:
 
 
 def say(text: str) -> None:
-    """Words for people."""
-    print(text, file=sys.stderr, flush=True)
+    """Words for people. Bytes of a command line that are no text appear as codes."""
+    print(text.encode(errors="backslashreplace").decode(), file=sys.stderr, flush=True)
 
 
 def show(result: dict[str, Any]) -> None:
