@@ -14,6 +14,7 @@ import numpy as np
 from mcap.writer import CompressionType, Writer
 from numpy.typing import NDArray
 
+from host.util.whole_files import whole_file
 from robot import __version__
 
 TOPIC = "/state"
@@ -37,7 +38,7 @@ def write_csv(path: Path, columns: tuple[str, ...], rows: NDArray[np.float64]) -
     Returns:
         The path.
     """
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with whole_file(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows(row.tolist() for row in rows)  # not all at once: that takes much memory
@@ -68,7 +69,7 @@ def write_mcap(
         "required": list(columns),
     }
     metadata = {name: json.dumps(value, allow_nan=False) for name, value in info.items()}
-    with path.open("wb") as file:
+    with whole_file(path) as draft, draft.open("wb") as file:
         writer: Any = Writer(file, compression=CompressionType.LZ4, enable_data_crcs=True)
         writer.start(library=f"kickctl {__version__}")
         writer.add_metadata("kickctl", metadata)

@@ -9,8 +9,11 @@ from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from host.commands._failures import os_words
+from host.commands._recording import figure_words
 from host.commands._terminal import say, show
 from host.errors import KickctlError
+from host.util.whole_files import write_text
 
 if TYPE_CHECKING:
     from host.bodies.build import BodyRequest
@@ -125,7 +128,11 @@ def run(options: argparse.Namespace) -> int:
     scene = build_scene(request)
     body = build_body(request, scene)
     if options.model:
-        options.model.write_text(scene.to_xml(), encoding="utf-8")
+        if options.model.exists() and _is_scene(options.model, options.scene):
+            raise WrongUse(
+                f"{options.model} is the scene itself, and would be lost", "choose another name"
+            )
+        write_text(options.model, scene.to_xml())
     kicks = [parse_kick(words, body.wheels) for words in options.kick]
     if any(kick.t_s >= options.time for kick in kicks):
         raise WrongUse(
@@ -140,12 +147,18 @@ def run(options: argparse.Namespace) -> int:
         "commit": commit(),
     }
     result = Result(options.out / f"body-{digest(settings)}", request, settings, body, kicks)
-    summary = _simulate(options, result)
+    summary, unwritten = _simulate(options, result)
     if options.json:
-        show(result.as_dict(summary))
+        show({**result.as_dict(summary), "unwritten": unwritten})
     else:
-        _print_summary(summary, result.folder)
-    return 0
+        _print_summary(summary, result.folder, unwritten)
+    for words in unwritten.values():
+        say(f"kickctl: {words}")
+    return 1 if unwritten.keys() - {"body.png", "body.svg"} else 0
+
+
+def _is_scene(path: Path, scene: str) -> bool:
+    return Path(scene).exists() and path.samefile(scene)
 
 
 class Result(NamedTuple):
@@ -161,26 +174,45 @@ class Result(NamedTuple):
         """The settings and the summary as plain data."""
         return {**self.settings, **summary, "folder": str(self.folder)}
 
-    def write(self) -> Summary:
-        """Write all files, and return the summary of the run so far."""
+    def write(self) -> tuple[Summary, dict[str, str]]:
+        """Write all files, as far as disk and matplotlib allow.
+
+        Returns:
+            The summary of the run so far, and why files could not be written, by their names.
+        """
         from host.bodies.files import write_csv, write_mcap
-        from host.figures.bodies.body import draw
         from sim_motor.bodies.measures import summary as summarize
 
         columns, rows = self.body.columns, self.body.rows
         summary = summarize(columns, rows)
-        write_csv(self.folder / "state.csv", columns, rows)
-        write_mcap(self.folder / "state.mcap", columns, rows, self.settings)
-        kicks_s = [kick.t_s for kick in self.kicks]
-        figure = draw(columns, rows, self.request, summary, kicks_s)
-        for ending in ("png", "svg"):
-            figure.savefig(self.folder / f"body.{ending}")
         text = json.dumps(self.as_dict(summary), indent=1, allow_nan=False) + "\n"
-        (self.folder / "summary.json").write_text(text, encoding="utf-8")
-        return summary
+        work: dict[str, Callable[[Path], object]] = {
+            "state.csv": lambda path: write_csv(path, columns, rows),
+            "state.mcap": lambda path: write_mcap(path, columns, rows, self.settings),
+            "summary.json": lambda path: write_text(path, text),
+            "body.png": lambda path: self._draw(path, summary),
+            "body.svg": lambda path: self._draw(path, summary),
+        }
+        unwritten = {}
+        for name, write in work.items():
+            try:
+                write(self.folder / name)
+            except OSError as error:
+                unwritten[name] = os_words(error)
+            except Exception as error:  # noqa: BLE001 - the body has moved, whatever befalls a picture
+                unwritten[name] = figure_words(error)
+        return summary, unwritten
+
+    def _draw(self, path: Path, summary: Summary) -> Path:
+        from host.figures.bodies.body import draw
+        from host.figures.style import save
+
+        kicks_s = [kick.t_s for kick in self.kicks]
+        columns, rows = self.body.columns, self.body.rows
+        return save(draw(columns, rows, self.request, summary, kicks_s), path)
 
 
-def _simulate(options: argparse.Namespace, result: Result) -> Summary:
+def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dict[str, str]]:
     """Run the body, and write everything, also if it is interrupted or becomes unstable."""
     from host.bodies.kicks import run_with_kicks
     from host.util.progress import progress
@@ -223,7 +255,7 @@ def _watchers(
     return watchers
 
 
-def _print_summary(summary: Summary, folder: Path) -> None:
+def _print_summary(summary: Summary, folder: Path, unwritten: dict[str, str]) -> None:
     times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
     print(
         f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter"
@@ -238,4 +270,5 @@ def _print_summary(summary: Summary, folder: Path) -> None:
     if summary["flipped"]:
         print("a car fell over")
     for name in ("body.png", "state.csv", "state.mcap"):
-        print(folder / name)
+        if name not in unwritten:
+            print(folder / name)

@@ -6,6 +6,7 @@ import os
 import subprocess
 import zlib
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from select import select
 from signal import SIGKILL
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from host.errors import NotDone, WrongUse
 from host.util.extras import need
+from host.util.whole_files import whole_file
 
 Picture = NDArray[np.uint8]
 
@@ -58,15 +60,18 @@ class Movie:
             )
         if ending == ".mp4":
             need("imageio_ffmpeg", "bodies")
+        self._exit = ExitStack()
         try:
-            with path.open("ab"):
+            # The film gets its name when it plays. Until then, what was there before stays.
+            self._draft = self._exit.enter_context(whole_file(path))
+            with self._draft.open("ab"):
                 pass
         except OSError as error:
             raise WrongUse(
                 f"the film {path} cannot be written: {error.strerror}",
                 "name a file in a folder that exists",
             ) from error
-        self.path, self.pictures = path, 0
+        self.path, self.pictures, self._plays = path, 0, False
         self._start_writer, self._size, self._fps = writers[ending], size, fps
         self._writer: _Mp4 | _Gif | None = None
 
@@ -83,8 +88,10 @@ class Movie:
             NotDone: if the film cannot be written.
         """
         if self._writer is None:
-            self._writer = self._start_writer(self.path, self._size, self._fps)
+            self._writer = self._start_writer(self._draft, self._size, self._fps, self.path)
+        self._plays = False
         self._writer.add(np.ascontiguousarray(picture))
+        self._plays = True
         self.pictures += 1
 
     def __exit__(
@@ -93,10 +100,11 @@ class Movie:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if self._writer is not None:
-            self._writer.finish()
-        elif self.path.stat().st_size == 0:
-            self.path.unlink()
+        with self._exit:
+            if self._writer is not None:
+                self._writer.finish()
+            if not self._plays and self._draft != self.path.resolve():
+                self._draft.unlink()  # so that it does not get the film's name
 
 
 class _Mp4:
@@ -106,10 +114,10 @@ class _Mp4:
     the film.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+    def __init__(self, path: Path, size: tuple[int, int], fps: float, name: Path) -> None:
         from imageio_ffmpeg import get_ffmpeg_exe
 
-        self._path = path
+        self._name = name
         width, height = size
         source = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i pipe:"
         film = "-c:v libx264 -crf 22 -pix_fmt yuv420p -movflags +faststart -f mp4 -y"
@@ -160,11 +168,11 @@ class _Mp4:
         with self._errors:
             if self._process.wait() == -SIGKILL:
                 cause = f"ffmpeg did nothing for {PATIENCE_S:g} s"
-                return NotDone(f"the film {self._path} could not be written: {cause}", "try again")
+                return NotDone(f"the film {self._name} could not be written: {cause}", "try again")
             self._errors.seek(0)
             lines = self._errors.read().decode(errors="replace").strip().splitlines()
         cause = lines[-1] if lines else "ffmpeg ended early"
-        return NotDone(f"the film {self._path} could not be written: {cause}", "is the disk full?")
+        return NotDone(f"the film {self._name} could not be written: {cause}", "is the disk full?")
 
 
 class _Gif:
@@ -173,7 +181,7 @@ class _Gif:
     There is no dithering: what does not move takes no room. Pictures stay in memory to the end.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+    def __init__(self, path: Path, size: tuple[int, int], fps: float, name: Path) -> None:
         self._path, self._shape, self._ms = path, (size[1], size[0], 3), 1000 / fps
         self._compressed: list[bytes] = []
 

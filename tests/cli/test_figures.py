@@ -109,3 +109,13 @@ def test_a_run_is_answered_without_its_files(kickctl, monkeypatch):
     assert answer["table"] is None
     assert [claim["id"] for claim in answer["claims"]] == ["M3"]
     assert "No space left" in answer["unwritten"]["table"]
+
+
+def test_a_body_is_answered_without_its_figure(kickctl, monkeypatch):
+    monkeypatch.setattr(Figure, "savefig", fail)
+    status, out, err = kickctl("body", "car", "--time", "0.1", "--json")
+    answer = json.loads(out)
+    assert status == 0
+    assert set(answer["unwritten"]) == {"body.png", "body.svg"}
+    assert "latex could not be found" in err
+    assert (Path(answer["folder"]) / "state.csv").exists()

@@ -5,11 +5,14 @@ import shutil
 import threading
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from host.films.movie import Movie
 from host.logs.log import Log
 from host.logs.log_folder import in_folder
 from host.logs.mcap_files import McapTap
+from sim_motor.bodies.model import HERE
 
 
 @pytest.fixture
@@ -95,3 +98,40 @@ def test_what_is_no_log_is_refused(kickctl, verb):
     status, _, err = kickctl("log", verb, "notes.txt")
     assert status == 2
     assert "not an MCAP file" in err
+
+
+def test_a_scene_is_not_replaced_by_its_model(kickctl):
+    scene = Path("mine.xml")
+    shutil.copy(HERE / "scenes" / "world.xml", "world.xml")
+    shutil.copy(HERE / "scenes" / "flat.xml", scene)
+    before = scene.read_bytes()
+    link = Path("link.xml")
+    link.symlink_to(scene)
+    for model in (scene, link):
+        status, _, err = kickctl(
+            "body", "car", "--scene", "mine.xml", "--time", "0.1", "--model", str(model)
+        )
+        assert status == 2
+        assert "is the scene itself" in err
+        assert scene.read_bytes() == before
+
+
+def test_a_film_that_fails_leaves_the_one_before(tmp_path):
+    path = tmp_path / "film.gif"
+    picture = np.zeros((2, 2, 3), np.uint8)
+    with Movie(path, (2, 2)) as movie:
+        movie.add(picture)
+    before = path.read_bytes()
+
+    def fail():
+        with Movie(path, (2, 2)) as movie:
+            movie.add(picture)
+            movie._writer.finish = full
+
+    def full():
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space"):
+        fail()
+    assert path.read_bytes() == before
+    assert [file.name for file in tmp_path.glob("*film*")] == ["film.gif"]

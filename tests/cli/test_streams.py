@@ -1,4 +1,4 @@
-"""kickctl as a process: streams that are closed, full or unread, terminals that close, no letters."""
+"""kickctl as a process: closed, full and unread streams, closed terminals, and no odd letters."""
 
 import json
 import os
