@@ -16,6 +16,8 @@ class KickctlError(Exception):
         super().__init__(message)
         self.message = message
         self.hint = hint
+        if hint:
+            self.add_note(hint)  # so that a notebook, which shows a traceback, shows it too
 
 
 class NotDone(KickctlError):

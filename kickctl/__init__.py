@@ -7,11 +7,12 @@
         outcome = robot.kick_and_watch("phase", ticks=4)
     print(outcome)
 
-What `__all__` names is the promise of this package; it is loaded when it is first used.
+The names in `__all__` are the public API. Each is loaded when it is first used.
 """
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -65,7 +66,9 @@ _neighbours.check()
 
 def __getattr__(name: str) -> object:
     if name not in __all__:
-        raise AttributeError(f"module 'kickctl' has no attribute '{name}'; it has {__all__}")
+        close = get_close_matches(name, __all__, 1)
+        hint = f"did you mean '{close[0]}'?" if close else f"it has {', '.join(__all__)}"
+        raise AttributeError(f"module 'kickctl' has no attribute '{name}'; {hint}", name=name)
     module = import_module(_PLACES.get(name, "host.errors"))
     value: object = getattr(module, _OTHER_NAMES.get(name, name))
     globals()[name] = value
@@ -73,4 +76,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

@@ -60,6 +60,8 @@ def run(options: argparse.Namespace) -> int:
     except KickctlError as error:
         findings.append(Finding("robot", error.message, error.hint or "see above"))
         status = error.status
+    except ImportError as error:
+        findings.append(Finding("robot", f"not tried: {error}", "install the libraries first"))
     if options.json:
         show(
             {
@@ -174,10 +176,14 @@ def _robot(robot: Robot) -> Iterator[Finding]:
 def _sources(robots: str) -> Finding:
     """Whether robot and host run the same code: two checkouts can have one version."""
     if robots == of_robot():
-        return Finding("sources", "robot and host run the same")
+        return Finding("sources", f"robot and host run the same ({robots})")
     return Finding(
         "sources",
-        "robot and host run different ones" if robots else "the robot's release does not say them",
+        (
+            f"robot and host run different ones ({robots}, {of_robot()})"
+            if robots
+            else "the robot's release does not say them"
+        ),
         f"bring this release to the robot: {deploy_command()}",
     )
 

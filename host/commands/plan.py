@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
         show({"to": options.to, "wheels": wheels, **origin})
     else:
         for side, found in wheels.items():
-            print(_sentence(side, options.to, found))
+            print(_sentence(side, options.to, found, origin["params"]["k"]))
     return 0
 
 
@@ -77,7 +77,7 @@ def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
     }
 
 
-def _sentence(side: str, wanted: str, found: dict[str, Any]) -> str:
+def _sentence(side: str, wanted: str, found: dict[str, Any], k: float) -> str:
     from math import degrees
 
     state = (
@@ -97,9 +97,11 @@ def _sentence(side: str, wanted: str, found: dict[str, Any]) -> str:
             if found["wait_ticks"] is None
             else f", {found['wait_ticks']} ticks from now"
         )
-    reason = "no quenched kick is sure at these parameters"
+    reason = "no kick of several ticks is reliable at these parameters"
     if found["heading"] == "stopped":
-        reason = f"makes a resting wheel roll {wanted}"
+        reason = (
+            f"pushes a resting wheel {wanted}; it rolls on only if k is large enough (k = {k:g})"
+        )
     elif found["rate"] is not None:
         low, high = found["interval"]
         reason = (

@@ -211,7 +211,8 @@ def reversal(
     key = json.dumps([sources(), before, *chosen], allow_nan=False)
     kept = _kept()
     if key not in kept:
-        say("computing which kicks reverse a wheel at these parameters: some seconds, only once")
+        way = "forward" if before > 0 else "backward"
+        say(f"computing which kicks reverse a wheel that rolls {way}: some seconds, only once")
         plan = _compute_plan(before, *chosen)
         _keep({**_kept(), key: plan and asdict(plan)})
         return plan

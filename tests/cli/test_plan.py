@@ -165,7 +165,7 @@ def test_a_resting_wheel_is_set_going_and_a_window_is_told(kickctl, monkeypatch)
     with monkeypatch.context() as rested:
         rested.setattr("host.logs.motion.heading_of", lambda phi: "stopped")
         out = kickctl("plan", "--to", "forward", "--seed", "1")[1]
-    assert "phase kick by -135° of 4 ticks, at any phase; makes a resting wheel roll forward" in out
+    assert "phase kick by -135° of 4 ticks, at any phase; pushes a resting wheel forward;" in out
     monkeypatch.setattr(
         "host.kicking.primitives.reversal",
         lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99),

@@ -239,7 +239,8 @@ def test_doctor_finds_the_simulated_robot_well(kickctl):
 def test_doctor_says_whether_robot_and_host_run_the_same_sources(kickctl, monkeypatch, own, words):
     findings = json.loads(kickctl("doctor", "--json")[1])["findings"]
     (same,) = [finding for finding in findings if finding["what"] == "sources"]
-    assert (same["found"], same["remedy"]) == ("robot and host run the same", "")
+    assert same["found"].startswith("robot and host run the same (")
+    assert not same["remedy"]
     monkeypatch.setattr("robot.session._SOURCES", own)
     status, out, _ = kickctl("doctor", "--json")
     (other,) = [one for one in json.loads(out)["findings"] if one["what"] == "sources"]

@@ -143,6 +143,7 @@ def _draw_neurons(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
                 zero_s,
                 log.column(f"{side}_x{number}"),
                 color=color,
+                drawstyle="steps-post",
                 label=f"$x_{number}$ {side}",
             )
     for side in WHEELS:
