@@ -88,7 +88,10 @@ class Connection(LastingLink):
     def request(
         self, command: str, arguments: dict[str, Any] | None = None, *, sealed: bool = False
     ) -> dict[str, Any]:
-        """Ask the robot something. What a broken link swallowed is sent again over the next one.
+        """Ask the robot something.
+
+        What a broken link swallowed is sent again over the next one, and what a serial line did not
+        answer is sent again over the same one.
 
         Args:
             command: One of the robot's commands.
@@ -175,22 +178,27 @@ class Connection(LastingLink):
         if self._broken is not None:
             raise self._broken
         give_up = self.link.now() + self.answer_s + self.reconnect_s
+        session, until = None, give_up
         while True:
-            session = self._talk.session
+            if session != self._talk.session:
+                session = self._talk.session
+                until = min(give_up, self.link.now() + self.answer_s)
             number, frame = make()
             try:
                 self._send(frame)
             except LinkLost as error:
                 self._reopen(str(error))
                 continue
-            until = min(give_up, self.link.now() + self.answer_s)
-            while session == self._talk.session:
+            now = self.link.now()
+            repeat = now + self.silence_s
+            while session == self._talk.session and not (self.link.is_line and now > repeat):
                 answer = self._talk.answer(number)
                 if answer is not None:
                     return answer
-                if self.link.now() > until:
+                if now > until:
                     raise NoLink(
                         f"the robot does not answer to '{what}'",
                         "is its program alive? Look at its screen",
                     )
                 self.pump(HEARTBEAT_S)
+                now = self.link.now()

@@ -39,7 +39,7 @@ def client_id() -> str:
 
 def arrive(newcomer: Neighbour) -> None:
     """Begin a connection; where only one can be open, the one before it hangs up."""
-    if newcomer.link.exclusive:
+    if newcomer.link.is_line:
         for other in list(_neighbours):
             if other.link.uri == newcomer.link.uri:
                 other.give_way()

@@ -34,7 +34,7 @@ class SerialLink:
 
     virtual = False
     opens_fast = False
-    exclusive = True
+    is_line = True
 
     def __init__(self, uri: str, device: str, baud: int, *, shared: bool = False) -> None:
         import serial

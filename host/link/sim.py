@@ -39,7 +39,7 @@ class SimLink:
 
     virtual = True
     opens_fast = True
-    exclusive = False
+    is_line = False
 
     def __init__(
         self,

@@ -23,13 +23,14 @@ class Link(Protocol):
 
     uri: the robot's address. virtual: whether the link carries its own robot, which has its own
     time. opens_fast: whether a second link is opened as quickly as a frame is sent, so that a stop
-    had better take one of its own. exclusive: whether one connection at a time can use the way.
+    had better take one of its own. is_line: whether it is a serial line, which one
+    connection at a time can use, and on which frames get lost.
     """
 
     uri: str
     virtual: bool
     opens_fast: bool
-    exclusive: bool
+    is_line: bool
 
     def another(self) -> Link:
         """A second way to the same robot for a stop, not opened yet."""
@@ -58,7 +59,7 @@ class TcpLink:
 
     virtual = False
     opens_fast = True
-    exclusive = False
+    is_line = False
 
     def __init__(self, uri: str, host: str, port: int) -> None:
         self.uri = uri

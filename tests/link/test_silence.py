@@ -116,6 +116,33 @@ def test_a_request_that_is_never_answered_ends(link, monkeypatch):
         assert link.now() - begin < Robot.reconnect_s + 2 * Robot.answer_s
 
 
+def test_on_a_serial_line_a_request_is_repeated_when_its_answer_gets_lost(link, monkeypatch):
+    """As by noise, or by another program that reads there. Records come all the time."""
+    real, lost = Session.receive, []
+
+    def lose(session, kind, payload):
+        answer = real(session, kind, payload)
+        if kind == wire.ASK and b'"status"' in payload and not lost:
+            lost.append(answer)
+            return b""
+        return answer
+
+    with Robot(link, link.token) as robot:
+        robot.wait(0.1)
+        monkeypatch.setattr(link, "is_line", True, raising=False)
+        monkeypatch.setattr(Session, "receive", lose)
+        begin = link.now()
+        assert robot.status()["state"] == "running"
+        assert lost
+        assert link.now() - begin < Robot.silence_s + 0.5
+        assert link.opened == 1
+        monkeypatch.setattr(Session, "receive", lambda session, kind, payload: b"")
+        with pytest.raises(NoLink, match="does not answer"):
+            robot.status()
+        assert link.now() - begin < Robot.silence_s + Robot.answer_s + 1.0
+        monkeypatch.undo()
+
+
 def test_answers_to_heartbeats_are_no_records(link):
     """The robot has lost the subscription: the host asks again, and gives up in the end."""
     with Robot(link, link.token) as robot:
