@@ -57,6 +57,7 @@ class LastingLink:
         self._leased = False
         self._heartbeat_due = 0.0
         self._silence = Silence()
+        self._give_up_at: float | None = None
         self._whole = False
         self._closed = threading.Event()
         self._broken: KickctlError | None = None
@@ -74,6 +75,7 @@ class LastingLink:
             self.hello = self._talk.hello
             self.started_utc = datetime.now(UTC)
             self.clock_zero_s = self._clock_zero()
+            self._opened_s = link.now()
             self._whole = True
         if not link.virtual:
             arguments = ref(self), self._closed
@@ -145,6 +147,7 @@ class LastingLink:
         with uninterrupted():
             data = self.link.receive(timeout_s)
             if data:
+                self._give_up_at = None
                 self._silence.hear(self.link.now(), more=self.stream.wanted)
                 self.stream.take(list(self._talk.feed(data)), self.link.now())
         self.stream.call_after()
@@ -187,23 +190,27 @@ class LastingLink:
             f"the link to {self.link.uri} broke ({why}); looking for the robot for"
             f" {self.reconnect_s:g} s"
         )
-        until = self.link.now() + self.reconnect_s
+        # A robot that lets everybody in and says nothing more is as lost as one that is not there.
+        if self._give_up_at is None:
+            self._give_up_at = self.link.now() + self.reconnect_s
+        failure = NoLink(why, "is its program alive? Look at its screen")
         pause = 0.05
-        while True:
+        while self.link.now() < self._give_up_at and not self._closed.is_set():
             try:
                 self._open()
                 break
             except NoLink as error:
-                if (
-                    self._closed.wait(0.0 if self.link.virtual else pause)
-                    or self.link.now() >= until
-                ):
-                    self._broken = NoLink(
-                        f"the link to {self.link.uri} broke and did not come back: {error.message}",
-                        error.hint,
-                    )
-                    raise self._broken from error
-                pause = min(1.0, 2.0 * pause)
+                failure = error
+            self._closed.wait(0.0 if self.link.virtual else pause)
+            pause = min(1.0, 2.0 * pause)
+        else:
+            self.link.close()
+            self._broken = NoLink(
+                f"the link to {self.link.uri} broke and did not come back: {failure.message}",
+                failure.hint,
+            )
+            raise self._broken from failure
+        self._opened_s = self.link.now()
         self.stream.interrupt()
         if self._talk.hello["boot"] != self.hello["boot"]:
             self.hello = self._talk.hello

@@ -6,8 +6,8 @@ from __future__ import annotations
 class Silence:
     """For how long nothing has come over a link although the protocol demands that something does.
 
-    The robot answers every request, and sends a record in every tick to who has subscribed. A
-    connection that nobody ends, but that no longer carries anything, can be told by nothing else.
+    The robot answers every request, and sends a record in every tick to who has subscribed. Nothing
+    but silence shows that a connection carries nothing any more although nobody has ended it.
     """
 
     def __init__(self) -> None:

@@ -67,6 +67,7 @@ class Watcher(Connection):
             )
         self._subscribe()
         first = self.newest
+        patience_s = self.answer_s + self.reconnect_s
         began = self.link.now()
         while until is None or not until():
             newest = self.newest
@@ -75,11 +76,10 @@ class Watcher(Connection):
                     first = newest
                 if newest.t_s - first.t_s >= seconds:
                     return False
-            came = self.pump(0.1)
+            self.pump(0.1)
             # Answers to heartbeats show that the robot is there, not that it sends records.
-            silent_since = max(began, self.stream.fed_s)
-            patience_s = self.answer_s + self.reconnect_s
-            if not came and self.link.now() - silent_since > patience_s:
+            due_since = max(began, self.stream.fed_s, self._opened_s)
+            if self.link.now() - due_since > patience_s:
                 raise NoLink(
                     "the robot sends no more records",
                     "look at its screen; `kickctl doctor` says more",

@@ -20,8 +20,8 @@ from host.link.addresses import make_link
 from host.link.discovery import BRICK, ROBOT, USER, look_around
 
 LOOPBACK = ["127.0.0.1"]
-# Questions go out at once, after 1 s and after 3 s, and a record that was told within the last
-# second is not told again.
+# Questions go out at once, after 1 s and after 3 s, and a record that was sent within the last
+# second is not sent again.
 LONG_S = 4.0
 
 

@@ -68,8 +68,8 @@ def test_an_interrupted_recording_replays_and_the_robot_goes_on(line):
         kept = b"".join(box.read(tick, 1) for tick in range(first, end))
         assert packed(log.records) == kept
         assert box.snapshot(box.next_tick)[1]["params"] == loop.params.values()
-        told = [event["number"] for event in log.events if event["event"] != "snapshot"]
-        assert told == list(range(told[0], told[0] + len(told)))
+        heard = [event["number"] for event in log.events if event["event"] != "snapshot"]
+        assert heard == list(range(heard[0], heard[0] + len(heard)))
         assert replay(log).reproduced
 
 

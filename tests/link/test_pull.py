@@ -17,9 +17,9 @@ def complete(log, link, first=None):
     assert ticks == list(range(begin, begin + len(ticks)))
     assert packed(log.records) == packed(link.records()[begin : begin + len(ticks)])
     assert [event["event"] for event in log.events].count("snapshot") == 1
-    told = [event["number"] for event in log.events if event["event"] != "snapshot"]
+    heard = [event["number"] for event in log.events if event["event"] != "snapshot"]
     noted = [event["number"] for event in link.events() if begin <= event["tick"] <= ticks[-1]]
-    assert told[: len(noted)] == noted
+    assert heard[: len(noted)] == noted
 
 
 def test_a_pull_gives_the_past_to_its_own_tap_alone(robot, link):
@@ -88,7 +88,7 @@ def test_an_interrupted_pull_leaves_nothing_behind(reads, fresh):
         max_size=8,
     )
 )
-def test_every_tap_gets_everything_once_and_in_order_whatever_else_happens(deeds):
+def test_every_tap_gets_everything_once_and_in_order_through_cuts_and_interrupts(deeds):
     link = RigLink()
     link.loop.set_params({"link_loss": "continue"})
     with Robot(link, link.token) as robot:

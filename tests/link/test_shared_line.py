@@ -66,7 +66,7 @@ def test_a_second_opener_learns_who_has_the_line(line, recorder):
 
 
 def test_a_stop_joins_the_line_and_leaves_the_recording_whole(line, recorder):
-    """Whatever baud rate the stop was given: it uses the line as the other has set it up."""
+    """It uses the line as the other has set it up, also when it was given another baud rate."""
     machine, uri, device = line
     before = _settings(device)
     assert stop_robot(make_link(uri + "?baud=9600"), patience_s=PATIENCE_S).state == "stopped"

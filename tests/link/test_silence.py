@@ -102,7 +102,7 @@ def test_a_robot_that_says_nothing_any_more_is_given_up_on(link):
 
 
 def test_a_request_that_is_never_answered_ends(link, monkeypatch):
-    """The robot lets everybody in, but does not answer."""
+    """The robot answers heartbeats, but not this."""
     real = Session.receive
 
     def deaf(session, kind, payload):
@@ -110,10 +110,37 @@ def test_a_request_that_is_never_answered_ends(link, monkeypatch):
 
     monkeypatch.setattr(Session, "receive", deaf)
     with Robot(link, link.token) as robot:
+        robot.lease()
         begin = link.now()
         with pytest.raises(NoLink, match="does not answer to 'status'"):
             robot.status()
-        assert link.now() - begin < Robot.reconnect_s + 2 * Robot.answer_s
+        assert link.now() - begin < Robot.answer_s + 1.0
+        assert link.opened == 1
+
+
+def test_a_robot_that_lets_everybody_in_and_says_no_more_is_given_up_on(link, monkeypatch):
+    real = Session.receive
+
+    def deaf(session, kind, payload):
+        return b"" if kind in (wire.ASK, wire.COMMAND) else real(session, kind, payload)
+
+    with Robot(link, None) as robot:
+        robot.wait(0.1)
+        monkeypatch.setattr(Session, "receive", deaf)
+        link.forget()
+        begin = link.now()
+        with pytest.raises(NoLink):
+            robot.wait(60.0)
+        assert link.now() - begin < Robot.silence_s + Robot.reconnect_s + Robot.answer_s
+
+
+def test_an_outage_that_was_mended_late_is_no_reason_to_give_up(link, monkeypatch):
+    monkeypatch.setattr(Robot, "reconnect_s", 30.0)
+    with Robot(link, None) as robot, robot.recording() as log:
+        robot.wait(0.1)
+        link.cut(away_s=25.0)
+        robot.wait(26.0)
+    whole(log, link)
 
 
 def test_on_a_serial_line_a_request_is_repeated_when_its_answer_gets_lost(link, monkeypatch):

@@ -145,7 +145,7 @@ WITH_SCHEME = st.builds(
 @example("sim://?seed=-1")
 @example("ssh://h:99999")
 @example("ssh://h?port=²")
-def test_whatever_is_given_for_an_address_is_taken_or_refused_in_words(uri):
+def test_every_text_is_an_address_or_is_refused_in_words(uri):
     for use in (make_link, sim_options, lambda given: with_params(given, ["k=1"])):
         try:
             use(uri)
