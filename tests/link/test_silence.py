@@ -99,6 +99,7 @@ def test_a_robot_that_says_nothing_any_more_is_given_up_on(link):
             robot.status()
         assert link.now() - begin < Robot.silence_s + Robot.reconnect_s + Robot.answer_s + 1.0
         link.server.serve = serve
+        link.run_tick()  # lets the robot notice what has hung up
 
 
 def test_a_request_that_is_never_answered_ends(link, monkeypatch):
@@ -243,8 +244,8 @@ def test_a_middlebox_that_forgets_costs_time_and_no_tick(
         robot.remove_tap(log)
         if token:
             robot.set(k=4.0)
-        assert box.accepted == 3
+        assert box.accepted >= 3
     assert log.missing() == []
     ticks = [record.tick for record in log.records]
     assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
-    assert len(ticks) > 150
+    assert log.records[-1].t_s - log.records[0].t_s > 1.5
