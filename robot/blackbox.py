@@ -7,9 +7,11 @@ gone.
 from collections import deque
 
 from robot.record import STRUCT
+from robot.wire import EVENT, encode_json, encode_samples
 
 DEFAULT_CAPACITY = 20000  # ten minutes of 30 ms ticks in 2.2 MB
 JOURNAL_CAPACITY = 2000
+FRAMES_KEPT = 16
 
 
 class Snapshot(object):
@@ -54,6 +56,20 @@ class Snapshot(object):
         return {"event": "snapshot", "tick": tick, "params": dict(self.params), "kick": kick}
 
 
+class _Frames(object):
+    """The frames that were encoded last: hosts at the same place of the record share them."""
+
+    def __init__(self):
+        self._kept = [(None, None)] * FRAMES_KEPT
+
+    def get(self, place, encode):
+        """What encode() returned for this place, which begins with a number."""
+        slot = place[0] % FRAMES_KEPT
+        if self._kept[slot][0] != place:
+            self._kept[slot] = place, encode()
+        return self._kept[slot][1]
+
+
 class BlackBox(object):
     """The latest records, found by their tick's number, and the journal of events beside them.
 
@@ -74,6 +90,8 @@ class BlackBox(object):
         self._base = Snapshot(params)
         self._base_tick = 0
         self._journal = deque()
+        self._samples = _Frames()
+        self._events = _Frames()
 
     @property
     def oldest_tick(self):
@@ -127,6 +145,24 @@ class BlackBox(object):
         count = min(count, self.next_tick - tick, self._capacity - start)
         return bytes(self._ring[start * STRUCT.size : (start + count) * STRUCT.size])
 
+    def samples(self, tick, count, number):
+        """Records in a row as a frame for the wire, encoded once for all who are at that place.
+
+        Args:
+            tick: The number of the first.
+            count: How many at most.
+            number: The number of the next event behind them.
+
+        Returns:
+            (count, frame): how many they are, and the frame, bytes.
+        """
+
+        def encode():
+            records = self.read(tick, count)
+            return len(records) // STRUCT.size, encode_samples(number, records)
+
+        return self._samples.get((tick, count, number), encode)
+
     def event(self, number):
         """An event of the journal.
 
@@ -138,6 +174,17 @@ class BlackBox(object):
         """
         index = number - (self.next_event - len(self._journal))
         return self._journal[index][1] if 0 <= index < len(self._journal) else None
+
+    def event_frame(self, number):
+        """An event of the journal as a frame for the wire, encoded once.
+
+        Args:
+            number: Its number, of an event that `event` returns.
+
+        Returns:
+            The frame, bytes.
+        """
+        return self._events.get((number,), lambda: encode_json(EVENT, self.event(number)))
 
     def snapshot(self, tick):
         """What was in force before a tick.

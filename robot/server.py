@@ -1,110 +1,39 @@
-"""Non-blocking links, TCP and serial, served in the time between two ticks and no longer."""
+"""Non-blocking links, TCP and serial, served in the time between two ticks and no longer.
 
-import errno
-import os
+Who controls the robot comes first, then all others by turns. A stop waits for nobody's turn.
+"""
+
 import select
 import socket
+from collections import deque
 
 from robot import wire
+from robot.peer import Peer
+from robot.safety import HELD, RUNNING
 from robot.session import Session, new_id
 
-MAX_PEERS = 8
-READ_BYTES = 2048
-# Beyond this a peer that does not read is not read from either; its records wait in the black box.
-FULL_BYTES = 65536
-STREAM_BYTES = 16384
-# The kernel's buffer for a peer, which would grow to megabytes by itself.
-SEND_BUFFER_BYTES = 65536
+# Hosts that are served at once; more of them if they prove the token, so that watchers lock nobody
+# out; and connections on which no host has said who it is.
+PLACES = 64
+SPARE_PLACES = 8
+STRANGERS = 64
+# How many hosts get records in each tick, beside the one that controls. The others get more at a
+# time, and the robot's work does not grow with them.
+STREAMS_PER_TICK = 6
+# The kernel's buffers for a connection, which would grow to megabytes by themselves.
+SEND_BUFFER_BYTES = 16384
+RECEIVE_BUFFER_BYTES = 8192
+# How long a connection may take to get a place, and a host to read anything of what waits for it.
 GREETING_S = 5.0
+DEAF_S = 60.0
+SWEEP_S = 0.5
+# For how long nobody is heard while others have their turns, unless one turn takes longer.
+HEAR_S = 0.001
+# When a host that found no place may come again.
+RETRY_S = 60
 LINE_RETRY_S = 1.0
 # Nobody pauses for this long within a frame: what looks like the beginning of one was noise.
 LINE_SILENCE_S = 0.2
-_LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
-
-
-class Peer(object):
-    """One open link: its bytes in and out, and the conversation over it.
-
-    Args:
-        link: Has fileno() and close(), and does not block.
-        session: The conversation, a robot.session.Session.
-        since: When the link was opened, by the robot's clock (s).
-        lasting: Whether it is a serial line, which stays open through noise and silence.
-    """
-
-    def __init__(self, link, session, since, lasting):
-        self.link = link
-        self.fd = link.fileno()
-        self.session = session
-        self.since = self.heard = since
-        self.lasting = lasting
-        self.decoder = wire.Decoder()
-        self.out = bytearray()
-
-    def read(self, now):
-        """Take in what has arrived.
-
-        Args:
-            now: The robot's clock (s).
-
-        Returns:
-            Whether the link is still open.
-        """
-        if self.lasting and not select.select((self.fd,), (), (), 0.0)[0]:
-            # Without anything to read a serial line answers with nothing, as it does at its end; a
-            # connection says "later".
-            if now - self.heard > LINE_SILENCE_S:
-                self.decoder.skip()
-            return True
-        self.heard = now
-        try:
-            data = os.read(self.fd, READ_BYTES)
-        except OSError as error:
-            return error.errno in _LATER
-        if not self.session.closing:
-            self.decoder.feed(data)
-        return bool(data)
-
-    def answer(self):
-        """Answer one frame if a whole one has arrived.
-
-        Returns:
-            Whether there was one.
-        """
-        if self.session.closing or len(self.out) >= FULL_BYTES:
-            return False
-        frame = self.decoder.next()
-        if self.decoder.discarded and not self.lasting:
-            # TCP delivers what was sent, so this peer does not send frames.
-            self.out += self.session.refuse(
-                "broken", "that was no frame", "see PROTOCOL.md for what the robot understands"
-            )
-        elif frame is not None:
-            self.out += self.session.receive(*frame)
-            return True
-        return False
-
-    def write(self):
-        """Send what the link takes now.
-
-        Returns:
-            Whether the link is still open.
-        """
-        while not self.session.closing and len(self.out) < STREAM_BYTES:
-            frame = self.session.stream()
-            if frame is None:
-                break
-            self.out += frame
-        if not self.out:
-            return True
-        try:
-            del self.out[: os.write(self.fd, self.out)]
-        except OSError as error:
-            return error.errno in _LATER
-        if self.session.closing and not self.out:
-            self.session.closing = not self.lasting
-            return self.lasting
-        return True
 
 
 class _Line(object):
@@ -129,8 +58,19 @@ class Server(object):
         self._loop = loop
         self._token = token
         self._listener = None
+        self._poll = select.epoll()
         self._peers = []
+        self._by_fd = {}
         self._lines = []
+        self._driver = None  # the peer that sent the latest command of the host with the lease
+        self._queue = deque()  # the peers whose turn is due
+        self._place = 0  # in the list of peers: who had the latest turn to get records
+        self._tick = -1  # the tick before which this pause is
+        # What a turn has taken lately, without and with a frame to answer.
+        self._longest_s = [0.0, 0.0]
+        # In which pause another peer, and a first one, had the latest turn.
+        self._latest = [-2, -2]
+        self._sweep_due = 0.0
 
     def listen(self, host, port):
         """Accept TCP connections.
@@ -151,8 +91,10 @@ class Server(object):
         if six:
             self._listener.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
         self._listener.bind((host, port))
+        _limit(self._listener)
         self._listener.listen(128)
         self._listener.setblocking(False)
+        self._poll.register(self._listener, select.EPOLLIN)
         return self._listener.getsockname()[1]
 
     def adopt(self, link, lasting=False):
@@ -168,6 +110,9 @@ class Server(object):
         session = Session(self._loop, self._token, self.boot)
         peer = Peer(link, session, self._loop.clock.now(), lasting)
         self._peers.append(peer)
+        self._by_fd[peer.fd] = peer
+        self._poll.register(peer.fd, peer.events())
+        peer.watched = peer.events()
         return peer
 
     def attach(self, open_line):
@@ -179,107 +124,256 @@ class Server(object):
         self._lines.append(_Line(open_line))
 
     def close(self):
-        """Close every link."""
+        """Send everybody what is left, as far as the links take it, and close them."""
         for peer in list(self._peers):
+            peer.streaming = True
+            peer.send(self._loop.clock.now())
             self._drop(peer)
         if self._listener is not None:
             self._listener.close()
             self._listener = None
+        self._poll.close()
 
     def serve(self, timeout_s):
-        """Answer and send what is due.
-
-        At least one frame of each peer is answered, so that a stop is always heard.
+        """Answer and send what is due. What does not fit into the time waits for the next call.
 
         Args:
             timeout_s: How long to wait for more (s).
         """
         clock = self._loop.clock
-        until = clock.now() + timeout_s
-        more = self._talk()
-        while more and clock.now() <= until:
-            more = self._talk()
-        if not more and timeout_s > 0.0:
-            self._wait(max(0.0, until - clock.now()))
-
-    def _wait(self, timeout_s):
-        readers = [peer.fd for peer in self._peers if len(peer.out) < FULL_BYTES]
-        writers = [peer.fd for peer in self._peers if peer.out]
-        if self._listener is not None:
-            readers.append(self._listener.fileno())
-        select.select(readers, writers, (), timeout_s)
-
-    def _talk(self):
-        """One round over all links. Returns whether more has arrived already."""
-        now = self._loop.clock.now()
-        more = self._listener is not None and self._accept()
+        now = clock.now()
+        until = now + timeout_s
         for line in self._lines:
-            self._mend(line)
-        for peer in list(self._peers):
-            answered = peer.answer()
-            alive = True
-            if not answered and len(peer.out) < FULL_BYTES:
-                alive = peer.read(now)
-                answered = peer.answer()
-            alive = peer.write() and alive
-            more = more or answered
-            late = not peer.session.greeted and not peer.lasting and now - peer.since > GREETING_S
-            if not alive or late:
-                self._drop(peer)
-        return more
+            self._mend(line, now)
+        if now >= self._sweep_due:
+            self._sweep_due = now + SWEEP_S
+            self._sweep(now)
+        if self._tick != self._loop.blackbox.next_tick:
+            self._tick = self._loop.blackbox.next_tick
+            self._give_turns()
+        more = True
+        while more:
+            # Everybody is heard again and again, so that a stop is obeyed before the next tick.
+            accepted = self._hear()
+            more = self._work(until) or (accepted and clock.now() <= until)
+        left_s = until - clock.now()
+        if timeout_s > 0.0 and left_s > 0.0:
+            # An epoll object waits for whole milliseconds only.
+            select.select((self._poll.fileno(),), (), (), left_s)
+
+    def _hear(self):
+        """Read what has come, and obey a stop. Returns whether there was a new connection."""
+        now = self._loop.clock.now()
+        accepted = False
+        for fd, mask in self._poll.poll(0):
+            peer = self._by_fd.get(fd)
+            if peer is None:
+                peer = self._accept()
+                accepted = accepted or peer is not None
+            if peer is None:
+                continue
+            if peer.reads or mask & (select.EPOLLHUP | select.EPOLLERR):
+                if not peer.read(now):
+                    self._drop(peer)
+                    continue
+                self._obey_stop(peer)
+            if peer.due:
+                self._watch(peer)  # it has to wait: hear no more of it until then
+            elif peer.ready or peer.out:
+                self._call(peer)
+        return accepted
+
+    def _obey_stop(self, peer):
+        """Obey a stop at once. One that changes nothing may wait for its turn."""
+        moving = self._loop.safety.state in (RUNNING, HELD)
+        if moving and peer.frame is not None and peer.frame[0] == wire.STOP:
+            self._answer(peer)
+
+    def _work(self, until):
+        """Give peers their turns as long as there is time. Returns whether there was any.
+
+        Returns also when it is time to hear again.
+        """
+        worked = False
+        hear_at = self._loop.clock.now() + HEAR_S
+        while self._queue and self._has_time(self._queue[0], until):
+            worked = True
+            if self._take_turn(self._queue.popleft()) >= hear_at:
+                break
+        return worked
+
+    def _take_turn(self, peer):
+        """Answer a peer's frame, and send what it gets. Returns the time."""
+        clock = self._loop.clock
+        begin = clock.now()
+        self._latest[self._is_first(peer)] = self._tick
+        peer.due = False
+        answers = peer.frame is not None
+        if answers:
+            self._answer(peer)
+        if peer.send(begin):
+            if peer.ready:
+                self._call(peer, again=True)
+            self._watch(peer)
+        else:
+            self._drop(peer)
+        now = clock.now()
+        # A machine that was asleep says nothing about the next turn.
+        took_s = min(now - begin, 2.0 * self._loop.params.tick_s)
+        self._longest_s[answers] = max(took_s, 0.95 * self._longest_s[answers])
+        return now
+
+    def _has_time(self, peer, until):
+        """Whether a turn is over before the next tick, if it takes as long as others did lately.
+
+        When none is that short, the host that controls has one turn in every pause, and another
+        peer in every second pause: nobody is forgotten, and delays do not add up.
+        """
+        first = self._is_first(peer)
+        if self._tick - self._latest[first] >= (1 if first else 2):
+            return True
+        takes_s = self._longest_s[peer.frame is not None]
+        return self._loop.clock.now() + takes_s <= until
+
+    def _is_first(self, peer):
+        return peer.lasting or peer is self._driver
+
+    def _call(self, peer, again=False):
+        """Have a peer wait for a turn, the first ones before all others unless they had one."""
+        first = self._is_first(peer) and not again
+        if peer.due:
+            if not first:
+                return
+            self._queue.remove(peer)
+        peer.due = True
+        if first:
+            self._queue.appendleft(peer)
+        else:
+            self._queue.append(peer)
+
+    def _give_turns(self):
+        """Begin a pause between two ticks: choose who gets the new records."""
+        firsts = [line.peer for line in self._lines] + [self._driver]
+        left = STREAMS_PER_TICK
+        for peer in firsts:
+            if peer is not None and peer.session.subscribed:
+                peer.streaming = True
+                self._call(peer)
+        for _ in self._peers:
+            self._place = (self._place + 1) % len(self._peers)
+            peer = self._peers[self._place]
+            if peer.session.subscribed and not peer.streaming:
+                peer.streaming = True
+                self._call(peer)
+                left -= 1
+                if not left:
+                    return
+
+    def _answer(self, peer):
+        """Answer a peer's frame, and give it a place if that is what the frame asks for."""
+        (kind, payload), peer.frame = peer.frame, None
+        session = peer.session
+        frames = session.receive(kind, payload)
+        if kind != wire.STOP and session.greeted and not peer.seated and not self._seat(peer, kind):
+            peer.refuse(
+                "busy",
+                "all {} places for hosts are taken".format(PLACES),
+                "try again in {} s; anyone may stop the robot meanwhile".format(RETRY_S),
+                retry_s=RETRY_S,
+            )
+            return
+        if kind == wire.COMMAND and session.client == self._loop.lease.holder:
+            self._driver = peer
+        peer.out += frames
+        peer.streaming = session.subscribed
+        peer.look()
+
+    def _seat(self, peer, kind):
+        """Give a host a place. Returns False if there is none, and no proof to come that helps."""
+        session = peer.session
+        places = PLACES + (SPARE_PLACES if session.trusted else 0)
+        peer.seated = sum(other.seated and not other.lasting for other in self._peers) < places
+        return peer.seated or (kind == wire.HELLO and session.claims)
 
     def _accept(self):
-        """Take in one connection, so that it is heard before the next could push it out.
-
-        Returns whether there was one.
-        """
+        """The peer at the other end of a new connection; None if there is none."""
         try:
             link = self._listener.accept()[0]
         except OSError:
-            return False
+            return None
         link.setblocking(False)
-        link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
-        _detect_half_open(link)
-        if len(self._peers) >= MAX_PEERS:
-            self._make_room()
-        self.adopt(link)
-        return True
+        strangers = [peer for peer in self._peers if not peer.seated]
+        if len(strangers) >= STRANGERS:
+            self._turn_out(strangers[0])
+        return self.adopt(link)
 
-    def _mend(self, line):
-        now = self._loop.clock.now()
-        if line.peer in self._peers or now < line.next_try:
-            return
-        line.next_try = now + LINE_RETRY_S
-        try:
-            line.peer = self.adopt(line.open(), lasting=True)
-        except OSError:
-            line.peer = None
-
-    def _make_room(self):
-        """Drop the oldest peer: first those without the token, last the one that has the lease."""
-        holder = self._loop.lease.holder
-        candidates = [peer for peer in self._peers if not peer.lasting]
-        candidates.sort(
-            key=lambda peer: (
-                peer.session.trusted,
-                holder is not None and peer.session.client == holder,
-                peer.since,
-            )
+    def _turn_out(self, stranger):
+        """Have the connection that has been there longest without a host give way."""
+        stranger.refuse(
+            "busy",
+            "too many connections come in at once",
+            "try again in {} s".format(RETRY_S),
+            retry_s=RETRY_S,
         )
-        self._drop(candidates[0])
+        stranger.send(self._loop.clock.now())
+        self._drop(stranger)
+
+    def _mend(self, line, now):
+        """Open a serial line that broke; skip what looks like a frame and does not go on."""
+        peer = line.peer
+        if peer is None and now >= line.next_try:
+            line.next_try = now + LINE_RETRY_S
+            try:
+                line.peer = self.adopt(line.open(), lasting=True)
+            except OSError:
+                pass
+        elif peer is not None and not peer.due and now - peer.heard > LINE_SILENCE_S:
+            peer.decoder.skip()
+            peer.look()
+            self._obey_stop(peer)
+            if peer.ready or peer.out:
+                self._call(peer)
+
+    def _sweep(self, now):
+        """Hang up on who does not say who it is, and on who reads nothing."""
+        for peer in [peer for peer in self._peers if not peer.lasting]:
+            patience_s = GREETING_S if peer.session.closing else DEAF_S
+            deaf = peer.out and now - peer.moved > patience_s
+            if deaf or (not peer.seated and now - peer.since > GREETING_S):
+                self._drop(peer)
+
+    def _watch(self, peer):
+        events = peer.events()
+        if events != peer.watched:
+            peer.watched = events
+            self._poll.modify(peer.fd, events)
 
     def _drop(self, peer):
         self._peers.remove(peer)
+        del self._by_fd[peer.fd]
+        if peer.due:
+            self._queue.remove(peer)
+        if peer is self._driver:
+            self._driver = None
+        for line in self._lines:
+            if line.peer is peer:
+                line.peer = None
+        self._poll.unregister(peer.fd)
         try:
             peer.link.close()
         except OSError:
             pass
 
 
-def _detect_half_open(link):
-    """Have the kernel notice within a minute that the other end is gone."""
-    link.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 20)
-    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 10)
-    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPCNT, 3)
+def _limit(listener):
+    """Bound the kernel's buffers of the connections to come, and have it notice lost ones.
+
+    It notices within a minute that the other end is gone.
+    """
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 20)
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 10)
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPCNT, 3)

@@ -5,7 +5,7 @@ The order of it is in PROTOCOL.md.
 
 import binascii
 import os
-import platform
+import sys
 
 from robot import __version__, commands, wire
 from robot.errors import Refused
@@ -15,6 +15,13 @@ from robot.sources import of_robot
 _BATCH = wire.MAX_SAMPLES // STRUCT.size
 # Computed before the loop runs: reading files would delay a tick.
 _SOURCES = of_robot()
+# Not by `platform`, which starts a program on Python 3.5.
+_MACHINE = "{} {} {}".format(
+    os.uname().machine,
+    sys.implementation.name.replace("cpython", "CPython"),
+    ".".join(map(str, sys.version_info[:3])),
+)
+SEE_PROTOCOL = "see PROTOCOL.md for what the robot understands"
 
 
 def new_id():
@@ -55,7 +62,8 @@ class Session(object):
     Attributes:
         client: The peer's own id, None before its hello.
         name: The peer's name for people.
-        trusted: Whether the peer has proved that it has the token.
+        claims: Whether the peer has said that it will prove that it has the token.
+        trusted: Whether it has done so.
         closing: Whether the conversation is over, so that only the last frames are to be sent.
     """
 
@@ -63,10 +71,12 @@ class Session(object):
         self.client = None
         self.name = ""
         self.closing = False
+        self.claims = False
         self.trusted = False
         self._loop = loop
         self._token = token
         self._boot = boot
+        self._nonces = None
         self._handshake = None
         self._counter = 0
         self._cursor = None
@@ -76,7 +86,12 @@ class Session(object):
     @property
     def greeted(self):
         """Whether the peer has said a valid hello."""
-        return self._handshake is not None
+        return self._nonces is not None
+
+    @property
+    def subscribed(self):
+        """Whether the peer wants records."""
+        return self._cursor is not None
 
     def receive(self, kind, payload):
         """Take in a frame.
@@ -119,29 +134,27 @@ class Session(object):
             wire.BadMessage,
             RecursionError,
         ) as error:  # what is nested too deeply to be shown in a refusal
-            return self.refuse(
-                "broken", str(error), "see PROTOCOL.md for what the robot understands"
-            )
+            return self.refuse("broken", str(error), SEE_PROTOCOL)
         return wire.encode_json(wire.REPLY, dict(answer, id=identity))
 
-    def refuse(self, code, message, hint):
+    def refuse(self, code, message, hint, **more):
         """End the conversation.
 
         Args:
             code: The kind of refusal, for programs.
             message: What is refused, and why.
             hint: What to do.
+            more: What programs get beside it.
 
         Returns:
             The last frame, as bytes.
         """
         self.closing = True
         self.trusted = False
-        self._handshake = None
+        self._nonces = self._handshake = None
         self._cursor = None
-        return wire.encode_json(
-            wire.REPLY, {"id": None, "error": Refused(code, message, hint).as_dict()}
-        )
+        error = dict(Refused(code, message, hint).as_dict(), **more)
+        return wire.encode_json(wire.REPLY, {"id": None, "error": error})
 
     def _stop(self, payload):
         name = self.name or _name_in(payload)
@@ -178,11 +191,12 @@ class Session(object):
             )
         self.name = _printable(name)
         self.client = client
+        self.claims = message.get("token") is True
         self.trusted = False
         self._counter = 0
         self._cursor = None
         own_nonce = new_id()
-        self._handshake = wire.Handshake(self._token, nonce, binascii.unhexlify(own_nonce))
+        self._nonces = nonce, binascii.unhexlify(own_nonce)
         loop = self._loop
         answer = {
             "protocol": wire.PROTOCOL,
@@ -198,11 +212,7 @@ class Session(object):
             oldest_tick=loop.blackbox.oldest_tick,
             clock_s=loop.clock.now() - loop.epoch,
         )
-        answer.update(
-            machine="{} {} {}".format(
-                platform.machine(), platform.python_implementation(), platform.python_version()
-            )
-        )
+        answer.update(machine=_MACHINE)
         return wire.encode_json(wire.HELLO, answer)
 
     def _authenticate(self, message):
@@ -210,6 +220,7 @@ class Session(object):
             proof = binascii.unhexlify(message.get("proof"))
         except (TypeError, ValueError):
             proof = b""
+        self._handshake = wire.Handshake(self._token, *self._nonces)
         if not wire.same(proof, self._handshake.host_proof):
             return self.refuse(
                 "token",
@@ -264,10 +275,11 @@ class Session(object):
         event = box.event(self._event_cursor)
         if event is not None and event["tick"] <= self._cursor:
             self._event_cursor += 1
-            return wire.encode_json(wire.EVENT, event)
+            return box.event_frame(self._event_cursor - 1)
         until = box.next_tick if event is None else event["tick"]
-        records = box.read(self._cursor, min(_BATCH, until - self._cursor))
-        if not records:
+        count = min(_BATCH, until - self._cursor)
+        if not count:
             return None
-        self._cursor += len(records) // STRUCT.size
-        return wire.encode_samples(self._event_cursor, records)
+        count, frame = box.samples(self._cursor, count, self._event_cursor)
+        self._cursor += count
+        return frame

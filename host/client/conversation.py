@@ -74,6 +74,7 @@ class Conversation:
             "name": self._name,
             "client": self._client,
             "nonce": self._nonce.hex(),
+            "token": self.token is not None,
         }
         return _bytes(wire.encode_json(wire.HELLO, message))
 

@@ -1,6 +1,6 @@
 """The robot's links over real sockets, in virtual time.
 
-Peers that say nothing, send rubbish, or are too many change nothing for the others.
+Peers that say nothing, send rubbish, read nothing or are too many change nothing for the others.
 """
 
 import socket
@@ -9,7 +9,8 @@ import time
 import pytest
 
 from robot import wire
-from robot.server import GREETING_S, MAX_PEERS
+from robot.record import STATES
+from robot.server import DEAF_S, GREETING_S, PLACES, RETRY_S, SPARE_PLACES, STRANGERS
 from tests.link.desk import STOP, open_files
 
 
@@ -69,36 +70,101 @@ def test_garbage_gets_a_refusal_and_is_hung_up_on(desk, garbage):
     assert desk.server._peers == []
 
 
-def test_who_gives_way_when_all_places_are_taken(desk):
-    """Strangers first, the longest there before others; then those with the token.
+def fill(desk):
+    """Have hosts without a token take all places."""
+    return [desk.connect(token=None, name=f"watcher {number}").greet() for number in range(PLACES)]
 
-    The one that controls last.
-    """
-    holder = desk.connect(name="holder").greet()
-    holder.ask("lease", sealed=True)
-    trusted = [desk.connect(name=f"trusted {number}").greet() for number in range(3)]
-    strangers = [
-        desk.connect(token=None, name=f"stranger {number}").greet()
-        for number in range(MAX_PEERS - 4)
-    ]
-    everybody = [*strangers, *trusted, holder]
-    assert len(desk.server._peers) == MAX_PEERS
-    gone = []
-    for number in range(6):
-        desk.connect(name=f"new {number}").greet()
-        holder.send(holder.talk.request("heartbeat", {}, sealed=True)[1])
-        gone += [peer for peer in everybody if peer not in gone and not peer.read()]
-    assert [peer.talk._name for peer in gone] == [
-        peer.talk._name for peer in [*strangers, *trusted][:6]
-    ]
-    assert holder.ask("status")["controller"] == "holder"
+
+def busy(peer, desk):
+    """Assert that a peer was turned away, and learned for how long."""
+    desk.run()
+    error = refusal(peer)["error"]
+    assert (error["code"], error["retry_s"]) == ("busy", RETRY_S)
+    assert f"try again in {RETRY_S} s" in error["hint"]
+
+
+def test_when_all_places_are_taken_a_newcomer_is_refused_and_nobody_gives_way(desk):
+    watchers = fill(desk)
+    for _ in range(3):
+        late = desk.connect(token=None)
+        late.send(late.talk.hello_frame())
+        busy(late, desk)
+    assert all(peer.read() for peer in watchers)
+    watchers[0].socket.close()
+    desk.run()
+    assert desk.connect(token=None).greet().ask("status")["state"] == "running"
+
+
+def test_who_proves_the_token_gets_in_when_watchers_have_taken_all_places(desk):
+    fill(desk)
+    drivers = [desk.connect(name=f"driver {number}").greet() for number in range(SPARE_PLACES)]
+    drivers[0].ask("lease", sealed=True)
+    assert drivers[-1].ask("status")["controller"] == "driver 0"
+    late = desk.connect()
+    late.send(late.talk.hello_frame())
+    desk.run()
+    late.read()
+    late.send(late.talk.auth_frame())
+    busy(late, desk)
+
+
+@pytest.mark.parametrize("command", [True, False])
+def test_who_only_says_that_it_has_the_token_gets_no_place(desk, command):
+    fill(desk)
+    liar = desk.connect()
+    liar.send(liar.talk.hello_frame())
+    desk.run()
+    liar.read()
+    assert liar.talk.hello
+    if command:
+        liar.send(liar.talk.request("status", {}, sealed=False)[1])
+        busy(liar, desk)
+    else:
+        desk.run(int((GREETING_S + 1.0) / 0.03))
+        assert liar.hung_up
+
+
+def test_a_stop_needs_no_place(desk):
+    fill(desk)
+    stranger = desk.connect()
+    stranger.send(STOP)
+    desk.run()
+    assert STATES[desk.last.state] == "stopped"
+    stranger.read()
+    assert stranger.talk.stopped.state == "stopped"
+
+
+def test_of_too_many_strangers_the_one_that_came_first_gives_way(desk):
+    watcher = desk.connect(token=None).greet()
+    strangers = [desk.connect() for _ in range(STRANGERS)]
+    desk.run()
+    assert all(peer.read() for peer in strangers)
+    strangers.append(desk.connect())
+    busy(strangers[0], desk)
+    assert all(peer.read() for peer in strangers[1:])
+    assert watcher.ask("status")["missed"] == 0
+
+
+def test_who_reads_nothing_for_a_minute_is_hung_up_on(desk):
+    """Else a lost computer would keep its place until the kernel gives up, which takes hours."""
+    peers = [desk.connect(name=name, receive_buffer=4096).greet() for name in ("deaf", "slow")]
+    for peer in peers:
+        peer.ask("subscribe", **{"from": 0})
+    slow = peers[1]
+    while not desk.server._peers[0].out:
+        desk.run()
+    for _ in range(int((DEAF_S + 2.0) / 0.03)):
+        desk.run()
+        slow.read()
+    assert [peer.session.name for peer in desk.server._peers] == ["slow"]
+    assert slow.ask("status")["missed"] == 0
 
 
 def test_closing_hangs_up_on_everybody(desk):
     peers = [desk.connect().greet() for _ in range(3)]
     files = open_files()
     desk.server.close()
-    assert open_files() == files - 4
+    assert open_files() == files - 5  # with the listener, and what the robot waits by
     assert all(not peer.read() for peer in peers)
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(desk.address)

@@ -1,0 +1,128 @@
+"""One open link: its bytes in and out, and the conversation over it."""
+
+import errno
+import os
+import select
+
+from robot import wire
+from robot.session import SEE_PROTOCOL
+
+READ_BYTES = 2048
+# A peer that does not read gets no more answers once this much waits for it, and is not read from.
+FULL_BYTES = 16384
+# Its records wait in the black box once this much waits here.
+STREAM_BYTES = 8192
+_LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
+
+
+class Peer(object):
+    """One open link and the conversation over it.
+
+    Args:
+        link: Has fileno() and close(), and does not block.
+        session: The conversation, a robot.session.Session.
+        since: When the link was opened, by the robot's clock (s).
+        lasting: Whether it is a serial line, which stays open through noise and silence.
+
+    Attributes:
+        frame: The frame to answer next, (type, payload), or None.
+        out: The bytes to send.
+        heard: When the peer sent something last (s).
+        moved: When the link took something last, or had nothing to take (s).
+        seated: Whether the peer has one of the robot's places.
+        due: Whether it waits for its turn.
+        streaming: Whether it gets records in its turn.
+        watched: What the server waits for on this link, a mask of select.epoll.
+    """
+
+    def __init__(self, link, session, since, lasting):
+        self.link = link
+        self.fd = link.fileno()
+        self.session = session
+        self.since = self.heard = self.moved = since
+        self.lasting = self.seated = lasting
+        self.decoder = wire.Decoder()
+        self.frame = None
+        self.out = bytearray()
+        self.due = self.streaming = False
+        self.watched = 0
+
+    @property
+    def reads(self):
+        """Whether more may be read: what came before is answered, and the answers are taken."""
+        return self.frame is None and not self.session.closing and len(self.out) < FULL_BYTES
+
+    @property
+    def ready(self):
+        """Whether its turn would bring it on."""
+        return (self.frame is not None and len(self.out) < FULL_BYTES) or (
+            self.streaming and not self.out
+        )
+
+    def events(self):
+        """What to wait for on the link, a mask of select.epoll: nothing while its turn is due."""
+        if self.due:
+            return 0
+        return (select.EPOLLIN if self.reads else 0) | (select.EPOLLOUT if self.out else 0)
+
+    def read(self, now):
+        """Take in what has arrived.
+
+        Args:
+            now: The robot's clock (s).
+
+        Returns:
+            Whether the link is still open.
+        """
+        self.heard = now
+        try:
+            data = os.read(self.fd, READ_BYTES)
+        except OSError as error:
+            return error.errno in _LATER
+        if not self.session.closing:
+            self.decoder.feed(data)
+            self.look()
+        return bool(data)
+
+    def look(self):
+        """Find the next whole frame."""
+        if self.frame is not None or self.session.closing:
+            return
+        self.frame = self.decoder.next()
+        if self.decoder.discarded and not self.lasting:
+            # TCP delivers what was sent, so this peer does not send frames.
+            self.refuse("broken", "that was no frame", SEE_PROTOCOL)
+
+    def refuse(self, code, message, hint, **more):
+        """End the conversation, and say why."""
+        self.frame = None
+        self.out += self.session.refuse(code, message, hint, **more)
+
+    def send(self, now):
+        """Send what the link takes now.
+
+        Args:
+            now: The robot's clock (s).
+
+        Returns:
+            Whether the link is still open.
+        """
+        if not self.out:
+            self.moved = now
+        while self.streaming and len(self.out) < STREAM_BYTES:
+            frame = self.session.stream()
+            if frame is None:
+                self.streaming = False
+            else:
+                self.out += frame
+        if self.out:
+            try:
+                del self.out[: os.write(self.fd, self.out)]
+            except OSError as error:
+                return error.errno in _LATER
+            self.moved = now
+        if self.session.closing and not self.out:
+            self.session.closing = not self.lasting
+            self.look()
+            return self.lasting
+        return True
