@@ -5,12 +5,12 @@ Who controls the robot comes first, then all others by turns. A stop waits for n
 
 import select
 import socket
-from collections import deque
 
 from robot import wire
 from robot.peer import Peer
 from robot.safety import HELD, RUNNING
 from robot.session import Session, new_id
+from robot.turns import Turns
 
 # Hosts that are served at once; more of them if they prove the token, so that watchers lock nobody
 # out; and connections on which no host has said who it is.
@@ -63,13 +63,8 @@ class Server(object):
         self._by_fd = {}
         self._lines = []
         self._driver = None  # the peer that sent the latest command of the host with the lease
-        self._queue = deque()  # the peers whose turn is due
-        self._place = 0  # in the list of peers: who had the latest turn to get records
-        self._tick = -1  # the tick before which this pause is
-        # What a turn has taken lately, without and with a frame to answer.
-        self._longest_s = [0.0, 0.0]
-        # In which pause another peer, and a first one, had the latest turn.
-        self._latest = [-2, -2]
+        self._turns = Turns(loop.clock, self._is_first)
+        self._place = 0  # in the list of peers: who was chosen last to get records
         self._sweep_due = 0.0
 
     def listen(self, host, port):
@@ -148,9 +143,9 @@ class Server(object):
         if now >= self._sweep_due:
             self._sweep_due = now + SWEEP_S
             self._sweep(now)
-        if self._tick != self._loop.blackbox.next_tick:
-            self._tick = self._loop.blackbox.next_tick
-            self._give_turns()
+        if self._turns.tick != self._loop.blackbox.next_tick:
+            self._turns.tick = self._loop.blackbox.next_tick
+            self._choose_readers()
         more = True
         while more:
             # Everybody is heard again and again, so that a stop is obeyed before the next tick.
@@ -173,98 +168,72 @@ class Server(object):
             if peer is None:
                 continue
             if peer.reads or mask & (select.EPOLLHUP | select.EPOLLERR):
-                if not peer.read(now):
+                if not peer.read(now) or not self._obey_stop(peer, now):
                     self._drop(peer)
                     continue
-                self._obey_stop(peer)
             if peer.due:
                 self._watch(peer)  # it has to wait: hear no more of it until then
             elif peer.ready or peer.out:
-                self._call(peer)
+                self._turns.call(peer)
         return accepted
 
-    def _obey_stop(self, peer):
-        """Obey a stop at once. One that changes nothing may wait for its turn."""
+    def _obey_stop(self, peer, now):
+        """Obey a stop at once. One that changes nothing waits for its turn, as all else.
+
+        Returns whether the link is still open.
+        """
         moving = self._loop.safety.state in (RUNNING, HELD)
         if moving and peer.frame is not None and peer.frame[0] == wire.STOP:
             self._answer(peer)
+            return peer.send(now)
+        return True
 
     def _work(self, until):
-        """Give peers their turns as long as there is time. Returns whether there was any.
+        """Give peers their turns while there is time, but hear all in between.
 
-        Returns also when it is time to hear again.
+        Returns whether there was any turn.
         """
-        worked = False
-        hear_at = self._loop.clock.now() + HEAR_S
-        while self._queue and self._has_time(self._queue[0], until):
-            worked = True
-            if self._take_turn(self._queue.popleft()) >= hear_at:
-                break
+        begin = now = self._loop.clock.now()
+        peer = self._turns.next(until)
+        worked = peer is not None
+        while peer is not None:
+            now = self._take_turn(peer, now)
+            peer = self._turns.next(until) if now - begin < HEAR_S else None
         return worked
 
-    def _take_turn(self, peer):
+    def _take_turn(self, peer, begin):
         """Answer a peer's frame, and send what it gets. Returns the time."""
-        clock = self._loop.clock
-        begin = clock.now()
-        self._latest[self._is_first(peer)] = self._tick
-        peer.due = False
         answers = peer.frame is not None
         if answers:
             self._answer(peer)
         if peer.send(begin):
             if peer.ready:
-                self._call(peer, again=True)
+                self._turns.call(peer, again=True)
             self._watch(peer)
         else:
             self._drop(peer)
-        now = clock.now()
+        now = self._loop.clock.now()
         # A machine that was asleep says nothing about the next turn.
-        took_s = min(now - begin, 2.0 * self._loop.params.tick_s)
-        self._longest_s[answers] = max(took_s, 0.95 * self._longest_s[answers])
+        self._turns.end(answers, min(now - begin, 2.0 * self._loop.params.tick_s))
         return now
-
-    def _has_time(self, peer, until):
-        """Whether a turn is over before the next tick, if it takes as long as others did lately.
-
-        When none is that short, the host that controls has one turn in every pause, and another
-        peer in every second pause: nobody is forgotten, and delays do not add up.
-        """
-        first = self._is_first(peer)
-        if self._tick - self._latest[first] >= (1 if first else 2):
-            return True
-        takes_s = self._longest_s[peer.frame is not None]
-        return self._loop.clock.now() + takes_s <= until
 
     def _is_first(self, peer):
         return peer.lasting or peer is self._driver
 
-    def _call(self, peer, again=False):
-        """Have a peer wait for a turn, the first ones before all others unless they had one."""
-        first = self._is_first(peer) and not again
-        if peer.due:
-            if not first:
-                return
-            self._queue.remove(peer)
-        peer.due = True
-        if first:
-            self._queue.appendleft(peer)
-        else:
-            self._queue.append(peer)
-
-    def _give_turns(self):
-        """Begin a pause between two ticks: choose who gets the new records."""
+    def _choose_readers(self):
+        """Choose who gets the records of the tick that is over."""
         firsts = [line.peer for line in self._lines] + [self._driver]
         left = STREAMS_PER_TICK
         for peer in firsts:
             if peer is not None and peer.session.subscribed:
                 peer.streaming = True
-                self._call(peer)
+                self._turns.call(peer)
         for _ in self._peers:
             self._place = (self._place + 1) % len(self._peers)
             peer = self._peers[self._place]
             if peer.session.subscribed and not peer.streaming:
                 peer.streaming = True
-                self._call(peer)
+                self._turns.call(peer)
                 left -= 1
                 if not left:
                     return
@@ -330,9 +299,9 @@ class Server(object):
         elif peer is not None and not peer.due and now - peer.heard > LINE_SILENCE_S:
             peer.decoder.skip()
             peer.look()
-            self._obey_stop(peer)
+            self._obey_stop(peer, now)
             if peer.ready or peer.out:
-                self._call(peer)
+                self._turns.call(peer)
 
     def _sweep(self, now):
         """Hang up on who does not say who it is, and on who reads nothing."""
@@ -351,8 +320,7 @@ class Server(object):
     def _drop(self, peer):
         self._peers.remove(peer)
         del self._by_fd[peer.fd]
-        if peer.due:
-            self._queue.remove(peer)
+        self._turns.forget(peer)
         if peer is self._driver:
             self._driver = None
         for line in self._lines:

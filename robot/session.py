@@ -76,7 +76,7 @@ class Session(object):
         self._loop = loop
         self._token = token
         self._boot = boot
-        self._nonces = None
+        self._host_nonce = self._own_nonce = b""
         self._handshake = None
         self._counter = 0
         self._cursor = None
@@ -86,7 +86,7 @@ class Session(object):
     @property
     def greeted(self):
         """Whether the peer has said a valid hello."""
-        return self._nonces is not None
+        return bool(self._own_nonce)
 
     @property
     def subscribed(self):
@@ -151,7 +151,8 @@ class Session(object):
         """
         self.closing = True
         self.trusted = False
-        self._nonces = self._handshake = None
+        self._host_nonce = self._own_nonce = b""
+        self._handshake = None
         self._cursor = None
         error = dict(Refused(code, message, hint).as_dict(), **more)
         return wire.encode_json(wire.REPLY, {"id": None, "error": error})
@@ -196,7 +197,7 @@ class Session(object):
         self._counter = 0
         self._cursor = None
         own_nonce = new_id()
-        self._nonces = nonce, binascii.unhexlify(own_nonce)
+        self._host_nonce, self._own_nonce = nonce, binascii.unhexlify(own_nonce)
         loop = self._loop
         answer = {
             "protocol": wire.PROTOCOL,
@@ -220,7 +221,7 @@ class Session(object):
             proof = binascii.unhexlify(message.get("proof"))
         except (TypeError, ValueError):
             proof = b""
-        self._handshake = wire.Handshake(self._token, *self._nonces)
+        self._handshake = wire.Handshake(self._token, self._host_nonce, self._own_nonce)
         if not wire.same(proof, self._handshake.host_proof):
             return self.refuse(
                 "token",

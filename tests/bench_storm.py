@@ -12,7 +12,7 @@ from host.client.robot import Robot
 from host.link.addresses import make_link
 from robot.token import load
 
-SECONDS = 15.0
+SECONDS = 60.0
 FEW, MANY = 7, 64
 CPU_AT_MOST = 1.5
 CONNECTS_AT_MOST = 2.0

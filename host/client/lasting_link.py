@@ -19,6 +19,9 @@ from host.util.interrupts import uninterrupted
 
 # The robot counts a silent host as lost after half a second by default.
 HEARTBEAT_S = 0.1
+# A link that breaks sooner was no good one: the pause before the next attempt grows.
+GOOD_S = 5.0
+FIRST_PAUSE_S, GROWTH, LONGEST_PAUSE_S = 0.1, 3.0, 10.0
 
 
 class LastingLink:
@@ -59,6 +62,7 @@ class LastingLink:
         self._silence = Silence()
         self._give_up_at: float | None = None
         self._whole = False
+        self._pause_s = 0.0
         self._closed = threading.Event()
         self._broken: KickctlError | None = None
         self._endings: list[Callable[[], object]] = []
@@ -190,19 +194,29 @@ class LastingLink:
             f"the link to {self.link.uri} broke ({why}); looking for the robot for"
             f" {self.reconnect_s:g} s"
         )
+        if self.link.now() - self._opened_s >= GOOD_S:
+            self._pause_s = 0.0
+        else:
+            longer_s = max(FIRST_PAUSE_S, GROWTH * self._pause_s)
+            self._pause_s = min(LONGEST_PAUSE_S, longer_s)
         # A robot that lets everybody in and says nothing more is as lost as one that is not there.
         if self._give_up_at is None:
-            self._give_up_at = self.link.now() + self.reconnect_s
+            self._give_up_at = self.link.now() + self._pause_s + self.reconnect_s
         failure = NoLink(why, "is its program alive? Look at its screen")
-        pause = 0.05
+        pause_s = 0.05
+        self._rest(self._pause_s)
         while self.link.now() < self._give_up_at and not self._closed.is_set():
             try:
                 self._open()
                 break
             except NoLink as error:
                 failure = error
-            self._closed.wait(0.0 if self.link.virtual else pause)
-            pause = min(1.0, 2.0 * pause)
+            except KickctlError as refusal:
+                # A robot that says no, such as one without a free place, is not asked again.
+                self._broken = refusal
+                raise
+            self._rest(pause_s)
+            pause_s = min(1.0, 2.0 * pause_s)
         else:
             self.link.close()
             self._broken = NoLink(
@@ -217,6 +231,10 @@ class LastingLink:
             self.clock_zero_s = self._clock_zero()
             self.stream.restart(self.hello, self.clock_zero_s)
         self._whole = True
+
+    def _rest(self, seconds: float) -> None:
+        """Let time pass before the next attempt, unless the connection is closed."""
+        self._closed.wait(0.0 if self.link.virtual else seconds)
 
     def _retake_lease(self) -> None:
         number, frame = self._talk.request("lease", {}, sealed=True)

@@ -1,0 +1,91 @@
+"""Who is served next, and whether there is time for it before the next tick.
+
+A turn answers one frame of a peer and sends what its link takes. Nobody can say in advance how long
+that takes, so the turns of late say it.
+"""
+
+from collections import deque
+
+
+class Turns(object):
+    """The peers that wait for their turn, in order.
+
+    Some are first: they come before all others, and have a turn in every pause between two ticks,
+    also when no turn is short enough to end before the next tick. The others then share one turn in
+    every second pause: nobody is forgotten, and delays do not add up.
+
+    Args:
+        clock: The robot's clock, see robot.motors.
+        is_first: Says whether a peer is one of the first.
+
+    Attributes:
+        tick: The tick before which this pause is.
+    """
+
+    def __init__(self, clock, is_first):
+        self.tick = -1
+        self._clock = clock
+        self._is_first = is_first
+        self._queue = deque()
+        # What turns took lately (s): those that only send, and those that answer a frame.
+        self._longest_s = [0.0, 0.0]
+        # In which pause others, and the first ones, had their latest turn.
+        self._latest = [-2, -2]
+
+    def call(self, peer, again=False):
+        """Have a peer wait for a turn.
+
+        Args:
+            peer: A robot.peer.Peer.
+            again: Whether it has just had one, so that it comes last.
+        """
+        first = self._is_first(peer) and not again
+        if peer.due:
+            if not first:
+                return
+            self._queue.remove(peer)
+        peer.due = True
+        if first:
+            self._queue.appendleft(peer)
+        else:
+            self._queue.append(peer)
+
+    def forget(self, peer):
+        """Give a peer no turn.
+
+        Args:
+            peer: A robot.peer.Peer.
+        """
+        if peer.due:
+            self._queue.remove(peer)
+
+    def next(self, until):
+        """Begin the next turn, if there is time.
+
+        Args:
+            until: When the next tick is (s).
+
+        Returns:
+            The peer that has it, or None.
+        """
+        if not self._queue or not self._has_time(self._queue[0], until):
+            return None
+        peer = self._queue.popleft()
+        peer.due = False
+        self._latest[self._is_first(peer)] = self.tick
+        return peer
+
+    def end(self, answered, took_s):
+        """Learn from a turn.
+
+        Args:
+            answered: Whether it answered a frame.
+            took_s: How long it took (s).
+        """
+        self._longest_s[answered] = max(took_s, 0.95 * self._longest_s[answered])
+
+    def _has_time(self, peer, until):
+        first = self._is_first(peer)
+        if self.tick - self._latest[first] >= (1 if first else 2):
+            return True
+        return self._clock.now() + self._longest_s[peer.frame is not None] <= until
