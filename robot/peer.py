@@ -29,6 +29,7 @@ class Peer(object):
         out: The bytes to send.
         heard: When the peer sent something last (s).
         moved: When the link took something last, or had nothing to take (s).
+        first: Whether it is served before others.
         seated: Whether the peer has one of the robot's places.
         due: Whether it waits for its turn.
         streaming: Whether it gets records in its turn.
@@ -40,7 +41,7 @@ class Peer(object):
         self.fd = link.fileno()
         self.session = session
         self.since = self.heard = self.moved = since
-        self.lasting = self.seated = lasting
+        self.lasting = self.first = self.seated = lasting
         self.decoder = wire.Decoder()
         self.frame = None
         self.out = bytearray()

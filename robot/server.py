@@ -63,7 +63,7 @@ class Server(object):
         self._by_fd = {}
         self._lines = []
         self._driver = None  # the peer that sent the latest command of the host with the lease
-        self._turns = Turns(loop.clock, self._is_first)
+        self._turns = Turns(loop.clock)
         self._place = 0  # in the list of peers: who was chosen last to get records
         self._sweep_due = 0.0
 
@@ -167,11 +167,10 @@ class Server(object):
                 accepted = accepted or peer is not None
             if peer is None:
                 continue
-            if peer.reads or mask & (select.EPOLLHUP | select.EPOLLERR):
-                if not peer.read(now) or not self._obey_stop(peer, now):
-                    self._drop(peer)
-                    continue
-            if peer.due:
+            lost = mask & (select.EPOLLHUP | select.EPOLLERR)
+            if (peer.reads or lost) and not (peer.read(now) and self._obey_stop(peer, now)):
+                self._drop(peer)
+            elif peer.due:
                 self._watch(peer)  # it has to wait: hear no more of it until then
             elif peer.ready or peer.out:
                 self._turns.call(peer)
@@ -217,9 +216,6 @@ class Server(object):
         self._turns.end(answers, min(now - begin, 2.0 * self._loop.params.tick_s))
         return now
 
-    def _is_first(self, peer):
-        return peer.lasting or peer is self._driver
-
     def _choose_readers(self):
         """Choose who gets the records of the tick that is over."""
         firsts = [line.peer for line in self._lines] + [self._driver]
@@ -252,10 +248,16 @@ class Server(object):
             )
             return
         if kind == wire.COMMAND and session.client == self._loop.lease.holder:
-            self._driver = peer
+            self._put_first(peer)
         peer.out += frames
         peer.streaming = session.subscribed
         peer.look()
+
+    def _put_first(self, driver):
+        if self._driver is not None:
+            self._driver.first = self._driver.lasting
+        self._driver = driver
+        driver.first = True
 
     def _seat(self, peer, kind):
         """Give a host a place. Returns False if there is none, and no proof to come that helps."""

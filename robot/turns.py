@@ -16,16 +16,14 @@ class Turns(object):
 
     Args:
         clock: The robot's clock, see robot.motors.
-        is_first: Says whether a peer is one of the first.
 
     Attributes:
         tick: The tick before which this pause is.
     """
 
-    def __init__(self, clock, is_first):
+    def __init__(self, clock):
         self.tick = -1
         self._clock = clock
-        self._is_first = is_first
         self._queue = deque()
         # What turns took lately (s): those that only send, and those that answer a frame.
         self._longest_s = [0.0, 0.0]
@@ -39,7 +37,7 @@ class Turns(object):
             peer: A robot.peer.Peer.
             again: Whether it has just had one, so that it comes last.
         """
-        first = self._is_first(peer) and not again
+        first = peer.first and not again
         if peer.due:
             if not first:
                 return
@@ -72,7 +70,7 @@ class Turns(object):
             return None
         peer = self._queue.popleft()
         peer.due = False
-        self._latest[self._is_first(peer)] = self.tick
+        self._latest[peer.first] = self.tick
         return peer
 
     def end(self, answered, took_s):
@@ -85,7 +83,6 @@ class Turns(object):
         self._longest_s[answered] = max(took_s, 0.95 * self._longest_s[answered])
 
     def _has_time(self, peer, until):
-        first = self._is_first(peer)
-        if self.tick - self._latest[first] >= (1 if first else 2):
+        if self.tick - self._latest[peer.first] >= (1 if peer.first else 2):
             return True
         return self._clock.now() + self._longest_s[peer.frame is not None] <= until

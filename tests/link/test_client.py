@@ -207,6 +207,7 @@ def test_a_machine_without_the_token_may_look_and_stop(link):
 
 
 def test_a_wrong_token_is_refused_and_leaves_nothing_open(link):
+    gc.collect()
     files = open_files()
     with pytest.raises(RefusedByRobot, match="token"):
         Robot(link, b"x" * 32)
