@@ -139,7 +139,8 @@ class Server(object):
         now = clock.now()
         until = now + timeout_s
         for line in self._lines:
-            self._mend(line, now)
+            if line.peer is None and now >= line.next_try:
+                self._open(line, now)
         if now >= self._sweep_due:
             self._sweep_due = now + SWEEP_S
             self._sweep(now)
@@ -174,6 +175,9 @@ class Server(object):
                 self._watch(peer)  # it has to wait: hear no more of it until then
             elif peer.ready or peer.out:
                 self._turns.call(peer)
+        for line in self._lines:
+            if line.peer is not None:
+                self._skip_noise(line.peer, now)
         return accepted
 
     def _obey_stop(self, peer, now):
@@ -289,21 +293,22 @@ class Server(object):
         stranger.send(self._loop.clock.now())
         self._drop(stranger)
 
-    def _mend(self, line, now):
-        """Open a serial line that broke; skip what looks like a frame and does not go on."""
-        peer = line.peer
-        if peer is None and now >= line.next_try:
-            line.next_try = now + LINE_RETRY_S
-            try:
-                line.peer = self.adopt(line.open(), lasting=True)
-            except OSError:
-                pass
-        elif peer is not None and not peer.due and now - peer.heard > LINE_SILENCE_S:
-            peer.decoder.skip()
-            peer.look()
-            self._obey_stop(peer, now)
-            if peer.ready or peer.out:
-                self._turns.call(peer)
+    def _open(self, line, now):
+        line.next_try = now + LINE_RETRY_S
+        try:
+            line.peer = self.adopt(line.open(), lasting=True)
+        except OSError:
+            pass
+
+    def _skip_noise(self, peer, now):
+        """Skip what looks like the beginning of a frame if it has not gone on for too long."""
+        if peer.due or now - peer.heard <= LINE_SILENCE_S:
+            return
+        peer.decoder.skip()
+        peer.look()
+        self._obey_stop(peer, now)
+        if peer.ready or peer.out:
+            self._turns.call(peer)
 
     def _sweep(self, now):
         """Hang up on who does not say who it is, and on who reads nothing."""

@@ -34,8 +34,9 @@ def many_hosts() -> None:
         flush=True,
     )
     print(
-        f"  the driver's kicks, from command to answer: median {1000 * statistics.median(kicks):.1f}"
-        f" ms, at most {1000 * max(kicks):.1f} ms ({len(kicks)} kicks)",
+        "  the driver's kicks, from command to answer: median"
+        f" {1000 * statistics.median(kicks):.1f} ms, at most {1000 * max(kicks):.1f} ms"
+        f" ({len(kicks)} kicks)",
         flush=True,
     )
 

@@ -31,7 +31,6 @@ def pauses(link, monkeypatch):
         until = link.now() + seconds
         while link.now() < until:
             link.run_tick()
-        return False
 
     monkeypatch.setattr(Robot, "_rest", rest)
     return pauses

@@ -176,7 +176,7 @@ class BusyClock(Clock):
 
 @pytest.fixture
 def slow_desk(monkeypatch):
-    """A robot on which each frame but a heartbeat takes as long as the test says, in virtual time."""
+    """A robot that takes `frame_s` of its virtual time for each frame."""
     desk = Desk(BusyClock(), capacity=2000)
     desk.frame_s = 0.0
     real = Session.receive
