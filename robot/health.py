@@ -96,9 +96,8 @@ def examine(host, port, secret):
     try:
         nonce = os.urandom(wire.NONCE_BYTES)
         text = binascii.hexlify(nonce).decode("ascii")
-        hello = robot.ask(
-            wire.HELLO, protocol=wire.PROTOCOL, name="health", client="health", nonce=text
-        )
+        names = {"name": "health", "client": "health"}
+        hello = robot.ask(wire.HELLO, protocol=wire.PROTOCOL, nonce=text, token=True, **names)
         _compare("release", hello["software"], __version__)
         _compare("sources", hello.get("sources"), sources.of_robot())
         shake = wire.Handshake(secret, nonce, binascii.unhexlify(hello["nonce"]))

@@ -86,6 +86,12 @@ def test_a_robot_that_ticks_is_well():
         assert examine(HOST, port, TOKEN)["state"] == "idle"
 
 
+def test_a_robot_on_which_watchers_have_taken_all_places_is_well(monkeypatch):
+    monkeypatch.setattr("robot.server.PLACES", 0)
+    with robot() as (port, _):
+        assert examine(HOST, port, TOKEN)["state"] == "idle"
+
+
 def test_a_robot_in_fault_has_a_program_that_is_well(capsys, monkeypatch, tmp_path):
     (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
     (tmp_path / "token").chmod(0o600)
