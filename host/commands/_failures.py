@@ -37,6 +37,8 @@ def in_words(error: BaseException) -> KickctlError | None:
     """
     failure = _failure(error)
     notes = getattr(error, "__notes__", [])
+    if isinstance(error, KickctlError):
+        notes = [note for note in notes if note != error.hint]  # see KickctlError
     if failure is not None and notes:
         failure.hint = "\n  ".join([*filter(None, [failure.hint]), *notes])
     return failure

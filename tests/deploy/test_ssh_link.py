@@ -146,8 +146,9 @@ def test_a_brick_with_a_new_card(brick, through):
     """What ssh says of it is long: a warning between rows of @, and the reason at its end."""
     key = (brick.folder / "user_key.pub").read_text(encoding="utf-8")
     (brick.folder / "known_hosts").write_text(f"[127.0.0.1]:{brick.port} {key}", encoding="utf-8")
-    with pytest.raises(NoLink, match=r"Host key verification failed\.$") as caught:
+    with pytest.raises(NoLink) as caught:
         connect("ssh://brick")
+    assert caught.value.message.endswith("Host key verification failed.")
     assert "@@" not in caught.value.message
     assert len(caught.value.message) < 400
 
