@@ -52,7 +52,7 @@ def test_processes_end_when_the_first_one_is_killed(tmp_path):
         "import os, time\n"
         "from host.runs import processes\n"
         "def work(cell, setting):\n"
-        "    print('works', flush=True)\n"
+        "    os.write(1, b'works\\n')\n"
         "    time.sleep(3600.0)\n"
         "if __name__ == '__main__':\n"
         "    os.sched_getaffinity = lambda pid: {0, 1}\n"
