@@ -28,11 +28,10 @@ demo: $(STAMP) ## watch the simulated robot being kicked
 reproduce: $(STAMP) ## measure all of the paper's claims on the simulated robot and on the model, and write a report
 	$(BIN)/kickctl reproduce
 
-# On all cores. Tests in real time run after the others, so that nothing that computes slows them down; they wait more than they compute,
-# so there are two for each core.
+# On all cores. Tests in real time run after the others, so that nothing that computes slows them down.
 test: $(STAMP) ## run the tests
 	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal -m 'not realtime and not brick'
-	$(BIN)/python -m pytest tests --ignore=tests/lint -n $$((2 * $$(nproc))) --dist worksteal -m 'realtime and not brick'
+	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal -m 'realtime and not brick'
 
 # Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
 test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 or newer
