@@ -46,7 +46,7 @@ class Client:
         return self.talk.stopped
 
     def flow(self, frames=1000000):
-        """Take so many frames of the subscription."""
+        """Take up to `frames` frames of the subscription."""
         for _ in range(frames):
             frame = self.session.stream()
             if frame is None:

@@ -31,7 +31,7 @@ class Contestant(NamedTuple):
     """An engine with its setting.
 
     prepare: given all it will have to do, as parameters (6, wheels), compiles what it needs, and
-    returns the function that does it. every: it does only every so many of the points, because it
+    returns the function that does it. every: it does one of `every` points only, because it
     is slow.
     """
 

@@ -13,7 +13,7 @@ pytestmark = needs_sshd
 
 @contextmanager
 def cut_after(brick, to_brick):
-    """Everything between ssh and the brick goes through here, until so many bytes were sent to it.
+    """Everything between ssh and the brick goes through here, until a number of bytes has passed.
 
     Then the line is dead.
     """

@@ -17,21 +17,6 @@ from tests.rig import TOKEN, Rig
 from tests.talk import Client
 
 
-@pytest.fixture
-def rig():
-    rig = Rig(capacity=100)
-    rig.loop.start()
-    rig.run(3)
-    return rig
-
-
-@pytest.fixture
-def client(rig):
-    client = Client(rig.loop).greet()
-    client.tell("lease")
-    return client
-
-
 def test_events_stand_before_the_record_they_concern(rig, client):
     client.ask("subscribe", **{"from": 0})
     rig.run(2)

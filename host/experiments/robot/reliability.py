@@ -2,8 +2,8 @@
 
 Kicks are position kicks, phase kicks of both signs, and membrane kicks beside them. A trial is one
 wheel that has settled; the kick meets it at a random phase. Phase kicks of both signs are given to
-wheels of both directions: of the sign that the paper names for a direction, and of the other sign,
-of which the paper says nothing.
+wheels of both directions: the paper names one sign for each direction, and says nothing about the
+other.
 """
 
 from __future__ import annotations
