@@ -4,14 +4,24 @@ import os
 import socket
 import sys
 
+from robot import own_motors
 from robot.button import BackButton
 from robot.lights import Lights
 from robot.motors import MonotonicClock, MotorFault
 from robot.notify import Notify
 from robot.program import choose_seed, parser, run, say
-from robot.watchdog import Watchdog
+from robot.watchdog import Watchdog, stop_all
 
 PORTS = ("outA", "outB", "outC", "outD")
+_NO_WATCHDOG = (
+    "the process that would watch the program cannot start ({}): end other programs, or restart the"
+    " machine"
+)
+_UNWATCHED = (
+    "the watchdog cannot stop the {} motor, which has no method emergency_stop: if this program"
+    " hangs or is killed, only its power switch stops it. While the program works, `kickctl stop`,"
+    " a lost link and ^C stop it"
+)
 
 
 def _claim(root):
@@ -71,15 +81,34 @@ def main():
         metavar="FOLDER",
         help="where the kernel's devices are (default %(default)s)",
     )
+    arguments.add_argument(
+        "--motors",
+        metavar="MODULE:FACTORY",
+        help="drive your own motors, which this function returns, instead of the brick's; see"
+        " docs/own-motors.md",
+    )
     options = arguments.parse_args()
+    if options.motors is not None:
+        for name in ("left", "right", "sysfs"):
+            if getattr(options, name) != arguments.get_default(name):
+                arguments.error(
+                    "--{} is about the brick's motors, and --motors replaces them: leave one of"
+                    " them out".format(name)
+                )
+        return _drive_own(options)
     if options.left == options.right:
         arguments.error("both motors cannot be at {}".format(options.left))
+    return _drive_brick(options)
+
+
+def _drive_brick(options):
+    """Run with the brick's motors. Returns the exit status."""
     try:
         from robot.ev3 import Ev3Battery, Ev3Motor
     except Exception as error:  # noqa: BLE001 - so says python-ev3dev2 of an unknown machine
         return _give_up(
             "{}: this program needs ev3dev's python3-ev3dev2; on another machine start a simulated"
-            " robot: python3 -m sim_motor".format(error)
+            " robot: python3 -m sim_motor; or name your own motors with --motors".format(error)
         )
     # Before anything touches the motors. The watchdog, a fork of this process, keeps the claim for
     # as long as it may have to stop them.
@@ -90,13 +119,11 @@ def main():
                 options.sysfs
             )
         )
+    lights = Lights(options.sysfs)
     try:
-        watchdog = Watchdog(options.sysfs)
+        watchdog = Watchdog(lambda: stop_all(options.sysfs), lights.alarm)
     except OSError as error:
-        return _give_up(
-            "the process that would watch the program cannot start ({}): end other programs, or"
-            " restart the brick".format(error.strerror)
-        )
+        return _give_up(_NO_WATCHDOG.format(error.strerror))
     motors = (
         Ev3Motor("left", options.left, options.sysfs),
         Ev3Motor("right", options.right, options.sysfs),
@@ -113,11 +140,32 @@ def main():
     except OSError as error:
         say("the battery cannot be watched: {}".format(error), sys.stderr)
         battery = None
-    panels = (watchdog, Lights(options.sysfs), BackButton(), Notify(os.environ))
+    panels = (watchdog, lights, BackButton(), Notify(os.environ))
     try:
         return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
     finally:
         alone.close()
+
+
+def _drive_own(options):
+    """Run with an engineer's own motors. Returns the exit status."""
+    try:
+        motors, battery, faults = own_motors.load(options.motors)
+    except own_motors.NoMotors as error:
+        return _give_up(str(error))
+    for fault in faults:
+        say(fault, sys.stderr)  # the first tick turns this into a fault, as with the brick's motors
+    watchdogs = []
+    unwatched = own_motors.unwatched(motors)
+    if unwatched:
+        say(_UNWATCHED.format(" and the ".join(unwatched)), sys.stderr)
+    if len(unwatched) < len(motors):
+        try:
+            watchdogs.append(Watchdog(lambda: own_motors.stop_all(motors), lambda: None))
+        except OSError as error:
+            return _give_up(_NO_WATCHDOG.format(error.strerror))
+    panels = (*watchdogs, Notify(os.environ))
+    return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
 
 
 if __name__ == "__main__":

@@ -66,6 +66,8 @@ class Ev3Motor(Motor):
         root: Where the kernel's classes of devices are.
     """
 
+    model = DRIVER
+
     def __init__(self, name, port, root=SYSFS):
         self._label = "{} motor ({})".format(name, port)
         self._port = port

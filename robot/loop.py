@@ -6,7 +6,7 @@ In this order: read the angles, step the neurons under a kick, limit the duties,
 import random
 from bisect import bisect_left
 from collections import deque, namedtuple
-from math import cos, pi, sin
+from math import cos, isfinite, pi, sin
 
 from robot.blackbox import BlackBox
 from robot.errors import Refused
@@ -67,6 +67,7 @@ class Loop(object):
         overruns: How many ticks ended after the next deadline.
         clamped: How many time steps were outside of the allowed range, see `clamp_step`.
         done: Set it to end `run`.
+        motor: The model of both motors; empty if they do not say it, or differ.
         incurable: Why no fault can be cleared while this program runs; empty if one can.
         epoch: When the loop was made, on the clock, s. Times in records count from here.
         deadline: When the next tick is to begin, on the clock, s.
@@ -83,6 +84,8 @@ class Loop(object):
         self.missed = self.overruns = self.clamped = 0
         self.done = False
         self.incurable = ""
+        models = {motor.model for motor in motors}
+        self.motor = models.pop() if len(models) == 1 else ""
         self._power = Power(battery)
         self._random = random.Random(seed)
         self._sides = [
@@ -164,6 +167,8 @@ class Loop(object):
         """One wheel's tick, from its angle to its duty cycle in %. Raises MotorFault."""
         wheel, motor, travel = side
         wheel.phi = phi = polarity * motor.angle_rad()
+        if not isfinite(phi):
+            raise MotorFault("the {} motor's angle is no number: {}".format(wheel.side, phi))
         travel.append(phi)
         if self.safety.state != RUNNING:
             wheel.rest()

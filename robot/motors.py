@@ -14,7 +14,19 @@ class Motor:
     """One wheel's motor, on its own axis.
 
     Positive is the motor's own positive turn, also if it is mounted mirrored.
+
+    Attributes:
+        model: Which motor it is, as a name that hosts look up in their motors files; empty if it
+            has none.
+        emergency_stop: A motor that another process can stop has a method of this name, without
+            arguments. The watchdog, a fork of the program, calls it when the program hangs or has
+            died. It must return at once, and may be called as often as one likes. The method may
+            use files, and descriptors that were open before the fork, but no threads. None: the
+            watchdog cannot stop this motor.
     """
+
+    model = ""
+    emergency_stop = None
 
     def angle_rad(self):
         """The tacho's angle.

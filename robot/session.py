@@ -213,7 +213,7 @@ class Session(object):
             oldest_tick=loop.blackbox.oldest_tick,
             clock_s=loop.clock.now() - loop.epoch,
         )
-        answer.update(machine=_MACHINE)
+        answer.update(machine=_MACHINE, motor=loop.motor)
         return wire.encode_json(wire.HELLO, answer)
 
     def _authenticate(self, message):

@@ -16,7 +16,6 @@ import signal
 import socket
 import time
 
-from robot.lights import Lights
 from robot.motors import MotorFault
 from robot.safety import RUNNING
 
@@ -129,20 +128,26 @@ def _tell_stopped(link):
 class Watchdog(object):
     """The loop's end of the link to its watchdog; a panel of the program.
 
-    The watchdog is a fork of this process: create it before the process opens anything else.
+    The watchdog is a fork of this process: create it before the process opens anything else but
+    what stops the motors.
+
+    Args:
+        stop: Stops every motor, in the watchdog's process. It returns a list with a line for each
+            motor that could not be stopped.
+        alarm: Called in the watchdog's process when it has stopped the motors on its own account.
 
     Attributes:
         pid: The watchdog's process id.
     """
 
-    def __init__(self, root):
+    def __init__(self, stop, alarm):
         self._link, other = socket.socketpair()
         self._fed_tick = None
         self._unanswered = 0
         self.pid = os.fork()
         if self.pid == 0:
             self._link.close()
-            _be_watchdog(other, root)
+            _be_watchdog(other, stop, alarm)
         other.close()
         self._link.setblocking(False)
 
@@ -238,7 +243,7 @@ def _say(text):
         pass
 
 
-def _be_watchdog(link, root):
+def _be_watchdog(link, stop_motors, alarm):
     """What the forked process does, until it ends."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         # They are meant for the loop; the watchdog waits for its end.
@@ -246,13 +251,13 @@ def _be_watchdog(link, root):
     said = []
 
     def stop(reason):
-        failed = stop_all(root)
+        failed = stop_motors()
         words = "watchdog: {}; {}\n".format(
             reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped"
         )
         if reason and said[-1:] != [words]:
             said[:] = [words]
-            Lights(root).alarm()
+            alarm()
             _say(words)
         return not failed
 
@@ -262,6 +267,6 @@ def _be_watchdog(link, root):
         watch(link, stop)
     except BaseException:  # noqa: BLE001 - the motors come first, with every error
         status = 1
-        stop_all(root)
+        stop_motors()
     finally:
         os._exit(status)

@@ -55,7 +55,7 @@ class SimBrick:
         scene: Scene | None = None,
     ) -> None:
         random = Random(f"brick {seed}")
-        published = load(motor) if isinstance(motor, str) else motor
+        model, published = (motor, load(motor)) if isinstance(motor, str) else ("", motor)
         open_v = _checked(published.battery_v if battery_v is None else battery_v)
         self.clock: Clock = VirtualClock(seed, jitter=jitter) if clock is None else clock
         self.seed = seed
@@ -69,7 +69,7 @@ class SimBrick:
             angle, gap = random.uniform(0, 2 * pi), random.uniform(-half, half)
             if scene is not None:
                 angle = 0.0 if name == "left" else side * scene.apart
-            return SimMotor(name, self.clock, constants, open_v, side, angle, gap)
+            return SimMotor(name, self.clock, constants, open_v, side, angle, gap, model)
 
         self.motors = (specimen("left", mount[0]), specimen("right", mount[1]))
         self.battery = SimBattery(open_v, published.source_resistance, self.motors)

@@ -48,6 +48,7 @@ class SimMotor(Motor):
         mount: -1 if it is mounted mirrored, else 1.
         angle: The motor's angle, rad.
         gap: How far the motor is ahead of its wheel, within the backlash, rad.
+        model: The name of its table in a motors file; empty if it has none.
     """
 
     def __init__(
@@ -59,10 +60,12 @@ class SimMotor(Motor):
         mount: int = 1,
         angle: float = 0.0,
         gap: float = 0.0,
+        model: str = "",
     ) -> None:
         if mount not in {1, -1}:
             raise ValueError(f"a motor's mount is 1 or -1 (mirrored), not {mount!r}")
         self.constants = constants
+        self.model = model
         self.mount = mount
         self.world: World | None = None
         self.state = np.zeros(6)

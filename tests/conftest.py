@@ -29,9 +29,11 @@ os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
 # runs them after all others, so that nothing that computes slows them down.
 REAL_TIME = (
     "tests/api/test_listeners.py",
+    "tests/api/test_own_motors_page.py",
     "tests/cli/test_desk.py",
     "tests/contract/test_motor.py",
     "tests/deploy/",
+    "tests/link/test_own_motors.py",
     "tests/link/test_program_start.py",
     "tests/link/test_robots_line.py",
     "tests/link/test_serial.py",

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from host.commands._motor import add_motor
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
 
@@ -14,19 +15,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "primitive", choices=("forward", "backward", "spin-left", "spin-right", "stopped")
     )
+    add_motor(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Start the robot if it does not run, and drive there. Returns 1 if it did not get there."""
     from host.kicking.outcome import require_running
     from host.kicking.primitives import drive
+    from host.kicking.robot_motor import motor_of
 
     with robot_of(options, moves=True) as robot:
+        # Before anything moves.
+        motor = None if options.primitive == "stopped" else motor_of(robot, options.motor)
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)
         with recorded(robot, "drive") as recording:
-            result = drive(robot, recording.log, options.primitive)
+            result = drive(robot, recording.log, options.primitive, motor)
         result.update(brick=robot.link.uri, seed=robot.hello["seed"])
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
     if result["k"] != result["k_before"]:

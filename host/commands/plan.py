@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from host.commands._motor import add_motor
 from host.commands._terminal import robot_of, show
 
 if TYPE_CHECKING:
     from host.client.robot import Robot
+    from sim_motor.constants import Constants
 
 HELP = "say which kick would turn each wheel to a direction, and when; nothing is kicked"
 
@@ -18,22 +20,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to", choices=("forward", "backward"), required=True, help="the direction"
     )
+    add_motor(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Watch the wheels, and say the plan for each."""
     from host.errors import NotDone
     from host.kicking.outcome import require_running, wait_settled
+    from host.kicking.robot_motor import motor_of
     from robot.kicks import WHEELS
 
     with robot_of(options, observe=True) as robot:
+        motor = motor_of(robot, options.motor)
         require_running(robot)
         if not wait_settled(robot):
             raise NotDone(
                 "the wheels did not settle, so there is no steady motion to reverse",
                 "are k and tau_s those of a steady motion? see: kickctl params list",
             )
-        wheels = {side: _plan(robot, side, options.to) for side in WHEELS}
+        wheels = {side: _plan(robot, side, options.to, motor) for side in WHEELS}
         origin = {
             "params": robot.status()["params"],
             "brick": robot.link.uri,
@@ -47,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
+def _plan(robot: Robot, side: str, wanted: str, motor: Constants) -> dict[str, Any]:
     """A wheel's heading, phase and speed, and its kick; None if it already goes as wanted."""
     from math import pi
 
@@ -57,7 +62,7 @@ def _plan(robot: Robot, side: str, wanted: str) -> dict[str, Any]:
 
     present = heading_of([getattr(record, side + "_phi_rad") for record in robot.recent()])
     params = robot.status()["params"]
-    chosen = None if present == wanted else plan(robot, present, wanted, params)
+    chosen = None if present == wanted else plan(robot, present, wanted, params, motor)
     phi, step = course(robot, side)
     state = {
         "heading": present,

@@ -9,7 +9,7 @@ import json
 import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from functools import cache
 from math import degrees, tau
 from pathlib import Path
@@ -31,6 +31,7 @@ from host.util.provenance import sources
 from host.util.whole_files import write_text
 from robot.params import Params
 from robot.user_folders import cache_folder
+from sim_motor.constants import Constants, load
 
 SURE = 0.99
 # The wheels of a plan's own map: enough to tell 99 % from 97 % in one direction. Between small
@@ -192,28 +193,35 @@ def _width(plan: Plan) -> float:
 
 
 def reversal(
-    before: int, values: dict[str, Any], say: Callable[[str], None] = lambda words: None
+    before: int,
+    values: dict[str, Any],
+    say: Callable[[str], None] = lambda words: None,
+    motor: Constants | None = None,
 ) -> Plan | None:
     """The plan for a wheel that runs in this direction.
 
     A map takes some seconds to compute. The plan is then kept in
-    ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json for these parameters and these sources.
+    ${XDG_CACHE_HOME:-~/.cache}/kickctl/plans.json for these parameters, this motor and these
+    sources.
 
     Args:
         before: The direction, 1 or -1.
         values: The robot's parameters by name.
         say: Called with a message before a map is computed.
+        motor: The constants of the robot's motors; by default those published for the EV3.
 
     Returns:
         The plan; None if no quenched kick is sure.
     """
     chosen = tuple(values[name] for name in _MAPPED)
-    key = json.dumps([sources(), before, *chosen], allow_nan=False)
+    motor = motor or load()
+    # By value: the motor of this name may have other constants tomorrow.
+    key = json.dumps([sources(), before, *chosen, astuple(motor)], allow_nan=False)
     kept = _kept()
     if key not in kept:
         way = "forward" if before > 0 else "backward"
         say(f"computing which kicks reverse a wheel that rolls {way}: some seconds, only once")
-        plan = _compute_plan(before, *chosen)
+        plan = _compute_plan(before, motor, *chosen)
         _keep({**_kept(), key: plan and asdict(plan)})
         return plan
     return kept[key] and Plan(
@@ -243,27 +251,31 @@ def _keep(plans: dict[str, Any]) -> None:
 
 
 @cache
-def _compute_plan(before: int, *values: float) -> Plan | None:
-    rows = _kick_map(*values)
+def _compute_plan(before: int, motor: Constants, *values: float) -> Plan | None:
+    rows = _kick_map(motor, *values)
     plan = choose(rows, before)
     if plan is not None and plan.window_rad is None:
         return plan
     kicks = _by_kick(rows, before)
     best = sorted(kicks, key=lambda kick: -count(kicks[kick])[0])[:_WINDOW_CANDIDATES]
     return choose(
-        [row for kick in best for row in _kick_wheels(*kick, _params(values), _WINDOW_WHEELS)],
+        [
+            row
+            for kick in best
+            for row in _kick_wheels(*kick, _params(values), motor, _WINDOW_WHEELS)
+        ],
         before,
     )
 
 
 @cache
-def _kick_map(*values: float) -> list[Row]:
+def _kick_map(motor: Constants, *values: float) -> list[Row]:
     params = _params(values)
     return [
         row
         for mode, sign in KINDS
         for ticks in lengths(params.tick_s)
-        for row in _kick_wheels(mode, sign, ticks, params, _WHEELS)
+        for row in _kick_wheels(mode, sign, ticks, params, motor, _WHEELS)
     ]
 
 
@@ -273,11 +285,13 @@ def _params(values: tuple[float, ...]) -> Params:
     return params
 
 
-def _kick_wheels(mode: str, sign: int, ticks: int, params: Params, wheels: int) -> list[Row]:
+def _kick_wheels(
+    mode: str, sign: int, ticks: int, params: Params, motor: Constants, wheels: int
+) -> list[Row]:
     kick: KickCell = {"mode": mode, "sign": sign, "ticks": ticks}
     batches = range(wheels // _BATCH)
     return [
         {**kick, **row}
         for batch in batches
-        for row in tally(mode, sign, ticks, _BATCH, _MAP_SEED + batch, params=params)
+        for row in tally(mode, sign, ticks, _BATCH, _MAP_SEED + batch, params=params, motor=motor)
     ]

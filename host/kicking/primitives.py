@@ -27,6 +27,7 @@ from host.kicking.outcome import (
     wait_settled,
 )
 from host.kicking.planning import Plan, reversal
+from host.kicking.robot_motor import motor_of
 from host.logs.log import Log
 from host.logs.motion import heading
 from robot.kicks import (
@@ -38,6 +39,7 @@ from robot.kicks import (
     PULSE,
     WHEELS,
 )
+from sim_motor.constants import Constants
 
 PRIMITIVES = {
     "forward": (FORWARD, FORWARD),
@@ -69,25 +71,29 @@ def headings(robot: Robot, log: Log) -> dict[str, str]:
     return {side: heading(log, side, log.records[-1].tick) for side in WHEELS}
 
 
-def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
+def drive(robot: Robot, log: Log, primitive: str, motor: Constants | None = None) -> dict[str, Any]:
     """Bring a robot that runs into a primitive.
 
     Args:
         robot: The robot.
         log: A log that records it already.
         primitive: A key of PRIMITIVES.
+        motor: The constants of its motors; by default those of the motor that the robot says it
+            has. To stop it, nobody has to know them.
 
     Returns:
         {primitive, reached, before, after, kicks, k, k_before}: whether the robot reached it, the
         headings of the wheels before and after, each kick's Outcome as plain data, and k.
 
     Raises:
-        KickctlError: The robot does not run, or cannot be reached.
+        KickctlError: The robot does not run, or cannot be reached, or its motor is not known.
     """
+    if motor is None and primitive != "stopped":
+        motor = motor_of(robot)
     wanted = dict(zip(WHEELS, PRIMITIVES[primitive], strict=True))
     before = headings(robot, log)
     k_before = float(robot.status()["params"]["k"])
-    kicks = _stop(robot, log) if primitive == "stopped" else _roll(robot, log, wanted)
+    kicks = _stop(robot, log) if motor is None else _roll(robot, log, wanted, motor)
     after = headings(robot, log)
     return {
         "primitive": primitive,
@@ -100,7 +106,7 @@ def drive(robot: Robot, log: Log, primitive: str) -> dict[str, Any]:
     }
 
 
-def _roll(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
+def _roll(robot: Robot, log: Log, wanted: dict[str, str], motor: Constants) -> list[Outcome]:
     """Kick the wheels that do not head as wanted until they do."""
     _restore_k(robot, log)
     kicks: list[Outcome] = []
@@ -114,13 +120,15 @@ def _roll(robot: Robot, log: Log, wanted: dict[str, str]) -> list[Outcome]:
             _kick(
                 robot,
                 log,
-                {side: plan(robot, present[side], wanted[side], params) for side in wrong},
+                {side: plan(robot, present[side], wanted[side], params, motor) for side in wrong},
             )
         )
     return kicks
 
 
-def plan(robot: Robot, present: str, wanted: str, params: dict[str, Any] | None) -> Plan:
+def plan(
+    robot: Robot, present: str, wanted: str, params: dict[str, Any] | None, motor: Constants
+) -> Plan:
     """The kick that turns a wheel from one heading to another.
 
     Args:
@@ -128,11 +136,12 @@ def plan(robot: Robot, present: str, wanted: str, params: dict[str, Any] | None)
         present: The wheel's heading.
         wanted: The other heading.
         params: The robot's parameters by name; None for a kick that needs no map.
+        motor: The constants of the robot's motors.
     """
     if present == STOPPED:
         return Plan(PHASE, DEFAULT_TICKS[PHASE], SHIFT_TOWARD[wanted])
     planned = (
-        reversal(DIRECTIONS[present], params, robot.on_trouble)
+        reversal(DIRECTIONS[present], params, robot.on_trouble, motor)
         if params and present in DIRECTIONS
         else None
     )

@@ -104,7 +104,7 @@ def test_a_kick_that_dips_is_given_at_the_moment_at_which_it_reverses(only_a_kic
 
 def test_a_planned_kick_that_fails_is_repeated_and_at_last_the_membrane_is_inverted(monkeypatch):
     monkeypatch.setattr(
-        "host.kicking.primitives.reversal", lambda before, params, say: Plan(POSITION, 1)
+        "host.kicking.primitives.reversal", lambda before, params, say, motor: Plan(POSITION, 1)
     )
     kicks = reversals(1, 1, {"k": 8.0}, by_plan)[0]
     assert [kick["mode"] for kick in kicks][:3] == [POSITION] * 3
@@ -113,7 +113,7 @@ def test_a_planned_kick_that_fails_is_repeated_and_at_last_the_membrane_is_inver
 
 
 def test_where_no_quenched_kick_is_sure_the_membrane_is_inverted_at_once(monkeypatch):
-    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say: None)
+    monkeypatch.setattr("host.kicking.primitives.reversal", lambda before, params, say, motor: None)
     kicks = reversals(2, 1, {"k": 8.0}, by_plan)[0]
     assert {kick["mode"] for kick in kicks} == {MEMBRANE}
 
@@ -168,7 +168,7 @@ def test_a_resting_wheel_is_set_going_and_a_window_is_told(kickctl, monkeypatch)
     assert "phase kick by -135° of 4 ticks, at any phase; pushes a resting wheel forward;" in out
     monkeypatch.setattr(
         "host.kicking.primitives.reversal",
-        lambda before, params, say: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99),
+        lambda before, params, say, motor: Plan(PHASE, 9, 3 * pi / 4, (0.5, 1.5), 100, 99),
     )
     out = kickctl("plan", "--to", "backward", "--seed", "1")[1]
     assert "at a phase from 29° to 86°" in out

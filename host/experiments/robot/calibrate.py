@@ -22,13 +22,13 @@ from host.experiments.robot.calibrate_drive import (
     drive_about,
 )
 from host.experiments.robot.calibrate_rows import (
-    BASE,
     CHECK,
     RAMP,
     STEPS,
     Cell,
     Row,
     Tick,
+    base,
     drive_of,
     kinds,
     voltage,
@@ -36,6 +36,7 @@ from host.experiments.robot.calibrate_rows import (
 from host.experiments.robot.identification import Drive, break_away, follow, identify, middle
 from host.experiments.robot.motor_traits import constants_of
 from host.experiments.robot.motors_entry import Check, entry
+from host.kicking.robot_motor import model_of
 from host.logs.log import Log
 from host.runs.contract import Findings, Options, Setting
 from robot.kicks import PHASE, WHEELS
@@ -97,10 +98,12 @@ def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Tick]:
     finally:
         robot.stop()
         robot.set(**before)
-    return _ticks(log, marks, before, battery_v)[first:end]
+    return _ticks(log, marks, before, battery_v, model_of(robot))[first:end]
 
 
-def _ticks(log: Log, marks: Marks, params: dict[str, Any], battery_v: float | None) -> list[Tick]:
+def _ticks(
+    log: Log, marks: Marks, params: dict[str, Any], battery_v: float | None, motor: str
+) -> list[Tick]:
     """All ticks of the log; their angles are the middles of what the readings stand for."""
     starts = np.array([place for place, _ in marks])
     stretches = np.maximum(np.searchsorted(starts, np.arange(len(log)), side="right") - 1, 0)
@@ -119,6 +122,7 @@ def _ticks(log: Log, marks: Marks, params: dict[str, Any], battery_v: float | No
             "right_deg": right,
             "right_duty_pct": record.right_duty_pct,
             "battery_v": battery_v,
+            "motor": motor,
             "date": date,
         }
         for stretch, record, left, right in zip(
@@ -129,7 +133,7 @@ def _ticks(log: Log, marks: Marks, params: dict[str, Any], battery_v: float | No
 
 def report(rows: list[Row], setting: Setting) -> Findings:
     """Each wheel's traits, how well they predict the run as in the paper, and a motors file."""
-    published, battery_v, kind = load(BASE), voltage(rows), kinds(rows)
+    published, battery_v, kind = load(base(rows)), voltage(rows), kinds(rows)
     found, check = {}, {}
     for side in WHEELS:
         drive = drive_of(rows, side)
@@ -147,7 +151,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         "rms_deg": {side: one.rms_deg for side, one in found.items()},
         "check": check,
     }
-    motors = entry(found, check, published, battery_v, rows[0]["date"])
+    motors = entry(found, check, rows, battery_v)
     return Findings([], numbers, {"motors.toml": motors})
 
 

@@ -8,10 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.experiments.robot.identification import Drive
+from host.kicking.robot_motor import EV3_ENTRY, known_entry
 from sim_motor.constants import load
-
-# The published motor that says what a log does not.
-BASE = "pybricks"
 
 Kind = Literal["warm-up", "steps", "ramp", "check"]
 WARM_UP: Kind = "warm-up"
@@ -38,6 +36,7 @@ class Tick(TypedDict):
         right_deg: angle of the right wheel (degrees).
         right_duty_pct: duty cycle of the right motor (%).
         battery_v: voltage of the battery at rest (V); None if the robot cannot measure it.
+        motor: the model of its motors; empty if the robot does not say it.
         date: when the drive was done (UTC).
     """
 
@@ -49,6 +48,7 @@ class Tick(TypedDict):
     right_deg: float
     right_duty_pct: int
     battery_v: float | None
+    motor: str
     date: str
 
 
@@ -59,7 +59,12 @@ class Row(Cell, Tick):
 def voltage(rows: list[Row]) -> float:
     """The battery's voltage at rest (V), or the nominal one if the robot cannot measure it."""
     measured = rows[0]["battery_v"]
-    return load(BASE).battery_v if measured is None else measured
+    return load(base(rows)).battery_v if measured is None else measured
+
+
+def base(rows: list[Row]) -> str:
+    """The entry that says what a log does not: the motor's own, or the EV3's if it has none."""
+    return known_entry(rows[0]["motor"]) or EV3_ENTRY
 
 
 def drive_of(rows: list[Row], side: str) -> Drive:

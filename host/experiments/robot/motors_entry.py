@@ -7,13 +7,15 @@ from typing import TypedDict
 
 import numpy as np
 
-from host.experiments.robot.calibrate_rows import BASE
+from host.experiments.robot.calibrate_rows import Row, base
 from host.experiments.robot.identification import Found
 from host.experiments.robot.motor_traits import Traits, constants_of
-from sim_motor.constants import Constants
+from host.kicking.robot_motor import EV3
+from sim_motor.constants import load, names
 
 NAME = "mine"
 ADOPT = "install -D -m 644 motors.toml ~/.config/kickctl/motors.toml"
+APPEND = "cat motors.toml >>~/.config/kickctl/motors.toml"
 
 
 class Check(TypedDict):
@@ -28,14 +30,21 @@ class Check(TypedDict):
     way: float
 
 
+def name_of(model: str) -> str:
+    """The name of a measured motor's table: its model, under which `plan` looks for it.
+
+    It is NAME for the EV3's motor and for published ones, whose own numbers stay in force, and for
+    a model that is no name for a table.
+    """
+    known = model == EV3 or model in names()
+    return model if model.isidentifier() and model.isascii() and not known else NAME
+
+
 def entry(
-    found: dict[str, Found],
-    check: dict[str, Check],
-    published: Constants,
-    battery_v: float,
-    date: str,
+    found: dict[str, Found], check: dict[str, Check], rows: list[Row], battery_v: float
 ) -> str:
     """The table of a motors file: the mean of both wheels, and where each number comes from."""
+    name, date, published = name_of(rows[0]["motor"]), rows[0]["date"], load(base(rows))
     mean = Traits(*np.mean([one.traits for one in found.values()], axis=0).tolist())
     c = constants_of(mean, published, battery_v)
 
@@ -49,8 +58,8 @@ def entry(
             f" {unit}, 95 %"
         )
 
-    unseen = f"as of {BASE}: a log of duties and angles does not show it by itself"
-    rows = {
+    unseen = f"as of {base(rows)}: a log of duties and angles does not show it by itself"
+    numbers = {
         "torque_constant": (c.torque_constant, "N m/A", unseen),
         "emf_constant": (c.emf_constant, "V s/rad", seen("speed_per_v", "rad/s/V")),
         "resistance": (c.resistance, "ohm", unseen),
@@ -66,13 +75,14 @@ def entry(
     }
     lines = [
         f'{key} = [{value:.6g}, "{unit}", "{source}"]'
-        for key, (value, unit, source) in rows.items()
+        for key, (value, unit, source) in numbers.items()
     ]
     worst = max(one.rms_deg for one in found.values())
     ahead = max(one["rms_deg"] for one in check.values())
-    adopt = f"# sim://?motor={NAME} is this robot, once you have said, in this folder: {ADOPT}"
+    adopt = f"# sim://?motor={name} is this robot, once you have said, in this folder: {ADOPT}"
+    append = f"# If you have that file already, this adds to it: {APPEND}"
     off = (
         f"# Off by {worst:.2f} degrees (rms; one count of the encoder makes 0.29) where it was"
         f" fitted, by {ahead:.2f} where it was not."
     )
-    return "\n".join([adopt, off, f"[{NAME}]", *lines, ""])
+    return "\n".join([adopt, append, off, f"[{name}]", *lines, ""])

@@ -12,7 +12,7 @@ from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from host.experiments.robot.calibrate import Numbers
-from host.experiments.robot.calibrate_rows import BASE, CHECK, STEPS, Row, drive_of, kinds
+from host.experiments.robot.calibrate_rows import CHECK, STEPS, Row, base, drive_of, kinds
 from host.experiments.robot.identification import Drive, follow
 from host.experiments.robot.motor_traits import Traits, constants_of
 from host.figures.style import COLOURS, SIZE, styled
@@ -40,7 +40,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     numbers: Numbers = findings.numbers
     kind = kinds(rows)
     drives = {side: drive_of(rows, side) for side in WHEELS}
-    models = {side: follow(drive, _constants(numbers, side)) for side, drive in drives.items()}
+    published = load(base(rows))
+    models = {
+        side: follow(drive, _constants(numbers, side, published)) for side, drive in drives.items()
+    }
     stretches = drives[WHEELS[0]].stretches
     last_steps = np.unique(stretches[kind == STEPS])[-_STRETCHES:]
     columns = (
@@ -71,8 +74,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     return figure
 
 
-def _constants(numbers: Numbers, side: str) -> Constants:
-    return constants_of(Traits(**numbers["traits"][side]), load(BASE), numbers["battery_v"])
+def _constants(numbers: Numbers, side: str, published: Constants) -> Constants:
+    return constants_of(Traits(**numbers["traits"][side]), published, numbers["battery_v"])
 
 
 def _speed(angles: Array, times: Array) -> Array:

@@ -192,7 +192,9 @@ def test_a_plan_of_other_sources_is_not_taken(monkeypatch):
 def test_only_the_newest_plans_are_kept(monkeypatch):
     monkeypatch.setattr(planning, "_KEPT", 2)
     asked = []
-    monkeypatch.setattr(planning, "_compute_plan", lambda before, *chosen: asked.append(chosen[2]))
+    monkeypatch.setattr(
+        planning, "_compute_plan", lambda before, motor, *chosen: asked.append(chosen[2])
+    )
     for k in (5.0, 6.0, 7.0, 7.0, 6.0, 5.0):
         reversal(1, {**DEFAULTS, "k": k})
     assert asked == [5.0, 6.0, 7.0, 5.0]

@@ -69,8 +69,8 @@ def alive(pid):
 
 _LOOP = """
 import os, signal, sys, time
-from robot.watchdog import Watchdog
-dog = Watchdog(sys.argv[1])
+from robot.watchdog import Watchdog, stop_all
+dog = Watchdog(lambda: stop_all(sys.argv[1]), lambda: None)
 print(dog.pid, flush=True)
 end = sys.argv[2]
 for beat in range(10**6):
@@ -116,7 +116,7 @@ def test_motors_stop_when_the_loop_is_killed_or_frozen(tree, number):
 
 
 def test_a_watchdog_that_was_killed_is_noticed_by_the_loop(tree):
-    dog = Watchdog(str(tree))
+    dog = Watchdog(lambda: stop_all(str(tree)), lambda: None)
     dog.feed()
     os.kill(dog.pid, signal.SIGKILL)
     with pytest.raises(MotorFault, match="watchdog"):
@@ -126,7 +126,7 @@ def test_a_watchdog_that_was_killed_is_noticed_by_the_loop(tree):
 
 
 def test_a_watchdog_that_was_frozen_is_noticed_by_the_loop(tree):
-    dog = Watchdog(str(tree))
+    dog = Watchdog(lambda: stop_all(str(tree)), lambda: None)
     os.kill(dog.pid, signal.SIGSTOP)
     with pytest.raises(MotorFault, match="does not answer"):
         for _ in range(MOST_UNANSWERED + 1):
@@ -136,7 +136,7 @@ def test_a_watchdog_that_was_frozen_is_noticed_by_the_loop(tree):
 
 
 def test_a_loop_that_froze_and_came_back_finds_itself_stopped_and_can_go_on(tree):
-    dog = Watchdog(str(tree))
+    dog = Watchdog(lambda: stop_all(str(tree)), lambda: None)
     for _ in range(3):
         run(tree)
         dog.feed()
@@ -149,7 +149,7 @@ def test_a_loop_that_froze_and_came_back_finds_itself_stopped_and_can_go_on(tree
 
 
 def test_a_program_that_takes_long_to_start_is_not_taken_for_dead(tree):
-    dog = Watchdog(str(tree))
+    dog = Watchdog(lambda: stop_all(str(tree)), lambda: None)
     time.sleep(3 * SILENCE_S)
     for _ in range(3):
         dog.feed()
@@ -295,7 +295,7 @@ def test_words_that_nobody_takes_do_not_keep_the_watchdog_from_its_work(tree, wh
 
 def test_a_watchdog_that_is_stuck_does_not_keep_the_program_from_ending(tree, monkeypatch):
     monkeypatch.setattr(watchdog_module, "FAREWELL_S", 0.1)
-    dog = Watchdog(str(tree))
+    dog = Watchdog(lambda: stop_all(str(tree)), lambda: None)
     dog.feed()
     monkeypatch.setattr(watchdog_module.signal, "SIGCONT", 0)  # so that nothing wakes it
     os.kill(dog.pid, signal.SIGSTOP)
