@@ -3,6 +3,7 @@
 PYTHON ?= python3
 PYTHON35 ?= python3.5
 BIN := .venv/bin
+INSTALL := pip install --quiet --disable-pip-version-check
 STAMP := .venv/.complete
 # The locker itself is no dependency of the project: it lives in a venv of its own.
 LOCKER := uv==0.13.9
@@ -14,98 +15,109 @@ PEERS := build/peers
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak stress mutants lock clean
+.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak \
+	stress mutants lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
-	@echo 'PYTHON=... chooses the interpreter that .venv is made with (now: $(PYTHON); 3.11 or newer).'
+	@echo 'PYTHON=... names the Python of .venv, 3.11 or newer (now: $(PYTHON)).'
 
 setup: $(STAMP) ## make .venv with the locked dependencies and kickctl in it
 
 demo: $(STAMP) ## watch the simulated robot being kicked
 	$(BIN)/kickctl demo
 
-reproduce: $(STAMP) ## measure all of the paper's claims on the simulated robot and on the model, and write a report
+reproduce: $(STAMP) ## measure all of the paper's claims, and write a report
 	$(BIN)/kickctl reproduce
 
-# On all cores. Tests in real time run after the others, so that nothing that computes slows them down.
+# On all cores. Tests in real time run after the others, so that nothing that computes slows them.
 test: $(STAMP) ## run the tests
-	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal -m 'not realtime and not brick'
-	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal -m 'realtime and not brick'
+	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal \
+		-m 'not realtime and not brick'
+	$(BIN)/python -m pytest tests --ignore=tests/lint -n auto --dist worksteal \
+		-m 'realtime and not brick'
 
 # Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
 test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 or newer
-	@$(PYTHON35) -c 'import sys; sys.exit(sys.version_info < (3, 5))' 2>/dev/null || { echo "make test-py35: '$(PYTHON35)' is no Python\
-	 3.5 or newer. Name one: make test-py35 PYTHON35=/path/to/python3.5" >&2; exit 1; }
-	@$(PYTHON35) -c 'import hypothesis, pytest' 2>/dev/null || { echo "make test-py35: '$(PYTHON35)' has no pytest or no hypothesis.\
-	 The last for 3.5: $(PYTHON35) -m pip install pytest==6.1.2 hypothesis==5.33.2" >&2; exit 1; }
-	$(PYTHON35) -m pytest -c /dev/null --rootdir=. --import-mode=importlib -p no:cacheprovider -W error -q \
-		$$($(BIN)/python -m tests.lint.sources)
+	@$(PYTHON35) -c 'import sys; sys.exit(sys.version_info < (3, 5))' 2>/dev/null || { \
+		echo "make test-py35: '$(PYTHON35)' is no Python 3.5 or newer. Name one:\
+	 make test-py35 PYTHON35=/path/to/python3.5" >&2; exit 1; }
+	@$(PYTHON35) -c 'import hypothesis, pytest' 2>/dev/null || { \
+		echo "make test-py35: '$(PYTHON35)' has no pytest or no hypothesis. The last for 3.5:\
+	 $(PYTHON35) -m pip install pytest==6.1.2 hypothesis==5.33.2" >&2; exit 1; }
+	$(PYTHON35) -m pytest -c /dev/null --rootdir=. --import-mode=importlib -p no:cacheprovider \
+		-W error -q $$($(BIN)/python -m tests.lint.sources)
 
 lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the house
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	@command -v shellcheck >/dev/null || { echo "make lint: needs shellcheck. Install it (Debian, Ubuntu: apt-get install shellcheck) and\
-	 try again." >&2; exit 1; }
-	shellcheck deploy.sh robot/service/brick.sh .ci/run
+	@command -v shellcheck >/dev/null || { echo "make lint: needs shellcheck. Install it (Debian,\
+	 Ubuntu: apt-get install shellcheck) and try again." >&2; exit 1; }
+	shellcheck --check-sourced --external-sources deploy.sh .ci/run
+	cat robot/service/change.sh robot/service/brick.sh | shellcheck -
 	$(BIN)/python -m pytest tests/lint
 
 bench: $(STAMP) ## measure the speed of what has to be fast
 	$(BIN)/python -m tests.bench
 
-bench-arm: $(STAMP) ## count what a tick costs on an emulated ARM926 (needs qemu-user and, the first time, root and debootstrap)
+bench-arm: $(STAMP) ## count what a tick costs on an emulated ARM926; docs/arm.md says what it needs
 	$(BIN)/python -m tests.bench_arm
 
-bench-theory: $(PEERS)/.complete ## measure the analytic model's engine against heyoka, diffrax, numba and scipy
+bench-theory: $(PEERS)/.complete ## compare the model's engine with heyoka, diffrax, numba and scipy
 	$(PEERS)/bin/python -m tests.bench_theory
 
 faults: $(STAMP) ## try every fault twenty times on live motors, and print how long they ran on
 	$(BIN)/python -m tests.faults
 
-soak: $(STAMP) ## kick, cut and break a robot for an hour (SOAK_S=... seconds), and see whether it loses a tick or grows
+soak: $(STAMP) ## kick, cut and break a robot for an hour (SOAK_S=... seconds), and count lost ticks
 	$(BIN)/python -m tests.soak
 
-stress: $(STAMP) ## run the tests that need real time 20 times (STRESS_RUNS=...) while all cores are busy
+stress: $(STAMP) ## run the tests in real time 20 times (STRESS_RUNS=...) while all cores are busy
 	$(BIN)/python -m tests.stress
 
 mutants: $(MUTANTS)/.complete ## see whether the tests notice every small change to robot/safety.py
 	$(MUTANTS)/bin/python -m tests.mutants
 
 lock: .venv-lock/.complete ## renew requirements.lock with the newest versions that fit together
-	.venv-lock/bin/uv pip compile pyproject.toml --group dev --output-file requirements.lock --upgrade --quiet --universal \
-		--python-version 3.11 --generate-hashes --no-emit-index-url --custom-compile-command 'make lock'
+	.venv-lock/bin/uv pip compile pyproject.toml --group dev --output-file requirements.lock \
+		--upgrade --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+		--custom-compile-command 'make lock'
 
 clean: ## remove everything that can be made again
-	rm -rf .venv .venv-lock build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .coverage htmlcov
+	rm -rf .venv .venv-lock build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis \
+		.coverage htmlcov
 	find robot host sim_motor kickctl tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-# The stamp comes last and goes first, so an interrupted setup is never taken for a finished one: the next begins anew.
+# The stamp comes last and goes first: after an interrupted setup, the next begins from the start.
 $(STAMP): requirements.lock pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo "make setup: needs Python 3.11 or newer, and\
-	 '$(PYTHON)' is not ($$($(PYTHON) --version 2>&1)). Install one and name it: make setup PYTHON=python3.12" >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "make setup: '$(PYTHON)' has no venv module. Install it\
-	 (Debian, Ubuntu: apt-get install python3-venv) and try again." >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+		echo "make setup: needs Python 3.11 or newer, and '$(PYTHON)' is not\
+	 ($$($(PYTHON) --version 2>&1)). Install one and name it: make setup PYTHON=python3.12" >&2; \
+		exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "make setup: '$(PYTHON)' has no\
+	 venv module. Install it (Debian, Ubuntu: apt-get install python3-venv) and try again." >&2; \
+		exit 1; }
 	@test -f $@ && $(BIN)/python -m pip --version >/dev/null || $(PYTHON) -m venv --clear .venv
 	@rm -f $@
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(BIN)/python -m $(INSTALL) --require-hashes -r requirements.lock
+	$(BIN)/python -m $(INSTALL) --no-deps --no-build-isolation --editable .
 	@touch $@
 
 .venv-lock/.complete: Makefile
 	$(PYTHON) -m venv --clear .venv-lock
-	.venv-lock/bin/python -m pip install --quiet --disable-pip-version-check $(LOCKER)
+	.venv-lock/bin/python -m $(INSTALL) $(LOCKER)
 	@touch $@
 
 $(MUTANTS)/.complete: Makefile
 	$(PYTHON) -m venv --clear $(MUTANTS)
-	$(MUTANTS)/bin/python -m pip install --quiet --disable-pip-version-check $(MUTATOR)
+	$(MUTANTS)/bin/python -m $(INSTALL) $(MUTATOR)
 	@touch $@
 
 # Our own dependencies as locked, so that all engines run with the same numba, numpy and scipy.
 $(PEERS)/.complete: Makefile requirements.lock tests/bench_theory/requirements.txt
 	$(PYTHON) -m venv --clear $(PEERS)
-	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/bench_theory/requirements.txt
+	$(PEERS)/bin/python -m $(INSTALL) --require-hashes -r requirements.lock
+	$(PEERS)/bin/python -m $(INSTALL) -r tests/bench_theory/requirements.txt
 	@touch $@

@@ -250,7 +250,8 @@ class Checkout:
         shutil.copy(ROOT / "deploy.sh", self.folder)
         for path in (ROOT / "robot").glob("*.py"):
             shutil.copy(path, self.folder / "robot")
-        shutil.copytree(ROOT / "robot" / "service", self.folder / "robot" / "service")
+        for name in ("robot/service", "host/deploy"):
+            shutil.copytree(ROOT / name, self.folder / name)
 
     def environment(self, **more):
         """The environment of a program on this machine."""

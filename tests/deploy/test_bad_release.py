@@ -49,11 +49,31 @@ def test_a_first_release_that_dies_leaves_nothing_that_runs(brick, checkout):
     status, output = checkout.deploy()
     assert status == 5
     assert "RuntimeError: no" in output
-    assert "there was none before it" in output
+    assert "there was none before it; the brick sees no motor\n" in output
     assert (brick.runs(), brick.release()) == (None, None)
     params.write_bytes(sound)
     status, output = checkout.deploy()
     assert status == 0, output
+
+
+@pytest.mark.parametrize(
+    ("state", "words"),
+    [
+        ("", "the motors are off"),
+        ("running stalled", "motors may be on: motor0 reads 'running stalled'. Pull their cables"),
+        (None, "motors may be on: motor0 reads 'no state'. Pull their cables"),
+    ],
+)
+def test_the_motors_are_called_off_only_if_the_kernel_says_so(brick, checkout, state, words):
+    motor = brick.sysfs / "tacho-motor" / "motor0"
+    write(motor / "command", "")
+    if state is not None:
+        write(motor / "state", state + "\n" if state else "")
+    checkout.change("params", "\nraise RuntimeError('no')\n")
+    status, output = checkout.deploy()
+    assert status == 5
+    assert f"there was none before it; {words}" in output
+    assert (motor / "command").read_text(encoding="ascii") == "reset\n"
 
 
 def test_arguments_that_kill_the_program_are_taken_back(deployed, checkout):

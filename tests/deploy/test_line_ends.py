@@ -7,7 +7,14 @@ import pytest
 
 from tests.deploy.brick import ROOT
 
-FILES = ("deploy.sh", "robot/service/brick.sh", "robot/service/kickctl.service", "robot/loop.py")
+FILES = (
+    "deploy.sh",
+    "host/deploy/ssh.sh",
+    "robot/service/brick.sh",
+    "robot/service/change.sh",
+    "robot/service/kickctl.service",
+    "robot/loop.py",
+)
 
 
 @pytest.mark.parametrize("setting", ["core.autocrlf=true", "core.eol=crlf"])

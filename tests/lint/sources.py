@@ -15,6 +15,12 @@ def modules(*folders: str) -> list[str]:
     ]
 
 
+def scripts() -> list[str]:
+    """The Makefile and the shell scripts, relative to the root, in order."""
+    shell = (path for folder in ("robot", "host") for path in (ROOT / folder).rglob("*.sh"))
+    return ["Makefile", ".ci/run", *sorted(str(path.relative_to(ROOT)) for path in shell)]
+
+
 def robot_tests() -> list[str]:
     """What `make test-py35` runs.
 

@@ -11,7 +11,7 @@ from graphlib import TopologicalSorter
 
 import pytest
 
-from tests.lint.sources import ROOMS, ROOT, modules
+from tests.lint.sources import ROOMS, ROOT, modules, scripts
 
 # Which rooms, and which packages besides, a room may import; None leaves the packages open.
 MAY_IMPORT = {
@@ -20,7 +20,7 @@ MAY_IMPORT = {
     "host": ({"robot", "sim_motor", "host"}, None),
     "kickctl": ({"host", "kickctl"}, None),
 }
-LONGEST_FILE = 400
+LONGEST_FILE, LONGEST_LINE = 400, 100
 # In pieces, so that this file does not name them either.
 REGISTRIES = [
     ".".join(name)
@@ -157,9 +157,16 @@ def test_the_controller_itself_would_be_found() -> None:
     assert kinds == {"tanh", "1 + exp"}
 
 
-@pytest.mark.parametrize("module", modules(*ROOMS, "tests"), ids=str)
-def test_no_file_is_too_long_to_read(module: str) -> None:
-    assert len((ROOT / module).read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
+@pytest.mark.parametrize("file", [*modules(*ROOMS, "tests"), *scripts()], ids=str)
+def test_no_file_is_too_long_to_read(file: str) -> None:
+    assert len((ROOT / file).read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
+
+
+# ruff sees to those of Python.
+@pytest.mark.parametrize("file", scripts(), ids=str)
+def test_no_line_of_a_script_is_too_long_to_read(file: str) -> None:
+    lines = (ROOT / file).read_text(encoding="utf-8").expandtabs(4).splitlines()
+    assert [line for line in lines if len(line) > LONGEST_LINE] == []
 
 
 def test_no_file_names_a_package_registry() -> None:

@@ -21,6 +21,7 @@ WANTED = (
     "sim_motor/**/*.md",
     "*/py.typed",
     "host/deploy.sh",
+    "host/deploy/*.sh",
     "host/lab/page/**/*.*",
 )
 
