@@ -31,7 +31,7 @@ class BackButton(object):
             loop: The robot.loop.Loop.
         """
         if self._file >= 0 and self._pressed():
-            loop.stop("stopped by the brick's back button")
+            loop.stop("the brick's back button stopped it")
 
     def close(self):
         """Close the kernel's file."""

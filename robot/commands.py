@@ -88,7 +88,7 @@ def _start(loop, session, message):
 
 
 def _stop(loop, session, message):
-    return {"tick": loop.stop("stopped by '{}'".format(session.name))}
+    return {"tick": loop.stop("'{}' stopped it".format(session.name))}
 
 
 def _clear(loop, session, message):

@@ -304,15 +304,17 @@ class Loop(object):
         kick = parse(request, directions, self.params, tick)
         if self.safety.state != RUNNING:
             raise Refused(
-                "state", "the robot does not run, so there is nothing to kick", "start it first"
+                "state",
+                "the robot does not run, so it cannot be kicked",
+                "start it first: kickctl start",
             )
         if self._kick is not None:
             raise Refused(
                 "busy",
-                "a {} kick acts until tick {}".format(
+                "the {} kick before it still acts, until tick {}".format(
                     self._kick.mode, self._kick.begin + self._kick.ticks
                 ),
-                "kick again then",
+                "wait until it is over, then kick again",
             )
         self._kick = kick
         self._kick_begins[kick.id] = tick
@@ -358,12 +360,12 @@ class Loop(object):
         """
         self.lease.take(holder, name, self.clock.now())
         if self.safety.state == HELD:
-            self.safety.resume("'{}' took the lease".format(name))
+            self.safety.resume("'{}' took control".format(name))
             self.blackbox.note("resume")
 
     def _lose_link(self):
         policy = self.params.link_loss
-        reason = "link to '{}' lost for {:g} s".format(self.lease.name, self.params.link_loss_s)
+        reason = "'{}' was silent for {:g} s".format(self.lease.name, self.params.link_loss_s)
         self.blackbox.note("link_loss", policy=policy, reason=reason)
         if self.safety.state != RUNNING:
             return

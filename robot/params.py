@@ -78,6 +78,25 @@ def describe():
     return [OrderedDict((key, getattr(row, key)) for key in keys) for row in _ROWS]
 
 
+def point_for_comma(value):
+    """How to write a number that came with a decimal comma.
+
+    Args:
+        value: A value that is not the number that it should be.
+
+    Returns:
+        The advice, such as 'write a point: 2.5'; empty if a point does not make it a number.
+    """
+    if not isinstance(value, str) or value.count(",") != 1:
+        return ""
+    text = value.strip().replace(",", ".")
+    try:
+        float(text)
+    except ValueError:
+        return ""
+    return "write a point: " + text
+
+
 def check_value(name, value):
     """Check a value and convert it to the type of its parameter.
 
@@ -116,7 +135,8 @@ def check_value(name, value):
         raise Refused(
             "range",
             "{} cannot be {!r}".format(name, value),
-            "it is a number from {:g} to {:g} {}".format(
+            point_for_comma(value)
+            or "it is a number from {:g} to {:g} {}".format(
                 row.minimum, row.maximum, row.unit.replace("1", "")
             ).rstrip(),
         )

@@ -47,7 +47,7 @@ class Safety(object):
             raise Refused(
                 "fault",
                 "the robot is in fault: " + self.reason,
-                "mend the cause, then clear the fault",
+                "mend the cause, then: kickctl clear, kickctl start",
             )
         if self.state in (RUNNING, HELD):
             raise Refused("state", "the robot runs already", "stop it first to start again")
@@ -127,8 +127,8 @@ class Lease(object):
         if self.holder not in (None, holder):
             raise Refused(
                 "lease",
-                "'{}' controls the robot".format(self.name),
-                "wait until it lets go; anyone may stop the robot",
+                "somebody else controls the robot now: '{}'".format(self.name),
+                "wait until they have finished. Anyone may stop the robot: kickctl stop",
             )
         self.holder = holder
         self.name = name

@@ -118,7 +118,7 @@ class Session(object):
                     return self.refuse(
                         "token",
                         "commands need the robot's token",
-                        "without it a peer may look, and stop the robot",
+                        "without it you may only look, and stop the robot",
                     )
                 payload = self._unseal(payload)
             elif kind != wire.ASK:
@@ -159,8 +159,8 @@ class Session(object):
 
     def _stop(self, payload):
         name = self.name or _name_in(payload)
-        peer = "'{}'".format(name) if name else "a peer without a name"
-        tick = self._loop.stop("stop frame from " + peer)
+        who = "'{}'".format(name) if name else "somebody without a name"
+        tick = self._loop.stop(who + " stopped it")
         safety = self._loop.safety
         result = {"tick": tick, "state": STATES[safety.state], "reason": safety.reason}
         return wire.encode_json(wire.REPLY, {"id": None, "result": result})
@@ -171,8 +171,8 @@ class Session(object):
             ours = "{}.{}".format(*wire.PROTOCOL)
             return self.refuse(
                 "version",
-                "protocol {!r} is not {}".format(protocol, ours),
-                "run the same release on host and robot",
+                "the robot understands protocol {}, this host {!r}".format(ours, protocol),
+                "bring the same release to both: kickctl deploy",
             )
         name, client = message.get("name"), message.get("client")
         try:
@@ -225,8 +225,9 @@ class Session(object):
         if not wire.same(proof, self._handshake.host_proof):
             return self.refuse(
                 "token",
-                "the token is not this robot's",
-                "copy the robot's token file to this machine, mode 600",
+                "this computer has the token of another robot",
+                "copy the robot's ~/.config/kickctl/token to the same place on this computer, then"
+                " type: chmod 600 ~/.config/kickctl/token",
             )
         self.trusted = True
         robot_proof = binascii.hexlify(self._handshake.robot_proof).decode("ascii")

@@ -75,9 +75,9 @@ def hear(link: Link, talk: Conversation, arrived: Callable[[], bool], patience_s
     while not arrived():
         if link.now() > until:
             raise NoLink(
-                f"nothing answers at {link.uri} as a robot does",
-                "is it the robot's port, or its line and baud rate? Its program may hang; nobody"
-                " knows whether the motors turn: look, and stop them by `kickctl stop`",
+                f"no robot answers at {link.uri}, though something is there",
+                "is it the robot's port, or its line and baud rate? Or its program hangs: look"
+                " whether the motors turn, and stop them by `kickctl stop`",
             )
         talk.feed(link.receive(LOOK_S))
         talk.raise_refusal()

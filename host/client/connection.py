@@ -109,10 +109,10 @@ class Connection(LastingLink):
                 self._reopen("it was left half open")
             if sealed and not self._talk.trusted:
                 raise RefusedByRobot(
-                    "this machine does not have the robot's token, so it may only look, and stop"
+                    "this computer does not have the robot's token, so it may only look, and stop"
                     " the robot",
-                    f"`{deploy_command()}` gives it to both; or copy the robot's token file to"
-                    f" {default_path() or 'a file that KICK_TOKEN names'}, mode 600",
+                    f"`{deploy_command()}` gives it to both. Or copy the robot's token file to"
+                    f" {default_path() or 'a file that KICK_TOKEN names'}, and chmod 600 it",
                 )
             return self._exchange(
                 lambda: self._talk.request(command, arguments or {}, sealed), command

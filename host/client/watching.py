@@ -62,9 +62,7 @@ class Watcher(Connection):
             NoLink: The robot is gone, or sends no more records.
         """
         if not seconds >= 0.0:
-            raise WrongUse(
-                f"nobody can wait for {seconds!r} s", "give a number of seconds, 0 or more"
-            )
+            raise WrongUse(f"cannot wait for {seconds!r} s", "give a number of seconds, 0 or more")
         self._subscribe()
         first = self.newest
         patience_s = self.answer_s + self.reconnect_s
@@ -169,7 +167,7 @@ class Watcher(Connection):
         """
         if not seconds >= 0.0:
             raise WrongUse(
-                f"there are no records of {seconds!r} s", "give a number of seconds, 0 or more"
+                f"cannot wait for records of {seconds!r} s", "give a number of seconds, 0 or more"
             )
         backlog = Backlog()
         self.add_tap(backlog)

@@ -148,7 +148,7 @@ def _robot(robot: Robot) -> Iterator[Finding]:
         (
             ""
             if robot.trusted
-            else f"{deploy_command()} copies it; or copy the robot's token file here, mode 600"
+            else f"{deploy_command()} copies it; or copy the robot's token file, and chmod 600 it"
         ),
     )
     delays = []
@@ -204,8 +204,8 @@ def _punctuality(status: dict[str, Any]) -> Finding:
             break
     missed = status["missed"] / max(1, total)
     text = (
-        f"99 % of {total} ticks began within {1000 * bound:g} ms; {status['missed']} missed,"
-        f" {status['overruns']} overrun"
+        f"99 % of {total} ticks began at most {1000 * bound:g} ms late; {status['missed']} missed,"
+        f" {status['overruns']} longer than the control period"
     )
     return Finding(
         "ticks",

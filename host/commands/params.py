@@ -1,7 +1,10 @@
 """kickctl params list|get|set."""
 
 import argparse
+from typing import Any
 
+from host.client.robot import Robot
+from host.commands._rest import explain_rest
 from host.commands._terminal import print_table, robot_of, say, show
 from host.errors import WrongUse
 from host.link.settings import parse_setting
@@ -33,6 +36,8 @@ def run(options: argparse.Namespace) -> int:
             robot.set(**changes)
             if robot.link.virtual:
                 say(_gone(options.names))
+            elif "k" in changes and not options.json:
+                _say_what_rests(robot)
         values = robot.status()["params"]
     if options.action == "list":
         table = [
@@ -47,8 +52,20 @@ def run(options: argparse.Namespace) -> int:
         show({name: values[name] for name in names})
     else:
         for name in names:
-            print(f"{name} = {values[name]} {rows[name]['unit']}".rstrip())
+            print(f"{name} = {values[name]} {_shown_unit(rows[name])}".rstrip())
     return 0
+
+
+def _shown_unit(row: dict[str, Any]) -> str:
+    """The unit in a parameter's row; empty for a number without one."""
+    return "" if row["unit"] == "1" else str(row["unit"])
+
+
+def _say_what_rests(robot: Robot) -> None:
+    status = robot.status()
+    if status["state"] == "running":
+        for line in explain_rest(robot, status["params"]["k"]):
+            say(line)
 
 
 def _gone(settings: list[str]) -> str:
@@ -61,7 +78,7 @@ def _gone(settings: list[str]) -> str:
     )
 
 
-def _print_table(rows: list[dict[str, object]]) -> None:
+def _print_table(rows: list[dict[str, Any]]) -> None:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
@@ -75,6 +92,9 @@ def _print_table(rows: list[dict[str, object]]) -> None:
             else f"{row['minimum']} to {row['maximum']}"
         )
         table.add_row(
-            *map(str, (row["name"], row["value"], row["unit"], span, row["default"], row["doc"]))
+            *map(
+                str,
+                (row["name"], row["value"], _shown_unit(row), span, row["default"], row["doc"]),
+            )
         )
     print_table(table)

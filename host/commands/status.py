@@ -2,6 +2,7 @@
 
 import argparse
 
+from host.commands._rest import explain_rest
 from host.commands._terminal import robot_of, show
 
 HELP = "show what the robot does, who controls it, and how punctual its ticks are"
@@ -20,18 +21,25 @@ def run(options: argparse.Namespace) -> int:
             seed=robot.hello["seed"],
             software=robot.hello["software"],
         )
+        # An embedded robot has just begun, and a program that reads JSON shall not wait.
+        known = options.json or robot.link.virtual or status["state"] != "running"
+        rest = [] if known else explain_rest(robot, status["params"]["k"])
     if options.json:
         show(status)
     else:
         battery = "unknown" if status["battery_v"] is None else f"{status['battery_v']:.2f} V"
         print(f"{status['brick']}: {status['state']} ({status['reason']}), tick {status['tick']}")
         print(f"battery {battery}; controlled by {status['controller'] or 'nobody'}")
-        print(
-            f"ticks: {status['missed']} missed, {status['overruns']} overrun, {status['clamped']}"
-            " delta t clamped; how late they began:"
-        )
+        for line in rest:
+            print(line)
         edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
-        for edge, count in zip([*edges, None], counts, strict=True):
+        print(
+            f"of {sum(counts) + status['missed']} ticks {status['missed']} were missed,"
+            f" {status['overruns']} took longer than a control period, {status['clamped']} had"
+            " their time step limited"
+        )
+        for least, edge, count in zip([0.0, *edges], [*edges, None], counts, strict=True):
             if count:
-                print(f"  {'more' if edge is None else f'<= {1000 * edge:g} ms'}: {count}")
+                late = f"over {1000 * least:g}" if edge is None else f"at most {1000 * edge:g}"
+                print(f"  began {late} ms late: {count}")
     return 5 if status["state"] == "fault" else 0

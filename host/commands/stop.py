@@ -17,7 +17,7 @@ def run(options: argparse.Namespace) -> int:
     """Send the STOP frame before anything else, and wait until the robot confirms it."""
     link = make_link(chosen(options.brick), options.seed)
     if link.virtual:
-        say(f"simulated robot, embedded ({link.uri}); no other robot is stopped")
+        say(f"only the simulated robot of this command stops ({link.uri}); name another by --brick")
     stopped = stop_robot(link)
     answer(options, {"state": stopped.state, "tick": stopped.tick}, stopped.sentence())
     return 0

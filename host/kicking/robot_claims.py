@@ -21,6 +21,8 @@ PAPER = {
 }
 # The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
 WHEEL_RADIUS_M = 0.028
+# Friction holds a wheel at torques below this one (paper, section 'Robot').
+STALL_TORQUE = 0.1
 # A wheel that turns more slowly does not roll.
 MOVING_HZ = 0.1
 # How often a kick must reverse the robot to show the paper's 'always'.

@@ -14,7 +14,7 @@ def parse_angle(text: str) -> float:
     match = _FORM.fullmatch(text.replace(" ", ""))
     if match is None or not (match[2] or match[3]) or (match[4] and not float(match[4])):
         raise argparse.ArgumentTypeError(
-            f"'{text}' is not an angle; write it in rad, such as 2.36 or -3pi/4"
+            f"'{text}' is not an angle; write it in rad and with a point, as in 2.36 or -3pi/4"
         )
     value = float(match[2] or 1.0) * (pi if match[3] else 1.0) / float(match[4] or 1.0)
     return -value if match[1] == "-" else value

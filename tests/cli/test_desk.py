@@ -120,9 +120,21 @@ def test_one_controller_at_a_time(tmp_path, outside):
         first.lease()
         status, _, err = outside("--brick", uri, "kick", "--mode", "membrane", "--now")
         assert status == 4
-        assert "'first' controls the robot" in err
+        assert "somebody else controls the robot now: 'first'" in err
         first.release()
         assert outside("--brick", uri, "kick", "--mode", "membrane", "--now")[0] == 0
+
+
+def test_status_and_a_new_k_say_why_wheels_rest(tmp_path, outside):
+    with desk_robot(tmp_path, "--set", "k=0") as (uri, _):
+        status, out, err = outside("--brick", uri, "status")
+        assert status == 0, err
+        assert "the left wheel rests, with a torque of |M| = 0.00" in out
+        assert "k = 0 is too small" in out
+        assert re.search(r"^of \d+ ticks \d+ were missed", out, re.MULTILINE)
+        status, out, err = outside("--brick", uri, "params", "set", "k=0.3")
+        assert (status, out) == (0, "k = 0.3\n")
+        assert "k = 0.3 is too small" in err
 
 
 def test_the_api_of_the_readme(tmp_path):

@@ -60,7 +60,7 @@ def test_a_stop_that_nobody_confirms_exits_3_and_claims_nothing(kickctl, monkeyp
 
 
 def test_a_stop_of_the_embedded_robot_says_that_no_other_is_stopped(kickctl):
-    assert "no other robot is stopped" in kickctl("stop")[2]
+    assert "only the simulated robot of this command stops" in kickctl("stop")[2]
 
 
 def test_a_robot_that_begins_anew_while_it_is_recorded_is_told(kickctl, tmp_path):

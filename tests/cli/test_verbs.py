@@ -134,9 +134,29 @@ def test_params_set_and_get(kickctl):
     assert json.loads(kickctl("params", "get", "k", "--json")[1]) == {"k": 8.0}
 
 
+def test_a_number_without_a_unit_is_shown_without_one(kickctl):
+    assert kickctl("params", "get", "k", "tau_s", "link_loss")[1].splitlines() == [
+        "k = 8.0",
+        "tau_s = 0.25 s",
+        "link_loss = stop",
+    ]
+    lines = kickctl("params", "list")[1].splitlines()
+    (row,) = [line.split()[:4] for line in lines if line.startswith("k ")]
+    assert row == ["k", "8.0", "0.0", "to"]
+
+
+@pytest.mark.parametrize(
+    "arguments", [("params", "set", "k=2,5"), ("status", "--brick", "sim://?k=2,5")]
+)
+def test_a_decimal_comma_is_answered_with_the_point(kickctl, arguments):
+    status, _, err = kickctl(*arguments)
+    assert status in (2, 4)
+    assert "k cannot be '2,5'\n  write a point: 2.5\n" in err
+
+
 def test_params_set_says_that_the_embedded_robot_ends_and_what_to_use_instead(kickctl):
     status, out, err = kickctl("params", "set", "k=2.5", "tau_s=1")
-    assert (status, out) == (0, "k = 2.5 1\ntau_s = 1.0 s\n")
+    assert (status, out) == (0, "k = 2.5\ntau_s = 1.0 s\n")
     assert "ends with this command" in err
     assert "--set k=2.5 --set tau_s=1" in err
     assert "'sim://?k=2.5&tau_s=1'" in err

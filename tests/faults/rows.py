@@ -23,7 +23,7 @@ LINK_LOSS_S = TABLE["link_loss_s"].default
 UNANSWERED_S = MOST_UNANSWERED * TICK_S
 FAST_TICK_S = 0.01
 BATTERY_S = 300 * FAST_TICK_S  # the robot reads its battery once in 300 ticks
-LOST = "lost for 0.5 s"
+LOST = "was silent for 0.5 s"
 
 
 class Row(NamedTuple):
@@ -86,7 +86,11 @@ ROWS = (
     Row("link cut, policy continue", None, LOST, cut_link("continue"), lasting=True, relayed=True),
     Row("host killed", LINK_LOSS_S + LOOP_S, LOST, kill_host, lasting=True),
     Row(
-        "stop frame of a stranger", TICK_S, "stop frame from a peer", send_stop_frame, lasting=True
+        "stop frame of a stranger",
+        TICK_S,
+        "somebody without a name stopped it",
+        send_stop_frame,
+        lasting=True,
     ),
     Row("cable out", LOOP_S, "its cable came off", unplug, lasting=True),
     Row("cable back, then clear", None, "", replug(0.3), lasting=True),

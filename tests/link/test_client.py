@@ -102,7 +102,7 @@ def test_a_host_whose_place_was_taken_is_told_so(robot, link):
     with pytest.raises(RefusedByRobot, match="other"):
         robot.kick("membrane")
     robot.stop()
-    assert link.loop.safety.reason == "stop frame from 'kickctl'"
+    assert link.loop.safety.reason == "'kickctl' stopped it"
 
 
 def test_a_host_that_was_away_too_long_is_told_exactly_what_it_lost():

@@ -21,7 +21,7 @@ def test_an_observer_may_look_and_stop_and_nothing_else(rig):
         refused("token", observer.ask, name)
     assert rig.fingerprint() == before
     assert not observer.session.closing
-    assert observer.stop() == (3, "stopped", "stop frame from 'tester'")
+    assert observer.stop() == (3, "stopped", "'tester' stopped it")
     rig.run(1)
     assert (rig.last.state, rig.duties) == (3, (0, 0))
 
@@ -33,11 +33,11 @@ def test_a_stop_frame_needs_no_hello_no_token_and_no_sense(rig):
         "result": {
             "tick": 3,
             "state": "stopped",
-            "reason": "stop frame from a peer without a name",
+            "reason": "somebody without a name stopped it",
         },
     }
     assert rig.duties == (0, 0)
-    assert "a peer without a name" in rig.loop.safety.reason
+    assert "somebody without a name" in rig.loop.safety.reason
     assert not session.closing
 
 

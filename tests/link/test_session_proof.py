@@ -54,7 +54,7 @@ def test_a_later_minor_version_is_welcome(rig):
 def test_a_name_cannot_garble_a_screen(rig):
     client = Client(rig.loop, name="a\x1b[2J\n\u202e" + "b" * 100, client="c").greet()
     client.stop()
-    assert rig.loop.safety.reason == "stop frame from '" + ("a[2J" + "b" * 33) + "'"
+    assert rig.loop.safety.reason == "'" + ("a[2J" + "b" * 33) + "' stopped it"
 
 
 def test_a_wrong_token_ends_the_conversation(rig):

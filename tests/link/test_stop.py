@@ -85,7 +85,7 @@ def test_motors_are_off_before_the_next_tick_while_another_thread_has_the_lock(l
             done.set()
             holder.join()
     (stop,) = [event for event in link.events() if event["event"] == "stop"]
-    assert (stop["tick"], stop["reason"]) == (due, "stop frame from 'kickctl'")
+    assert (stop["tick"], stop["reason"]) == (due, "'kickctl' stopped it")
     assert [motor.duty for motor in link.brick.motors] == [0, 0]
 
 
@@ -123,7 +123,7 @@ def test_a_stop_over_a_serial_line_passes_a_request_that_is_never_answered(tmp_p
             blocked = Blocked(robot, monkeypatch)
             stopped = robot.stop_at_once()
             assert blocked.thread.is_alive()
-            assert stopped == (stopped.tick, "stopped", "stop frame from 'serial'")
+            assert stopped == (stopped.tick, "stopped", "'serial' stopped it")
             blocked.end()
     finally:
         machine.close()
@@ -225,7 +225,7 @@ def test_the_name_of_who_stops_cannot_garble_a_screen(name):
     decoder = wire.Decoder()
     decoder.feed(stop_frame(name))
     Session(rig.loop, TOKEN, "boot").receive(*decoder.next())
-    shown = rig.loop.safety.reason.removeprefix("stop frame from ")
+    shown = rig.loop.safety.reason.removesuffix(" stopped it")
     assert len(shown) <= 42
     assert shown.isprintable()
 

@@ -62,6 +62,7 @@ def test_a_second_program_leaves_the_first_alone(live):
         (("--set", "speed=3"), "there is no parameter 'speed'"),
         (("--set", "polarity_left"), "--set NAME=VALUE"),
         (("--set", "k=fast"), "k cannot be 'fast'"),
+        (("--set", "k=2,5"), "k cannot be '2,5'; write a point: 2.5"),
         (("--port", "70000"), "cannot listen"),
     ],
 )

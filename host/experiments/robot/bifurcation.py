@@ -51,7 +51,7 @@ from host.experiments.robot.bifurcation_rows import (
 from host.kicking.manoeuvres import ramp
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
-from host.kicking.robot_claims import break_away
+from host.kicking.robot_claims import STALL_TORQUE, break_away
 from host.logs.log import Log
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
@@ -65,7 +65,7 @@ RUNNING = STATES.index("running")
 SIGN = {"forward": 1, "backward": -1}
 FOLLOWED = {"forward": "left", "backward": "right"}
 START_K = 8.0
-STALL_TORQUE, LEAST_JUMP = 0.1, 0.15
+LEAST_JUMP = 0.15
 ROUNDS, RAMPS = 3, 5
 SPEEDS_HZ = (0.2, 0.22, 0.24, 0.26, 0.28, 0.3, 0.33, 0.36, 0.4, 0.45, 0.5, 0.6, 0.8)
 

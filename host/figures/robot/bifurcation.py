@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from host.experiments.robot.bifurcation import SIGN, STALL_TORQUE, Numbers
+from host.experiments.robot.bifurcation import SIGN, Numbers
 from host.experiments.robot.bifurcation_rows import (
     BifurcationRow,
     BranchRow,
@@ -22,6 +22,7 @@ from host.experiments.robot.bifurcation_rows import (
 )
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.kicking.outcome import FORWARD
+from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
 
 Quantity = Literal["torque", "hz"]

@@ -23,8 +23,8 @@ from host.experiments.robot.chaos_rows import (
     twins_rows,
 )
 from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES
-from host.figures.robot.kick import STALL_TORQUE
 from host.figures.style import COLOURS, SIZE, styled
+from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
 from sim_motor.settling import COUNT_RAD
 

@@ -15,13 +15,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from host.figures.style import SIZE, save, styled
+from host.kicking.robot_claims import STALL_TORQUE
 from host.logs.log import Log
 from host.logs.tap import Event
 from robot.kicks import WHEELS
 
 # What to show of one kick: two turns of the wheels before it, and enough time after it to settle.
 KICK_WINDOW_S = (-1.0, 2.0)
-STALL_TORQUE = 0.1  # friction holds a wheel at torques below this one (paper, section 'Robot')
 
 # The colours of the paper's figure.
 _POTENTIALS = {"left": ("saddlebrown", "darkorange"), "right": ("mediumblue", "deepskyblue")}

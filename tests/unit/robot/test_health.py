@@ -121,7 +121,7 @@ def test_one_that_does_not_tick_is_not(monkeypatch):
 
 
 def test_one_with_another_token_is_not():
-    with robot() as (port, _), pytest.raises(Unwell, match="the token is not this robot's"):
+    with robot() as (port, _), pytest.raises(Unwell, match="the token of another robot"):
         examine(HOST, port, bytes(wire.TOKEN_BYTES))
 
 
@@ -196,7 +196,7 @@ def test_a_reason_with_letters_that_the_terminal_does_not_know(tmp_path):
     (tmp_path / "token").write_text(TOKEN.hex(), encoding="ascii")
     (tmp_path / "token").chmod(0o600)
     with robot() as (port, loop):
-        loop.stop("stop frame from 'Zo\u00eb'")
+        loop.stop("'Zo\u00eb' stopped it")
         done = subprocess.run(
             [sys.executable, "-m", "robot.health", "--port", str(port)],
             cwd=ROOT,
@@ -206,5 +206,5 @@ def test_a_reason_with_letters_that_the_terminal_does_not_know(tmp_path):
         )
     assert (done.returncode, done.stdout) == (
         health.WELL,
-        b"stopped (stop frame from 'Zo\\xeb')\n",
+        b"stopped ('Zo\\xeb' stopped it)\n",
     )

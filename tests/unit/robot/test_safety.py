@@ -165,7 +165,7 @@ def test_the_words_of_every_refusal():
     fault = {
         "code": "fault",
         "message": "the robot is in fault: its cable came off",
-        "hint": "mend the cause, then clear the fault",
+        "hint": "mend the cause, then: kickctl clear, kickctl start",
     }
     assert refusal(safety.start) == fault
     assert refusal(lease.require, "a") == {
@@ -176,8 +176,8 @@ def test_the_words_of_every_refusal():
     lease.take("a", "Ann", 0.0)
     other = {
         "code": "lease",
-        "message": "'Ann' controls the robot",
-        "hint": "wait until it lets go; anyone may stop the robot",
+        "message": "somebody else controls the robot now: 'Ann'",
+        "hint": "wait until they have finished. Anyone may stop the robot: kickctl stop",
     }
     assert refusal(lease.take, "b", "Bob", 0.0) == other
 
