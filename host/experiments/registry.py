@@ -120,6 +120,11 @@ ROBOT = {
         (Option("minutes", 10.0, 1.0, 600.0, "length of the series"),),
         ("R14",),
     ),
+    "starts": Entry(
+        "start the robot from rest many times: which way each wheel goes, and whether both ways"
+        " are equally likely",
+        (Option("starts", 100, 1, 100000, "how often to start it"),),
+    ),
     "calibrate": Entry(
         "identify this robot's motor from a drive, and write it as a file for sim://?motor=mine",
         (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about"),),

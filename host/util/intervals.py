@@ -31,6 +31,21 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
     return low, 1.0 if successes == trials else centre + half
 
 
+def fair_p(successes: int, trials: int) -> float:
+    """The two-sided exact binomial test of a rate against 1/2.
+
+    Returns:
+        The probability of a split at least as uneven if both outcomes are equally likely; 1 without
+        trials.
+    """
+    if trials == 0:
+        return 1.0
+    # Imported where it is used: scipy.stats takes a second.
+    from scipy.stats import binomtest
+
+    return float(binomtest(successes, trials).pvalue)
+
+
 def bootstrap_interval(
     values: Sequence[float], of: Callable[..., NDArray[np.float64]] = np.mean
 ) -> tuple[float, float] | None:
