@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.commands._failures import os_words
+from host.commands._outputs import add_force, require_place
 from host.commands._recording import figure_words
 from host.commands._terminal import say, show
 from host.errors import KickctlError
@@ -94,6 +95,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FOLDER",
         help="where results go (default %(default)s)",
     )
+    add_force(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -127,12 +129,14 @@ def run(options: argparse.Namespace) -> int:
     )
     scene = build_scene(request)
     body = build_body(request, scene)
+    if options.film:
+        require_place(options, options.film)
     if options.model:
         if options.model.exists() and _is_scene(options.model, options.scene):
             raise WrongUse(
                 f"{options.model} is the scene itself, and would be lost", "choose another name"
             )
-        write_text(options.model, scene.to_xml())
+        write_text(require_place(options, options.model), scene.to_xml(), new=not options.force)
     kicks = [parse_kick(words, body.wheels) for words in options.kick]
     if any(kick.t_s >= options.time for kick in kicks):
         raise WrongUse(
@@ -247,7 +251,7 @@ def _watchers(
     if options.film:
         from host.films.body import Film
 
-        watchers.append(Film(options.film, body.model, body.cars))
+        watchers.append(Film(options.film, body.model, body.cars, new=not options.force))
     if options.live:
         from host.films.body import open_viewer
 

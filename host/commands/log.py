@@ -1,42 +1,65 @@
-"""kickctl log list|pull|export|replay|recover."""
+"""kickctl log list|pull|export|replay|plot|film|recover."""
 
 from __future__ import annotations
 
 import argparse
 import shlex
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from host.commands import _log_pictures
+from host.commands._log_damage import damage_facts, damage_status
 from host.commands._options import common
+from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._terminal import answer, robot_of, say, show
 from host.errors import WrongUse
+from host.util.whole_files import descriptor_of
 
 if TYPE_CHECKING:
-    from host.logs.mcap_reading import LogFile
     from host.logs.replay import ReplayResult
 
-HELP = "list, export, replay and recover logs, or pull one from the robot's black box"
+HELP = "list, export, replay, plot, film and recover logs, or pull one from the robot's black box"
+# As host.logs.tables has them; that is imported only when a table is written.
+FORMATS = ("csv", "npz")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the actions, each with its own arguments."""
-    parents = [common(defaults=False)]
-    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    listing = actions.add_parser("list", parents=parents, help="list the logs in a folder")
+    actions: Any = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+
+    def action(name: str, words: str) -> argparse.ArgumentParser:
+        parents = [common(defaults=False)]
+        own: argparse.ArgumentParser = actions.add_parser(
+            name, parents=parents, help=words, description=words
+        )
+        return own
+
+    def reader(name: str, words: str) -> argparse.ArgumentParser:
+        own = action(name, words)
+        own.add_argument("log", type=Path, help="the log, an MCAP file; it is not changed")
+        own.epilog = (
+            "The exit status is 1 if the log breaks off or is damaged: then this is done for what"
+            " can be read."
+        )
+        return own
+
+    listing = action("list", "list the logs in a folder")
     listing.add_argument("folder", nargs="?", type=Path, help="the folder (default: logs/ here)")
-    pull = actions.add_parser(
-        "pull", parents=parents, help="fetch the last minutes from the robot's black box"
-    )
+    pull = action("pull", "fetch the last minutes from the robot's black box")
     pull.add_argument(
         "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
     )
-    export = actions.add_parser("export", parents=parents, help="write a log as a table")
-    export.add_argument("log", type=Path, help="the log, an MCAP file")
+    export = reader("export", "write a log as a table")
     export.add_argument(
         "--format",
-        choices=("csv", "npz"),
-        default="csv",
-        help="csv for spreadsheets, npz for numpy (default %(default)s)",
+        choices=FORMATS,
+        help="csv for spreadsheets, npz for numpy (default: what the ending of --out says, or csv)",
+    )
+    export.add_argument(
+        "--excel",
+        action="store_true",
+        help="csv with semicolons and decimal commas, as spreadsheets expect it in most of Europe",
     )
     export.add_argument(
         "--out",
@@ -44,16 +67,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="the table to write (default: csv to standard output, npz beside the log)",
     )
-    replay = actions.add_parser(
-        "replay",
-        parents=parents,
-        help="recompute the controller from a log's angles and delta t, and compare exactly",
+    add_force(export)
+    reader("replay", "recompute the controller from a log's angles and delta t, compare exactly")
+    _log_pictures.add_arguments(
+        reader("plot", "draw a log: angles, potentials, duty cycles, kicks and stops"),
+        reader("film", "film both wheels and their rods, turning as logged"),
     )
-    replay.add_argument("log", type=Path, help="the log, an MCAP file")
-    recovery = actions.add_parser(
-        "recover",
-        parents=parents,
-        help="write what can be read of a log that breaks off to a new log, which viewers open",
+    recovery = action(
+        "recover", "write what can be read of a log that breaks off to a new log that viewers open"
     )
     recovery.add_argument("log", type=Path, help="the log, an MCAP file; it is not changed")
     recovery.add_argument(
@@ -71,13 +92,15 @@ def run(options: argparse.Namespace) -> int:
         "pull": _pull,
         "export": _export,
         "replay": _replay,
+        "plot": _log_pictures.plot,
+        "film": _log_pictures.film,
         "recover": _recover,
     }
     return actions[options.action](options)
 
 
 def _list(options: argparse.Namespace) -> int:
-    from host.logs.log_folder import LOG_FOLDER, list_logs
+    from host.logs.log_folder import BREAKS_OFF, LOG_FOLDER, list_logs
 
     folder = options.folder or LOG_FOLDER
     if not folder.is_dir():
@@ -94,6 +117,12 @@ def _list(options: argparse.Namespace) -> int:
             f"{row.path}  {row.ticks} ticks  {row.seconds:.1f} s  {row.brick} "
             f" {row.started_utc[:19]}  {row.note}".rstrip()
         )
+    cut = [row.path for row in rows if row.note == BREAKS_OFF]
+    if cut:
+        say(
+            f"a log that breaks off is still being recorded, or was cut: kickctl log recover"
+            f" {shlex.quote(str(cut[0]))}"
+        )
     if not rows:
         say(f"no logs in {folder}; `kickctl record 10` writes one")
     return 0
@@ -102,7 +131,10 @@ def _list(options: argparse.Namespace) -> int:
 def _pull(options: argparse.Namespace) -> int:
     from host.logs.log import Log
     from host.logs.log_folder import in_folder
+    from host.logs.mcap_files import require_new_log
 
+    if options.out is not None:
+        require_new_log(options.out)
     with robot_of(options) as robot:
         log = Log(robot.info())
         robot.pull(log)
@@ -116,42 +148,50 @@ def _pull(options: argparse.Namespace) -> int:
 
 
 def _export(options: argparse.Namespace) -> int:
-    import sys
-
     from host.logs.mcap_reading import LogFile
-    from host.logs.tables import save_csv, save_npz, write_csv
+    from host.logs.tables import format_of, save_csv, save_npz, write_csv
 
     log = LogFile(options.log)
-    if options.format == "csv" and options.out is None and not options.json:
-        write_csv(log.stream(), sys.stdout)
-        _say_if_cut(log)
-        return 0
-    out = options.out or options.log.with_suffix("." + options.format)
+    out = options.out
+    form = options.format or "csv" if out is None else format_of(out, options.format)
+    if options.excel and form != "csv":
+        raise WrongUse(f"--excel is a kind of csv, and this is {form}", "leave one of them out")
+    if out is None and form == "npz":
+        out = options.log.with_suffix(".npz")
+    if out is not None:
+        require_place(options, out)
+    elif options.json:
+        raise WrongUse(
+            "with --json the answer goes to standard output, so the table cannot",
+            "name a file with --out",
+        )
+    if form == "csv" and (out is None or descriptor_of(out) == 1):
+        write_csv(log.stream(), sys.stdout, excel=options.excel)
+        return damage_status(log)
+    new = not options.force
     try:
         ticks = (
-            save_csv(log.stream(), out)
-            if options.format == "csv"
-            else save_npz(log.stream(), log.info, out)
+            save_csv(log.stream(), out, new=new, excel=options.excel)
+            if form == "csv"
+            else save_npz(log.stream(), log.info, out, new=new)
         )
     except OSError as error:
         raise WrongUse(
             f"{out} cannot be written: {error.strerror}", "choose another place with --out"
         ) from error
-    _say_if_cut(log)
-    answer(options, {"table": str(out), "ticks": ticks}, f"{ticks} ticks in {out}")
-    return 0
-
-
-def _say_if_cut(log: LogFile) -> None:
-    if not log.whole:
-        say(f"{log.path} breaks off; the table has the ticks until then")
+    facts = {"table": str(out), "ticks": ticks, **damage_facts(log)}
+    answer_beside(options, out, facts, f"{ticks} ticks in {out}")
+    return damage_status(log)
 
 
 def _replay(options: argparse.Namespace) -> int:
     from host.logs.mcap_reading import LogFile
-    from host.logs.replay import replay
+    from host.logs.replay import other_sources, replay
 
     log = LogFile(options.log)
+    others = other_sources(log.info)
+    for words in others:
+        say(words)
     result = replay(log)
     facts = {
         "reproduced": result.reproduced,
@@ -159,7 +199,8 @@ def _replay(options: argparse.Namespace) -> int:
         "compared": result.compared,
         "not_comparable": result.not_comparable,
         "missing": result.missing,
-        "truncated": not log.whole,
+        **damage_facts(log),
+        "other_sources": others,
         "worst": result.worst,
         "first_mismatch": None if result.first is None else str(result.first),
     }
@@ -167,13 +208,8 @@ def _replay(options: argparse.Namespace) -> int:
         f"{result.compared} ticks replayed: {_verdict(result)} ({result.not_comparable} not"
         f" comparable, {result.missing} missing)"
     )
-    if not log.whole:
-        sentence += (
-            "; the file is damaged or breaks off after them"
-            f" (kickctl log recover {shlex.quote(str(log.path))})"
-        )
     answer(options, facts, sentence)
-    return 0 if result.reproduced and log.whole else 1
+    return damage_status(log) or (0 if result.reproduced else 1)
 
 
 def _recover(options: argparse.Namespace) -> int:

@@ -3,8 +3,9 @@
 import argparse
 from pathlib import Path
 
+from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._recording import recorded
-from host.commands._terminal import answer, robot_of, say
+from host.commands._terminal import robot_of, say
 
 HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverses it"
 
@@ -18,6 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="where the film goes, .mp4 or .gif (default %(default)s)",
     )
+    add_force(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -34,7 +36,8 @@ def run(options: argparse.Namespace) -> int:
     from host.util.progress import progress
     from robot.kicks import PHASE
 
-    with Movie(options.out, SIZE) as movie:
+    require_place(options, options.out)
+    with Movie(options.out, SIZE, new=not options.force) as movie:
         with robot_of(options, moves=True) as robot:
             require_running(robot)
             with recorded(robot, "rods") as recording:
@@ -53,7 +56,8 @@ def run(options: argparse.Namespace) -> int:
                 movie.add(picture)
                 advance(movie.pictures)
     result = {**outcome.as_dict(), "log": str(recording.path), "film": str(options.out)}
-    answer(options, result, f"{describe(outcome)}\nlog {recording.path}\nfilm {options.out}")
+    words = f"{describe(outcome)}\nlog {recording.path}\nfilm {options.out}"
+    answer_beside(options, options.out, result, words)
     if recording.failure:
         say(f"kickctl: {recording.failure}")
     return 0 if outcome.reversed and not recording.failure else 1

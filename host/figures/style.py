@@ -42,20 +42,22 @@ def styled() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, path: str | Path) -> Path:
+def save(figure: Figure, path: str | Path, *, new: bool = False) -> Path:
     """Write a figure to a file, which appears when it is whole.
 
     Args:
         figure: The figure.
         path: The file; its ending, such as .png or .svg, says the format.
+        new: Whether the file must not exist.
 
     Returns:
         The path.
 
     Raises:
+        FileTaken: `new`, and there is such a file.
         OSError: The file cannot be written.
     """
-    with styled(), whole_file(path) as draft:
+    with styled(), whole_file(path, new=new) as draft:
         figure.savefig(draft, format=Path(path).suffix.removeprefix(".") or "png")
     return Path(path)
 

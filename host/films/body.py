@@ -48,6 +48,7 @@ class Film:
         cars: how many cars the body has.
         size: width and height in pixels, both even.
         fps: pictures per second.
+        new: whether the film's file must not exist.
 
     Raises:
         NotDone: if nothing here can draw.
@@ -55,13 +56,20 @@ class Film:
     """
 
     def __init__(
-        self, path: Path, model: Any, cars: int, *, size: tuple[int, int] = SIZE, fps: float = FPS
+        self,
+        path: Path,
+        model: Any,
+        cars: int,
+        *,
+        size: tuple[int, int] = SIZE,
+        fps: float = FPS,
+        new: bool = False,
     ) -> None:
         self._fps = fps
         self._start_s: float | None = None
         self._camera = Camera(model, cars, size, follow=1 / (fps * FOLLOW_S))
         try:
-            self._movie = Movie(path, size, fps)
+            self._movie = Movie(path, size, fps, new=new)
         except BaseException:
             self._camera.close()
             raise

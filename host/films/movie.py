@@ -7,6 +7,7 @@ import subprocess
 import zlib
 from collections.abc import Iterator
 from contextlib import ExitStack
+from errno import ENOSPC
 from pathlib import Path
 from select import select
 from signal import SIGKILL
@@ -40,17 +41,21 @@ class Movie:
         path: of the film; its ending, .mp4 or .gif, says how it is written.
         size: width and height in pixels, both even.
         fps: pictures per second.
+        new: whether the file must not exist.
 
     Attributes:
         path: of the film.
         pictures: how many have been added.
 
     Raises:
-        WrongUse: if the ending is unknown, or the file cannot be written.
+        WrongUse: if the ending is unknown, or the file cannot be written, or, if it must be `new`,
+            exists already.
         NotDone: in the block or at its end, if the film cannot be finished.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float = FPS) -> None:
+    def __init__(
+        self, path: Path, size: tuple[int, int], fps: float = FPS, *, new: bool = False
+    ) -> None:
         writers: dict[str, type[_Mp4 | _Gif]] = {".mp4": _Mp4, ".gif": _Gif}
         ending = path.suffix.lower()
         if ending not in writers:
@@ -63,7 +68,7 @@ class Movie:
         self._exit = ExitStack()
         try:
             # The film gets its name when it plays. Until then, what was there before stays.
-            self._draft = self._exit.enter_context(whole_file(path))
+            self._draft = self._exit.enter_context(whole_file(path, new=new))
             with self._draft.open("ab"):
                 pass
         except OSError as error:
@@ -100,11 +105,17 @@ class Movie:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        with self._exit:
-            if self._writer is not None:
-                self._writer.finish()
-            if not self._plays and self._draft != self.path.resolve():
-                self._draft.unlink()  # so that it does not get the film's name
+        try:
+            with self._exit:
+                if self._writer is not None:
+                    self._writer.finish()
+                if not self._plays:
+                    self._draft.unlink()  # so that it does not get the film's name
+        except OSError as failure:
+            raise NotDone(
+                f"the film {self.path} could not be written: {failure.strerror or failure}",
+                "is the disk full?" if failure.errno == ENOSPC else "choose another place",
+            ) from failure
 
 
 class _Mp4:

@@ -5,6 +5,7 @@ Angle, target and actual positions, potentials and torque.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import nan
 from typing import Any, NamedTuple
 
@@ -59,6 +60,35 @@ class Course(NamedTuple):
     kick: str
 
 
+def actual_of(phi: float | Array) -> Array:
+    """The rods' actual positions at an angle (rad), or at several: (2,) or (2, times)."""
+    return np.array(_actual(phi))
+
+
+def targets_of(potentials: Sequence[Any] | Array, a: float) -> Array:
+    """The rods' target positions for the neurons' potentials, (2,) or (2, times), and the gain."""
+    return np.array([_target(x, a) for x in potentials])
+
+
+def seen_in_kick(kick: dict[str, Any], side: str, tick: int, phi: float) -> Array:
+    """The positions that a kick shows to the neurons of a wheel.
+
+    Args:
+        kick: The kick, as in a log's event.
+        side: 'left' or 'right'.
+        tick: A tick in which it acts.
+        phi: The wheel's angle, rad.
+
+    Returns:
+        The positions, (2,); NaN if the neurons see the actual ones.
+    """
+    numbers = Kick(**kick).numbers(WHEELS.index(side))
+    *_, beta, shift_rad = apply_kick(numbers, tick, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if side not in kick["wheels"] or not (beta or shift_rad):
+        return np.full(2, nan)
+    return np.array(seen_positions(phi, beta, shift_rad))
+
+
 def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) -> Course:
     """A wheel around the log's first kick.
 
@@ -96,19 +126,16 @@ def course(log: Log, side: str, window_s: tuple[float, float], step_s: float) ->
     potentials = np.array([log.column(f"{side}_x{number}")[held] for number in (1, 2)])
     acting = [(place, log.records[place].tick - kick["begin"]) for place in range(row, len(log))]
     acting = [(place, age) for place, age in acting if 0 <= age < kick["ticks"]]
-    numbers = Kick(**kick).numbers(WHEELS.index(side))
     seen = np.full((2, len(t_s)), nan)
     for place, age in acting:
-        *_, beta, shift_rad = apply_kick(numbers, kick["begin"] + age, 0.0, 0.0, 0.0, 0.0, 0.0)
-        if beta or shift_rad:
-            for number in np.flatnonzero(held == place):
-                seen[:, number] = seen_positions(float(phi[number]), beta, shift_rad)
+        for number in np.flatnonzero(held == place):
+            seen[:, number] = seen_in_kick(kick, side, kick["begin"] + age, float(phi[number]))
     return Course(
         t_s=t_s,
         phi=phi,
         potentials=potentials,
-        actual=np.array(_actual(phi)),
-        targets=np.array([_target(x, float(log.info["params"]["a"])) for x in potentials]),
+        actual=actual_of(phi),
+        targets=targets_of(potentials, float(log.info["params"]["a"])),
         seen=seen,
         torque=log.column(side + "_torque")[held],
         kick_s=float(t_log[acting[-1][0] + 1]),

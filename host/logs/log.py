@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from host.errors import WrongUse
 from host.logs.tap import Event, Tap
 from robot.kicks import WHEELS
 from robot.record import CHANNELS, NAMES, Record
@@ -14,6 +16,9 @@ from robot.record import CHANNELS, NAMES, Record
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+# The columns that no channel has, and their wheels.
+SPEEDS = {side + "_omega_rad_s": side for side in WHEELS}
 
 
 class Gaps:
@@ -52,7 +57,8 @@ class Log:
             robot_sources (fingerprints of their code), commit, brick (its address), host_machine,
             robot_machine, seed, boot, params, polarity, battery_v, clock_zero_s (Unix time at which
             the robot's clock showed 0), started_utc (ISO 8601), and truncated (True) if the log was
-            read from a file that breaks off or is damaged. What is unknown is left out.
+            read from a file that breaks off or is damaged, so that ticks or events are missing.
+            What is unknown is left out.
     """
 
     def __init__(self, info: dict[str, Any] | None = None) -> None:
@@ -107,33 +113,42 @@ class Log:
             tap.take_records(self.records[done:])
 
     def column(self, name: str) -> NDArray[Any]:
-        """A channel of the log as an array.
+        """A column of the log as an array.
 
         Args:
-            name: The channel's name, as in robot.record.CHANNELS: tick, t_s, left_torque, ...
+            name: The column's name, as in an exported table: tick, t_s, left_torque,
+                left_omega_rad_s ... All but the speeds are channels of robot.record.CHANNELS; kick
+                and state are numbers here.
 
         Returns:
             One value for each tick: int64 for whole numbers, float64 for all others.
 
         Raises:
-            KeyError: There is no such channel.
+            WrongUse: There is no such column.
         """
         import numpy as np
 
+        if name in SPEEDS:
+            return self.omega(SPEEDS[name])
         if name not in NAMES:
-            raise KeyError(f"a log has no column '{name}'; it has " + ", ".join(NAMES))
+            names = [*NAMES, *SPEEDS]
+            close = [one for one in names if one.endswith("_" + name)]
+            close += get_close_matches(name, names, 1)
+            raise WrongUse(
+                f"a log has no column '{name}'",
+                f"did you mean '{close[0]}'?" if close else "it has " + ", ".join(names),
+            )
         index = NAMES.index(name)
         dtype = np.float64 if CHANNELS[index].code in "df" else np.int64
         return np.fromiter((record[index] for record in self.records), dtype, len(self.records))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """All channels as arrays.
+        """All columns as arrays.
 
         Returns:
-            Arrays by the channels' names, and left_omega_rad_s and right_omega_rad_s (rad/s).
+            Arrays by the columns' names, see `column`.
         """
-        speeds = {side + "_omega_rad_s": self.omega(side) for side in WHEELS}
-        return {**{name: self.column(name) for name in NAMES}, **speeds}
+        return {name: self.column(name) for name in (*NAMES, *SPEEDS)}
 
     def omega(self, side: str) -> NDArray[np.float64]:
         """Speed of a wheel, forward positive: turn over time since the record before.
@@ -229,7 +244,8 @@ class Log:
             path: The file.
 
         Returns:
-            The log. `info["truncated"]` is True if the file breaks off.
+            The log. `info["truncated"]` is True if the file breaks off or is damaged; `kickctl
+            log recover FILE` makes a whole log of what can be read.
 
         Raises:
             LogError: The file is not there, or is no log.
@@ -252,7 +268,7 @@ class Log:
             The file's path.
 
         Raises:
-            LogError: The file is a log.
+            LogError: The file is a log, or its ending is that of another format.
             OSError: It cannot be written.
         """
         from host.logs.tables import save_csv
@@ -270,7 +286,7 @@ class Log:
             The file's path.
 
         Raises:
-            LogError: The file is a log.
+            LogError: The file is a log, or its ending is that of another format.
             OSError: It cannot be written.
         """
         from host.logs.tables import save_npz
@@ -286,5 +302,5 @@ class Log:
         parts = [f"{len(self)} ticks", f"{self.seconds:.2f} s", f"kicks: {len(self.kicks())}"]
         parts += [f"{gone} ticks missing"] if gone else []
         parts += [str(self.info["brick"])] if "brick" in self.info else []
-        parts += ["the file breaks off"] if self.info.get("truncated") else []
+        parts += ["the file breaks off or is damaged"] if self.info.get("truncated") else []
         return f"<Log: {', '.join(parts)}>"

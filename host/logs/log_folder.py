@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
@@ -20,6 +21,8 @@ from robot.record import Record
 T = TypeVar("T")
 
 LOG_FOLDER = Path("logs")
+# The note of a log that has no end (yet), or is damaged.
+BREAKS_OFF = "breaks off"
 
 
 def in_folder(kind: str, write: Callable[[Path], T]) -> T:
@@ -89,13 +92,29 @@ class Summary(NamedTuple):
 
 
 def list_logs(folder: str | Path = LOG_FOLDER) -> list[Summary]:
-    """The MCAP files in a folder, by name. Only files that break off are read as a whole."""
-    return [_summarize(path) for path in sorted(Path(folder).glob("*.mcap"))]
+    """The MCAP files in a folder, by name.
+
+    Only files that break off are read as a whole. One that is deleted meanwhile is not listed.
+
+    Raises:
+        LogError: The folder cannot be read.
+    """
+    try:
+        paths = sorted(path for path in Path(folder).iterdir() if path.name.endswith(".mcap"))
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise LogError(
+            f"the folder {folder} cannot be read: {error.strerror}",
+            "name a folder that you may read",
+        ) from None
+    summaries = map(_summarize, paths)
+    return [summary for summary in summaries if os.path.lexists(summary.path)]
 
 
 def _summarize(path: Path) -> Summary:
     try:
-        found = _summary_of_whole(path)
+        found = _summary_of_whole(path) if path.is_file() else None
     except (OSError, *DAMAGE):
         found = None
     if found is not None:
@@ -104,9 +123,9 @@ def _summarize(path: Path) -> Summary:
     try:
         info, whole = play(path, extent)
     except LogError as error:
-        return Summary(path, 0, 0.0, "", "", str(error))
+        return Summary(path, 0, 0.0, "", "", error.message)
     brick, started_utc = str(info.get("brick", "")), str(info.get("started_utc", ""))
-    note = "" if whole else "breaks off"
+    note = "" if whole else BREAKS_OFF
     return Summary(path, extent.ticks, extent.seconds, brick, started_utc, note)
 
 

@@ -11,6 +11,7 @@ without the end of the file, and `kickctl log recover` gives it an index again.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,7 +23,7 @@ from mcap.writer import CompressionType, Writer
 from host.errors import WrongUse
 from host.logs.tap import Event
 from host.util.interrupts import uninterrupted
-from host.util.whole_files import naming, whole_file
+from host.util.whole_files import FileTaken, is_stream, naming, whole_file
 from robot import __version__
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 
@@ -30,6 +31,8 @@ METADATA = "kickctl"
 FORMAT = "1"
 TICKS, EVENTS = "/ticks", "/events"
 CHUNK_S = 1.0
+# Files of other kinds, which programs would try to read as such.
+_OTHER_ENDINGS = (".csv", ".npz", ".json", ".txt", ".tsv", ".xlsx", ".png", ".svg", ".gif", ".mp4")
 NAMED = {"state": STATES, "kick": KICK_NAMES}
 
 
@@ -44,6 +47,17 @@ class NameTaken(LogError):
         super().__init__(
             f"{path} exists already, and logs are never overwritten", "choose another name"
         )
+
+
+def require_new_log(path: Path) -> None:
+    """Raise LogError if no log can have this name: it is taken, or that of another kind of file."""
+    if path.suffix.lower() in _OTHER_ENDINGS:
+        raise LogError(
+            f"{path} would be a log, an MCAP file, under the name of another kind of file",
+            "end its name with .mcap; `kickctl log export` makes a table of it",
+        )
+    if os.path.lexists(path) and not is_stream(path):
+        raise NameTaken(path)
 
 
 def _ticks_schema() -> dict[str, Any]:
@@ -203,12 +217,13 @@ def new_log(path: str | Path, info: dict[str, Any]) -> Iterator[McapTap]:
             McapTap(path, info, file) as tap,
         ):
             yield tap
-    except FileExistsError:
+    except (FileTaken, IsADirectoryError):
         raise NameTaken(path) from None
 
 
 def _create(place: Path, path: Path) -> IO[bytes]:
     """Create the file of the log `path` in a place, and open it."""
+    require_new_log(path)
     try:
         return place.open("xb")
     except FileExistsError:

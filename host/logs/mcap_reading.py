@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Iterator
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from mcap.stream_reader import StreamReader
 
 from host.logs.mcap_files import EVENTS, FORMAT, METADATA, NAMED, TICKS, LogError
 from host.logs.tap import Event, Tap
+from host.util.whole_files import is_stream
 from robot.record import NAMES, Record
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -32,8 +34,13 @@ class LogFile:
 
     Attributes:
         info: What was run, as in Log.
-        whole: Whether the file ends as it should. This is known at the end of `stream`; before, it
-            is True.
+        breaks_off: Whether the file ends before its end, or cannot be read from some place on.
+        left_out: How many ticks and events were left out because they cannot be right, such as
+            one with a number that is not finite.
+        first_left_out: The first of them, in words; empty if there is none.
+        last_tick: The last tick that was read; None before the first.
+
+    These, except `info`, are known at the end of `stream`.
 
     Raises:
         LogError: The file cannot be opened, or is not a log of kickctl.
@@ -41,7 +48,7 @@ class LogFile:
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
-        self.whole = True
+        self._begin()
         found = (
             item.metadata
             for item in self._items()
@@ -50,11 +57,33 @@ class LogFile:
         metadata = next(found, None)
         if metadata is None:
             raise LogError(f"{self.path} is an MCAP file, but holds no log of kickctl", _GIVE_OURS)
-        self.whole = True
         self.info = _info(self.path, metadata)
+        self._begin()
+
+    def _begin(self) -> None:
+        self.breaks_off = False
+        self.left_out = 0
+        self.first_left_out = ""
+        self.last_tick: int | None = None
+
+    @property
+    def whole(self) -> bool:
+        """Whether all of the log was read. It is known at the end of `stream`."""
+        return not self.breaks_off and not self.left_out
+
+    def damage(self) -> str:
+        """What is missing, in words; empty if nothing is. It is known at the end of `stream`."""
+        found = []
+        if self.breaks_off:
+            place = "at its beginning" if self.last_tick is None else f"after tick {self.last_tick}"
+            found.append(f"breaks off or is damaged {place}; what follows is missing")
+        if self.left_out:
+            more = f", and {self.left_out - 1} more" if self.left_out > 1 else ""
+            found.append(f"{self.first_left_out} is left out{more}")
+        return f"{self.path}: " + "; ".join(found) if found else ""
 
     def stream(self) -> Iterator[Event | Record]:
-        """Events and records in the order in which they came, up to where the file breaks off.
+        """Events and records in the order in which they came, as far as they can be read.
 
         Returns:
             An iterator of dictionaries (events) and Records.
@@ -62,6 +91,7 @@ class LogFile:
         Raises:
             LogError: The file cannot be read any more.
         """
+        self._begin()
         topics: dict[int, str] = {}
         items = self._items()
         try:
@@ -69,16 +99,41 @@ class LogFile:
                 if isinstance(item, Channel):
                     topics[item.id] = item.topic
                 elif isinstance(item, Message):
-                    yield from _event_or_record(topics[item.channel_id], json.loads(item.data))
+                    yield from self._take(topics[item.channel_id], json.loads(item.data))
         except DAMAGE:
-            self.whole = False
+            self.breaks_off = True
         finally:
             items.close()
 
+    def _take(self, topic: str, message: dict[str, Any]) -> Iterator[Event | Record]:
+        """Yield the event or the record of a message; nothing for a topic of others."""
+        if topic == TICKS:
+            record = _record(message)
+            if all(map(isfinite, record)):
+                self.last_tick = record.tick
+                yield record
+            else:
+                self._leave_out("tick", message)
+        elif topic == EVENTS:
+            if _not_finite(message):
+                self._leave_out(f"the event {message['event']} of tick", message)
+            else:
+                yield message
+
+    def _leave_out(self, what: str, message: dict[str, Any]) -> None:
+        self.left_out += 1
+        if not self.first_left_out:
+            cause = f"{_not_finite(message)} is no finite number"
+            self.first_left_out = f"{what} {message['tick']} ({cause})"
+
     def _items(self) -> Any:
         """Yield what is in the file, as mcap's reader gives it, and note if it breaks off."""
-        self.whole = True
         try:
+            if self.path.exists() and not self.path.is_file() and not self.path.is_dir():
+                raise LogError(
+                    f"{self.path} is a pipe or a device, and a log is read more than once",
+                    "save it to a file first",
+                )
             with self.path.open("rb") as file:
                 if file.read(len(MAGIC)) != MAGIC:
                     raise LogError(f"{self.path} is not an MCAP file", _GIVE_OURS)
@@ -89,7 +144,7 @@ class LogFile:
                         file, validate_crcs=True, record_size_limit=size
                     ).records
                 except DAMAGE:
-                    self.whole = False
+                    self.breaks_off = True
         except OSError as error:
             raise LogError(
                 f"{self.path} cannot be read: {error.strerror}",
@@ -120,9 +175,14 @@ def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:
 
 
 def require_no_log(path: str | Path) -> None:
-    """Raise LogError if a file that is about to be replaced is a log: there is no second one."""
+    """Raise LogError if something else than a log is about to get a log's place or name.
+
+    There is no second one of a log that is replaced, and nobody expects a table under its name.
+    """
     path = Path(path)
-    if not path.is_file():
+    if path.suffix.lower() == ".mcap":
+        raise LogError(f"{path} is the name of a log", "choose another ending than .mcap")
+    if not path.is_file() or is_stream(path):
         return
     try:
         with path.open("rb") as file:
@@ -143,20 +203,28 @@ def _info(path: Path, metadata: dict[str, str]) -> dict[str, Any]:
 
 
 def _from_text(text: str) -> Any:
+    """A value of the info. A number that is not finite, which old logs may have, is unknown."""
     try:
-        return json.loads(text)
+        return json.loads(text, parse_constant=lambda name: None)
     except ValueError:
         return text
 
 
-def _event_or_record(topic: str, message: dict[str, Any]) -> Iterator[Event | Record]:
-    """Yield the event or the record of a message; nothing for a topic of others."""
-    if topic == TICKS:
-        for name, words in NAMED.items():
-            message[name] = words.index(message[name])
-        values = [message[name] for name in NAMES]
-        if not all(isinstance(value, (int, float)) for value in values):
-            raise ValueError("a value that is not a number")
-        yield Record(*values)
-    elif topic == EVENTS:
-        yield message
+def _not_finite(value: Any, name: str = "") -> str:
+    """The name of the first number in plain data that is not finite; empty if all are."""
+    if isinstance(value, float):
+        return "" if isfinite(value) else name
+    if isinstance(value, dict):
+        return next(filter(None, (_not_finite(part, key) for key, part in value.items())), "")
+    if isinstance(value, list):
+        return next(filter(None, (_not_finite(part, name) for part in value)), "")
+    return ""
+
+
+def _record(message: dict[str, Any]) -> Record:
+    for name, words in NAMED.items():
+        message[name] = words.index(message[name])
+    values = [message[name] for name in NAMES]
+    if not all(isinstance(value, (int, float)) for value in values):
+        raise ValueError("a value that is not a number")
+    return Record(*values)

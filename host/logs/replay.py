@@ -15,11 +15,13 @@ from typing import Any
 from host.logs.log import Gaps, Log
 from host.logs.mcap_reading import LogFile
 from host.logs.tap import Event
+from host.util.provenance import sources
 from robot.blackbox import Snapshot
 from robot.kicks import WHEELS, Kick
 from robot.params import Params
 from robot.record import Record
 from robot.safety import FAULT, RUNNING, limit_duty
+from robot.sources import of_robot
 from robot.wheel import Wheel
 
 # Another machine's libm may round sin, cos, exp and tanh differently in the last bit.
@@ -144,6 +146,27 @@ class _Controller:
                 recorded = getattr(record, f"{wheel.side}_{name}")
                 if pack("d", recorded) != pack("d", value):
                     yield Mismatch(record.tick, f"{wheel.side}_{name}", recorded, value)
+
+
+def other_sources(info: dict[str, Any]) -> list[str]:
+    """Whether a log comes from other code than this, with which its replay may differ.
+
+    Args:
+        info: The log's.
+
+    Returns:
+        Sentences; none if the sources are the same, or the log does not say them.
+    """
+    programs = {
+        "robot_sources": ("the robot's program that this log comes from", of_robot()),
+        "sources": ("the kickctl that recorded this log", sources()),
+    }
+    return [
+        f"{program} has other sources ({info[name]}) than this one ({ours}): a difference may come"
+        " from that"
+        for name, (program, ours) in programs.items()
+        if info.get(name, "") not in ("", ours)
+    ]
 
 
 def replay(log: Log | LogFile) -> ReplayResult:

@@ -15,10 +15,11 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from itertools import islice
-from math import nan
+from math import isnan, nan
 from pathlib import Path
 from typing import IO, Any, TextIO
 
+from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import require_no_log
 from host.logs.tap import Event
 from host.util.whole_files import naming, whole_file
@@ -43,45 +44,94 @@ _BLOCK = 4096
 Row = tuple[Any, ...]
 
 
-def save_csv(stream: Iterable[Event | Record], path: str | Path) -> int:
+FORMATS = ("csv", "npz")
+
+
+def format_of(path: str | Path, wanted: str | None = None) -> str:
+    """The format of a table that is to be written to a file, as its ending says.
+
+    Args:
+        path: The file. An ending that says nothing, as that of /dev/stdout, is one of any format.
+        wanted: The format if it is known: one of FORMATS.
+
+    Returns:
+        One of FORMATS; csv if nothing says which.
+
+    Raises:
+        LogError: The file is a log, or its ending is that of another format, or, if no format is
+            `wanted`, of none.
+    """
+    require_no_log(path)
+    ending = Path(path).suffix.lower().removeprefix(".")
+    if ending in FORMATS and wanted in (ending, None):
+        return ending
+    if ending in FORMATS:
+        raise LogError(
+            f"{path} cannot be written as {wanted}: its ending says {ending}",
+            f"end its name with .{wanted}, or choose --format {ending}",
+        )
+    if ending and wanted is None:
+        raise LogError(
+            f"the ending of {path} does not say which table to write",
+            f"end its name with .{' or .'.join(FORMATS)}, or say --format",
+        )
+    return wanted or "csv"
+
+
+def save_csv(
+    stream: Iterable[Event | Record], path: str | Path, *, new: bool = False, excel: bool = False
+) -> int:
     """Write the table as a file of comma-separated values, which appears when it is whole.
 
     Args:
         stream: A log's events and records, in their order.
         path: The file; what it held is replaced, unless that is a log.
+        new: Whether the file must not exist.
+        excel: See `write_csv`.
 
     Returns:
         How many rows it has.
 
     Raises:
-        LogError: The file is a log.
+        LogError: The file is a log, or its ending is that of another format.
+        FileTaken: `new`, and there is such a file.
         OSError: It cannot be written.
     """
-    require_no_log(path)
-    with whole_file(path) as draft, draft.open("w", encoding="utf-8", newline="") as out:
-        return write_csv(stream, out)
+    format_of(path, "csv")
+    with whole_file(path, new=new) as draft, draft.open("w", encoding="utf-8", newline="") as out:
+        return write_csv(stream, out, excel=excel)
 
 
-def write_csv(stream: Iterable[Event | Record], out: TextIO) -> int:
+def write_csv(stream: Iterable[Event | Record], out: TextIO, *, excel: bool = False) -> int:
     """Write the table as comma-separated values below a line of column names.
 
     Args:
         stream: A log's events and records, in their order.
         out: Where to write.
+        excel: Whether to separate values by semicolons, and write decimal commas, as spreadsheets
+            expect them in most of Europe. A number that is not known is empty.
 
     Returns:
         How many rows there are.
     """
-    writer = csv.writer(out, lineterminator="\n")
+    writer = csv.writer(out, lineterminator="\n", delimiter=";" if excel else ",")
     writer.writerow(COLUMNS)
     count = 0
     for row in _rows(stream):
-        writer.writerow(row)
+        writer.writerow(map(_with_comma, row) if excel else row)
         count += 1
     return count
 
 
-def save_npz(stream: Iterable[Event | Record], info: dict[str, Any], path: str | Path) -> int:
+def _with_comma(value: Any) -> Any:
+    if not isinstance(value, float):
+        return value
+    return "" if isnan(value) else repr(value).replace(".", ",")
+
+
+def save_npz(
+    stream: Iterable[Event | Record], info: dict[str, Any], path: str | Path, *, new: bool = False
+) -> int:
     """Write the columns as arrays of an .npz file, and `info` and `events` as JSON text.
 
     The columns wait in temporary files beside it, because an .npz file has one after the other.
@@ -90,22 +140,24 @@ def save_npz(stream: Iterable[Event | Record], info: dict[str, Any], path: str |
         stream: A log's events and records, in their order.
         info: What was run, as in Log.
         path: The file; what it held is replaced, unless that is a log.
+        new: Whether the file must not exist.
 
     Returns:
         How many rows it has.
 
     Raises:
-        LogError: The file is a log.
+        LogError: The file is a log, or its ending is that of another format.
+        FileTaken: `new`, and there is such a file.
         OSError: It cannot be written.
     """
-    require_no_log(path)
+    format_of(path, "npz")
     events: list[Event] = []
     with ExitStack() as stack:
-        draft = stack.enter_context(whole_file(path))
+        draft = stack.enter_context(whole_file(path, new=new))
         stack.enter_context(naming(path))
-        # A device or a pipe has no draft, and no other file belongs beside it.
-        folder = None if draft == Path(path).resolve() else draft.parent
-        files = {name: stack.enter_context(tempfile.TemporaryFile(dir=folder)) for name in COLUMNS}
+        files = {
+            name: stack.enter_context(tempfile.TemporaryFile(dir=draft.parent)) for name in COLUMNS
+        }
         count = _fill(files, _rows(_keep_events(stream, events)))
         _write_archive(draft, files, count, {"info": info, "events": events})
     return count

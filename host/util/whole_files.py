@@ -1,7 +1,7 @@
 """Files that appear under their names only when they are whole.
 
 A writer that fails, is interrupted or finds the disk full leaves what was there before: the old
-file, or none.
+file, or none. What is no file, such as a pipe, gets the whole of what was written, at the end.
 """
 
 from __future__ import annotations
@@ -10,20 +10,34 @@ import errno
 import os
 import secrets
 import shutil
+import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from host.errors import WrongUse
+
 # What os.link says on file systems that have no hard links.
 _NO_LINKS = {errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.EMLINK}
+
+
+class FileTaken(WrongUse):
+    """There is a file of this name already, and nobody allowed to replace it."""
+
+    def __init__(self, path: str | Path) -> None:
+        super().__init__(
+            f"{path} exists already", "choose another name, or replace the file with --force"
+        )
 
 
 @contextmanager
 def whole_file(path: str | Path, *, new: bool = False) -> Iterator[Path]:
     """Yield the path of a draft beside a file; it gets the file's name at the end of the block.
 
-    If the block fails, or writes no draft, nothing has changed. A device or a pipe is not replaced:
-    the block writes to it directly.
+    If the block fails, or writes no draft, nothing has changed. A device, a pipe or a descriptor of
+    this process, such as /dev/stdout, is not replaced: the draft lies elsewhere, and is copied to
+    it at the end.
 
     Args:
         path: The file.
@@ -34,25 +48,81 @@ def whole_file(path: str | Path, *, new: bool = False) -> Iterator[Path]:
         The draft's path, with the file's ending.
 
     Raises:
-        FileExistsError: `new`, and there is such a file.
+        FileTaken: `new`, and there is such a file.
         OSError: The file cannot be written. The error names the file, not the draft.
     """
     target = Path(os.path.realpath(path))  # a symbolic link keeps pointing to its file
-    if new and os.path.lexists(path):
-        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
-    if target.exists() and not target.is_file():
-        with naming(path):
-            yield target
+    if is_stream(path):
+        with tempfile.TemporaryDirectory() as folder, naming(path):
+            draft = Path(folder, "draft").with_suffix(target.suffix[:40])
+            yield draft
+            if draft.exists():
+                _copy(draft, path)
         return
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    require_free(path, replace=not new)
     draft = target.with_name(f".kickctl-{secrets.token_hex(8)}{target.suffix[:40]}")
     try:
         with naming(path, draft):
             yield draft
             if draft.exists():
                 (_claim if new else _replace)(draft, target)
+    except FileExistsError:  # another program was faster
+        raise FileTaken(path) from None
     finally:
         with suppress(OSError):
             draft.unlink()
+
+
+def require_free(path: str | Path, *, replace: bool = False) -> None:
+    """Raise FileTaken if there is a file of this name, unless it may be replaced.
+
+    Raise WrongUse if it is a folder.
+    """
+    if Path(path).is_dir():
+        raise WrongUse(f"{path} is a folder", "name a file")
+    if not replace and os.path.lexists(path) and not is_stream(path):
+        raise FileTaken(path)
+
+
+def is_stream(path: str | Path) -> bool:
+    """Whether a path names something to write to that cannot be replaced: a device or a pipe."""
+    if descriptor_of(path) is not None:
+        return True
+    path = Path(path)
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
+def descriptor_of(path: str | Path) -> int | None:
+    """The descriptor of this process that a path names, as /dev/stdout names 1; None for others.
+
+    What is behind it may be a pipe or a file. It must be neither opened again, which would empty
+    the file, nor replaced.
+    """
+    place = os.path.abspath(path)  # noqa: PTH100 - Path.absolute keeps '..'
+    for _ in range(40):  # as many links as the kernel follows
+        folder, name = os.path.split(place)
+        if os.path.realpath(folder) == f"/proc/{os.getpid()}/fd" and name.isdecimal():
+            return int(name)
+        try:
+            place = os.path.join(folder, os.readlink(place))  # noqa: PTH115, PTH118
+        except OSError:
+            break
+    return None
+
+
+def _copy(draft: Path, path: str | Path) -> None:
+    """Copy a draft to a device, a pipe or a descriptor."""
+    descriptor = descriptor_of(path)
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    with (
+        draft.open("rb") as source,
+        open(path if descriptor is None else os.dup(descriptor), "wb") as out,  # noqa: PTH123
+    ):
+        shutil.copyfileobj(source, out)
 
 
 @contextmanager
@@ -62,13 +132,15 @@ def naming(path: str | Path, draft: Path | None = None) -> Iterator[None]:
         yield
     except OSError as error:
         if error.filename is None or error.filename == os.fspath(draft or ""):
-            error.filename, error.filename2 = str(path), None
+            error.filename = str(path)
+            if error.filename2 is not None:
+                error.filename2 = None
         raise
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Write a text file that is whole whenever it is there. Raises OSError."""
-    with whole_file(path) as draft:
+def write_text(path: str | Path, text: str, *, new: bool = False) -> None:
+    """Write a text file that is whole whenever it is there. Raises as `whole_file` does."""
+    with whole_file(path, new=new) as draft:
         draft.write_text(text, encoding="utf-8")
 
 

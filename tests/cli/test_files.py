@@ -1,6 +1,7 @@
 """No verb destroys a file, or loses one to another program."""
 
 import json
+import os
 import shutil
 import threading
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from host.errors import NotDone
 from host.films.movie import Movie
 from host.logs.log import Log
 from host.logs.log_folder import in_folder
@@ -21,29 +23,114 @@ def log(kickctl):
     return Path(json.loads(kickctl("record", "1", "--seed", "1", "--json")[1])["log"])
 
 
-@pytest.mark.parametrize("form", ["csv", "npz"])
-def test_an_export_never_replaces_a_log(kickctl, log, form):
-    link = Path("link.csv")
-    link.symlink_to(log)
-    other = Path("other.csv")
-    shutil.copy(log, other)
-    before = log.read_bytes()
-    for out in (log, link, other):
-        status, answer, err = kickctl(
-            "log", "export", str(log), "--format", form, "--out", str(out)
-        )
+# Each writes a file whose name the user gives.
+WRITERS = (
+    ("log", "export", "LOG", "--out", "OUT.csv"),
+    ("log", "export", "LOG", "--out", "OUT.npz"),
+    ("log", "plot", "LOG", "--out", "OUT.png"),
+    ("log", "film", "LOG", "--seconds", "0.1", "--out", "OUT.gif"),
+    ("rods", "--out", "OUT.gif"),
+    ("body", "car", "--time", "0.1", "--model", "OUT.xml"),
+    ("body", "car", "--time", "0.1", "--film", "OUT.gif"),
+)
+
+
+def command(writer, log, out):
+    """The command line of a writer, and the file that it writes."""
+    name = writer[-1].replace("OUT", str(out))
+    return [*writer[:-1], name] if "LOG" not in writer else [
+        *(str(log) if word == "LOG" else word for word in writer[:-1]),
+        name,
+    ], Path(name)
+
+
+def everything(folder="."):
+    return {path: path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("writer", WRITERS, ids=" ".join)
+@pytest.mark.parametrize("force", [(), ("--force",)])
+def test_no_verb_replaces_a_log(kickctl, log, writer, force):
+    line, out = command(writer, log, "other")
+    shutil.copy(log, out)
+    link, to_link = command(writer, log, "link")
+    to_link.symlink_to(log)
+    mcap = [*line[:-1], str(log)]
+    before = everything()
+    for words in (line, link, mcap, [*line[:-1], "empty.mcap"]):
+        status, answer, err = kickctl(*words, *force)
         assert (status, answer) == (2, "")
-        assert "is a log" in err
-        assert out.read_bytes() == before
-    assert {path.name for path in Path("logs").iterdir()} == {log.name}
+        assert "log" in err or "end its name with" in err
+    assert everything() == before
 
 
-def test_a_log_that_is_named_as_a_table_is_not_replaced_by_it(kickctl, log):
-    odd = Path("odd.csv")
-    shutil.copy(log, odd)
-    status, answer, _ = kickctl("log", "export", str(odd), "--json")
-    assert (status, json.loads(answer)["error"]["status"]) == (2, 2)
-    assert odd.read_bytes() == log.read_bytes()
+@pytest.mark.parametrize("writer", WRITERS, ids=" ".join)
+def test_a_file_is_replaced_only_by_force(kickctl, log, writer):
+    line, out = command(writer, log, "mine")
+    for words in (b"my own words", b"", b"12345"):
+        out.write_bytes(words)
+        before = everything()
+        status, answer, err = kickctl(*line)
+        assert (status, answer) == (2, "")
+        assert f"{out} exists already" in err
+        assert "--force" in err
+        assert everything() == before
+    if writer[:1] == ("log",):
+        assert kickctl(*line, "--force")[0] == 0
+        assert out.stat().st_size > 100
+
+
+def test_two_exports_to_one_name_make_one(kickctl, log, monkeypatch):
+    """The other program was faster, after this one had found the name free."""
+    monkeypatch.setattr(
+        "host.commands.log.require_place", lambda options, path: path.write_text("theirs")
+    )
+    status, _, err = kickctl("log", "export", str(log), "--out", "table.csv")
+    assert status == 2
+    assert "exists already" in err
+    assert Path("table.csv").read_text() == "theirs"
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (("--out", "a.csv", "--format", "npz"), "its ending says csv"),
+        (("--out", "a.npz", "--format", "csv"), "its ending says npz"),
+        (("--out", "a.xlsx"), "does not say which table"),
+        (("--out", "a.npz", "--excel"), "kind of csv"),
+        (("--json",), "name a file with --out"),
+        (("--json", "--out", "/dev/stdout"), "name a file with --out"),
+        (("--out", "logs"), "is a folder"),
+        (("--out", "nowhere/a.csv"), "No such file"),
+    ],
+)
+def test_an_export_that_nobody_can_mean_is_refused(kickctl, log, words, reason):
+    before = everything()
+    status, answer, err = kickctl("log", "export", str(log), *words)
+    assert status == 2
+    assert reason in err
+    assert "--json" in words or answer == ""
+    assert everything() == before
+
+
+def test_the_ending_decides_the_format(kickctl, log):
+    assert kickctl("log", "export", str(log), "--out", "a.npz")[0] == 0
+    assert len(np.load("a.npz")["tick"]) > 10
+    assert kickctl("log", "export", str(log), "--out", "a.CSV")[0] == 0
+    assert Path("a.CSV").read_text() == kickctl("log", "export", str(log))[1]
+
+
+@pytest.mark.parametrize("verb", ["record", "recover", "pull"])
+def test_a_log_has_no_name_of_another_kind_of_file(kickctl, log, verb):
+    words = {
+        "record": ("record", "1"),
+        "recover": ("log", "recover", str(log)),
+        "pull": ("log", "pull"),
+    }[verb]
+    status, answer, err = kickctl(*words, "--out", "table.csv")
+    assert (status, answer) == (2, "")
+    assert "end its name with .mcap" in err
+    assert not Path("table.csv").exists()
 
 
 def test_an_export_that_fails_leaves_the_old_table(kickctl, log, monkeypatch):
@@ -54,11 +141,22 @@ def test_an_export_that_fails_leaves_the_old_table(kickctl, log, monkeypatch):
         raise MemoryError
 
     monkeypatch.setattr("host.logs.tables._rows", fail)
-    status, _, err = kickctl("log", "export", str(log), "--out", str(table))
+    status, _, err = kickctl("log", "export", str(log), "--out", str(table), "--force")
     assert status == 1
     assert "memory" in err
     assert table.read_text() == "old"
     assert {path.name for path in kickctl.folder.iterdir()} == {"logs", "table.csv"}
+
+
+def test_a_table_goes_through_a_pipe(kickctl, log):
+    os.mkfifo("pipe")
+    read = []
+    reader = threading.Thread(target=lambda: read.append(Path("pipe").read_text()))
+    reader.start()
+    status, answer, _ = kickctl("log", "export", str(log), "--out", "pipe", "--json")
+    reader.join()
+    assert (status, json.loads(answer)["table"]) == (0, "pipe")
+    assert read == [kickctl("log", "export", str(log))[1]]
 
 
 def test_logs_that_begin_in_the_same_second_have_names_of_their_own(kickctl):
@@ -81,7 +179,7 @@ def test_logs_that_begin_in_the_same_second_have_names_of_their_own(kickctl):
 def test_recover_writes_a_new_log(kickctl, log):
     cut = Path("cut.mcap")
     cut.write_bytes(log.read_bytes()[:-200])
-    assert "log recover cut.mcap" in kickctl("log", "replay", "cut.mcap")[1]
+    assert "log recover cut.mcap" in kickctl("log", "replay", "cut.mcap")[2]
     answer = json.loads(kickctl("log", "recover", "cut.mcap", "--json")[1])
     assert answer["log"] == "cut-recovered.mcap"
     assert answer["was_whole"] is False
@@ -131,7 +229,7 @@ def test_a_film_that_fails_leaves_the_one_before(tmp_path):
     def full():
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(OSError, match="No space"):
+    with pytest.raises(NotDone, match="No space"):
         fail()
     assert path.read_bytes() == before
     assert [file.name for file in tmp_path.glob("*film*")] == ["film.gif"]

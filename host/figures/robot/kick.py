@@ -53,11 +53,12 @@ def spans(log: Log, begin: int = 0) -> list[Span]:
         if begin <= row < after:
             last = log.records[after - 1]
             end_s = log.records[after].t_s if after < len(log) else last.t_s + last.dt_s
-            found.append(Span(log.records[row].t_s, end_s, _label(kick)))
+            found.append(Span(log.records[row].t_s, end_s, kick_words(kick)))
     return found
 
 
-def _label(kick: Event) -> str:
+def kick_words(kick: Event) -> str:
+    """A kick's name, as in 'phase kick, 4 ticks, left wheel'."""
     ticks = f"{kick['ticks']} tick{'s' if kick['ticks'] > 1 else ''}"
     wheel = "" if len(kick["wheels"]) > 1 else f", {kick['wheels'][0]} wheel"
     return f"{kick['mode']} kick, {ticks}{wheel}"

@@ -6,7 +6,9 @@ import sys
 import numpy as np
 import pytest
 
+from host.errors import KickctlError
 from host.logs.log import Log
+from host.logs.tables import COLUMNS
 from robot.record import NAMES
 from tests.fakes import Rig, eventful
 
@@ -42,8 +44,24 @@ def test_columns_are_the_channels_and_the_speeds():
         assert arrays[name].tolist() == [getattr(record, name) for record in log.records]
     assert np.all(np.diff(arrays["tick"]) == 1)
     assert arrays["left_duty_pct"].min() < 0
-    with pytest.raises(KeyError, match="left_x1"):
-        log.column("x1")
+    assert set(arrays) == set(COLUMNS)
+    assert log.column("left_omega_rad_s").tolist() == arrays["left_omega_rad_s"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("x1", "'left_x1'"),
+        ("left_omega", "'left_omega_rad_s'"),
+        ("rihgt_torque", "'right_torque'"),
+        ("time", "t_s"),
+        ("", "t_s"),
+    ],
+)
+def test_an_unknown_column_is_answered_with_what_was_meant(name, meant):
+    with pytest.raises(KickctlError, match="no column") as refusal:
+        Log().column(name)
+    assert meant in refusal.value.hint
 
 
 def test_differences_of_ticks_do_not_wrap_around():

@@ -2,11 +2,14 @@
 
 import errno
 import os
+import subprocess
+import sys
 import threading
 
 import pytest
 
-from host.util.whole_files import naming, whole_file, write_text
+from host.util.whole_files import FileTaken, descriptor_of, naming, whole_file, write_text
+from tests.lint.sources import ROOT
 
 
 def names(folder):
@@ -80,6 +83,46 @@ def test_a_pipe_is_written_to_and_not_replaced(tmp_path):
     assert pipe.is_fifo()
 
 
+_TO_STANDARD_OUTPUT = """
+import sys
+from host.util.whole_files import write_text
+print("words before it")
+write_text(sys.argv[1], "through it\\n")
+"""
+
+
+@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "link"])
+@pytest.mark.parametrize("kind", ["pipe", "file"])
+def test_standard_output_is_written_to_whatever_is_behind_it(tmp_path, name, kind):
+    """A file that standard output appends to is neither emptied nor replaced."""
+    (tmp_path / "link").symlink_to("/dev/stdout")
+    behind = tmp_path / "behind"
+    behind.write_text("there before\n")
+    command = [sys.executable, "-c", _TO_STANDARD_OUTPUT, name]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with behind.open("a") as file:
+        out = subprocess.PIPE if kind == "pipe" else file
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, stdout=out, text=True, check=True
+        )
+    text = done.stdout if kind == "pipe" else behind.read_text().removeprefix("there before\n")
+    assert text == "words before it\nthrough it\n"
+    assert behind.read_text().startswith("there before\n")
+    assert names(tmp_path) == ["behind", "link"]
+
+
+def test_a_file_that_is_open_is_no_descriptor(tmp_path):
+    with (tmp_path / "1").open("w"):
+        assert descriptor_of(tmp_path / "1") is None
+    assert descriptor_of("/dev/null") is None
+    assert descriptor_of("/proc/1/fd/1") is None
+
+
+def test_a_folder_is_refused_before_anything_is_written(tmp_path):
+    with pytest.raises(IsADirectoryError), whole_file(tmp_path):
+        raise AssertionError("the block has begun")
+
+
 def test_errors_name_the_file_and_not_the_draft(tmp_path):
     with pytest.raises(FileNotFoundError) as nowhere:
         write_text(tmp_path / "nowhere" / "file", "text")
@@ -106,7 +149,7 @@ def test_of_many_writers_of_one_new_name_one_gets_it(tmp_path, monkeypatch, link
             with whole_file(tmp_path / "log", new=True) as draft:
                 draft.write_text(str(number))
                 barrier.wait()
-        except FileExistsError:
+        except FileTaken:
             refused.append(str(number))
 
     writers = [threading.Thread(target=write, args=(number,)) for number in range(8)]
