@@ -1,4 +1,4 @@
-"""kickctl params list|get|set."""
+"""kickctl params list|get|set|reset."""
 
 import argparse
 from typing import Any
@@ -9,18 +9,20 @@ from host.commands._terminal import print_table, robot_of, say, show
 from host.errors import WrongUse
 from host.link.settings import parse_setting
 
-HELP = "the robot's parameters: list, get NAME, set NAME=VALUE ..."
+HELP = "the robot's parameters: list, get NAME, set NAME=VALUE ..., reset [NAME ...]"
+# They say how the motors are mounted. Other values would turn a wheel the wrong way.
+_OF_THE_BODY = ("polarity_left", "polarity_right")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The action and its names."""
-    parser.add_argument("action", choices=("list", "get", "set"))
+    parser.add_argument("action", choices=("list", "get", "set", "reset"))
     parser.add_argument("names", nargs="*", metavar="NAME[=VALUE]")
 
 
 def run(options: argparse.Namespace) -> int:
-    """List, get or set. The robot checks a set, and changes all of it or nothing."""
-    if (options.action == "list") == bool(options.names):
+    """List, get, set or reset. The robot checks changes, and makes all of them or none."""
+    if options.action != "reset" and (options.action == "list") == bool(options.names):
         raise WrongUse(
             f"params {options.action} takes {'no names' if options.names else 'at least one name'}",
             "see kickctl params --help",
@@ -32,12 +34,12 @@ def run(options: argparse.Namespace) -> int:
         for name in names:
             if name not in rows:
                 raise WrongUse(f"the robot has no parameter '{name}'", "it has " + ", ".join(rows))
+        if options.action == "reset":
+            changes = _resets(robot, rows, options.names)
+            names = list(changes)
         if changes:
             robot.set(**changes)
-            if robot.link.virtual:
-                say(_gone(options.names))
-            elif "k" in changes and not options.json:
-                _say_what_rests(robot)
+            _say_what_follows(options, robot, changes)
         values = robot.status()["params"]
     if options.action == "list":
         table = [
@@ -56,9 +58,46 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _resets(
+    robot: Robot, rows: dict[str, dict[str, Any]], names: list[str]
+) -> dict[str, float | str]:
+    """The defaults of these parameters that have other values now.
+
+    Without names they are those of all parameters but _OF_THE_BODY.
+    """
+    values = robot.status()["params"]
+    if not names:
+        names = [name for name in rows if name not in _OF_THE_BODY]
+        kept = [name for name in _OF_THE_BODY if values[name] != rows[name]["default"]]
+        if kept:
+            say(
+                f"{' and '.join(kept)} stay as they are: they say how the motors are mounted."
+                f" To reset them too: kickctl params reset {' '.join(kept)}"
+            )
+    changes = {
+        name: rows[name]["default"] for name in names if values[name] != rows[name]["default"]
+    }
+    if not changes:
+        say("nothing to reset: these parameters have their defaults already")
+    return changes
+
+
+_ENDS = "the simulated robot ends with this command; the next one begins with its address's values."
+
+
 def _shown_unit(row: dict[str, Any]) -> str:
     """The unit in a parameter's row; empty for a number without one."""
     return "" if row["unit"] == "1" else str(row["unit"])
+
+
+def _say_what_follows(
+    options: argparse.Namespace, robot: Robot, changes: dict[str, float | str]
+) -> None:
+    """Say how long changes hold, or what they leave at rest."""
+    if robot.link.virtual:
+        say(_gone(options.names) if options.action == "set" else _ENDS)
+    elif "k" in changes and not options.json:
+        _say_what_rests(robot)
 
 
 def _say_what_rests(robot: Robot) -> None:

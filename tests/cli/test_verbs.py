@@ -134,6 +134,38 @@ def test_params_set_and_get(kickctl):
     assert json.loads(kickctl("params", "get", "k", "--json")[1]) == {"k": 8.0}
 
 
+def test_params_reset_brings_all_defaults_back_or_those_that_are_named(kickctl):
+    changed = ("--brick", "sim://?k=2&tau_s=1&link_loss=hold", "params", "reset")
+    assert json.loads(kickctl(*changed, "--json")[1]) == {
+        "tau_s": 0.25,
+        "k": 8.0,
+        "link_loss": "stop",
+    }
+    status, out, err = kickctl(*changed, "tau_s", "a")
+    assert (status, out) == (0, "tau_s = 0.25 s\n")
+    assert "ends with this command" in err
+    status, out, err = kickctl("params", "reset")
+    assert (status, out) == (0, "")
+    assert "nothing to reset" in err
+    assert json.loads(kickctl("params", "reset", "k", "--json")[1]) == {}
+
+
+def test_params_reset_without_names_leaves_how_the_motors_are_mounted(kickctl):
+    mirrored = ("--brick", "sim://?polarity_right=-1&k=2&idle=1", "params", "reset")
+    status, out, err = kickctl(*mirrored)
+    assert (status, out) == (0, "k = 8.0\n")
+    assert "kickctl params reset polarity_right" in err
+    assert kickctl(*mirrored, "polarity_right")[1] == "polarity_right = 1\n"
+
+
+def test_params_reset_changes_all_or_nothing(kickctl):
+    running = "sim://?polarity_right=-1&k=2"
+    status, out, err = kickctl("--brick", running, "params", "reset", "k", "polarity_right")
+    assert (status, out) == (1, "")
+    assert "polarity_right cannot change while the robot runs" in err
+    assert kickctl("params", "reset", "mass")[0] == 2
+
+
 def test_a_number_without_a_unit_is_shown_without_one(kickctl):
     assert kickctl("params", "get", "k", "tau_s", "link_loss")[1].splitlines() == [
         "k = 8.0",
