@@ -32,8 +32,9 @@ class Connection(LastingLink):
     """A conversation with a robot that this program may control.
 
     Every method that talks to the robot raises KickctlError in words when that fails. A connection
-    that nobody refers to any more hangs up, as a program does that ends: if it had control, the
-    robot takes its host for lost.
+    that nobody refers to any more hangs up. If it had control, the newest connection of this
+    program to the same robot has it from then on; without one, the robot takes its host for lost,
+    as when a program ends.
     """
 
     def __enter__(self) -> Self:
@@ -56,16 +57,6 @@ class Connection(LastingLink):
                 self.release()
             self._end("this connection has been closed")
 
-    @property
-    def trusted(self) -> bool:
-        """Whether robot and host have shown each other the token."""
-        return self._talk.trusted
-
-    @property
-    def drives(self) -> bool:
-        """Whether this connection controls the robot, as far as it knows."""
-        return self._leased
-
     def lease(self) -> None:
         """Take control. Others may look on and stop the robot.
 
@@ -76,13 +67,13 @@ class Connection(LastingLink):
             RefusedByRobot: This machine does not have the robot's token.
         """
         self.request("lease", sealed=True)
-        self._leased = True
+        self.gain_control()
         neighbours.take_control(self)
 
     def release(self) -> None:
         """Give control back; the robot goes on as it is."""
-        if self._leased:
-            self._leased = False
+        if self.drives:
+            self.lose_control()
             self.request("release", sealed=True)
 
     def request(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from copy import copy
 from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import Any
@@ -57,7 +58,7 @@ class LastingLink:
         self._talk = Conversation(token, name, client=neighbours.client_id())
         self._lock = threading.RLock()
         self._sending = threading.Lock()
-        self._leased = False
+        self._control = neighbours.Control(name, link)
         self._heartbeat_due = 0.0
         self._silence = Silence()
         self._give_up_at: float | None = None
@@ -66,45 +67,76 @@ class LastingLink:
         self._closed = threading.Event()
         self._broken: KickctlError | None = None
         self._endings: list[Callable[[], object]] = []
-        self._hang_up = finalize(self, _hang_up, link, self._closed, self._endings)
+        self._hang_up = finalize(self, _hang_up, link, self._closed, self._endings, self._control)
         self._hang_up.atexit = False
         self.hello: dict[str, Any] = {"boot": None}
-        neighbours.arrive(self)
+        left = neighbours.arrive(self)
         with self._lock:
             try:
                 self._open()
             except BaseException:
                 self._hang_up()
+                for control in left:
+                    neighbours.inherit(control)
                 raise
             self.hello = self._talk.hello
             self.started_utc = datetime.now(UTC)
             self.clock_zero_s = self._clock_zero()
             self._opened_s = link.now()
             self._whole = True
+            for control in left:
+                neighbours.inherit(control)
         if not link.virtual:
             arguments = ref(self), self._closed
             threading.Thread(
                 target=_keep_alive, args=arguments, name="kickctl link", daemon=True
             ).start()
 
+    @property
+    def trusted(self) -> bool:
+        """Whether robot and host have shown each other the token."""
+        return self._talk.trusted
+
+    @property
+    def drives(self) -> bool:
+        """Whether this connection controls the robot, as far as it knows."""
+        return self._control.held
+
+    @property
+    def may_drive(self) -> bool:
+        """Whether it is open, and robot and host have shown each other the token."""
+        return self._broken is None and self.trusted
+
     def _end(self, why: str) -> None:
-        self._leased = False
+        self._control.held = False
         self._broken = NoLink(why, "call connect again")
         self._hang_up()
 
-    def give_way(self) -> None:
-        """Hang up, since a newer connection of this program needs the line."""
+    def give_way(self) -> neighbours.Control:
+        """Hang up, since a newer connection of this program needs the line.
+
+        Returns:
+            Whether this connection drove the robot, for the newer one.
+        """
         # Whoever reads the line now is done within a moment; a stop may not wait for longer.
         locked = self._lock.acquire(timeout=1.0)
         try:
+            left = copy(self._control)
             self._end("a newer connection of this program has taken over the line")
+            return left
         finally:
             if locked:
                 self._lock.release()
 
+    def gain_control(self) -> None:
+        """This connection drives the robot now, instead of another one of this program."""
+        self._heartbeat_due = 0.0
+        self._control.boot = self._talk.hello["boot"]
+        self._control.held = True
+
     def lose_control(self) -> None:
         """Another connection of this program drives the robot now."""
-        self._leased = False
+        self._control.held = False
 
     def pump(self, timeout_s: float) -> bool:
         """Take in what the robot has sent.
@@ -163,7 +195,7 @@ class LastingLink:
             self._silence.ask(self.link.now())
 
     def _send_what_is_due(self, now: float) -> None:
-        if self._leased and now >= self._heartbeat_due:
+        if self._control.held and now >= self._heartbeat_due:
             self._heartbeat_due = now + HEARTBEAT_S
             self._send(self._talk.request("heartbeat", {}, sealed=True)[1])
         tick = self.stream.tick_to_ask_for(now)
@@ -176,7 +208,7 @@ class LastingLink:
         self.link.open()
         try:
             greet(self.link, self._talk, self._send, self.answer_s)
-            if self._leased:
+            if self._control.held:
                 self._retake_lease()
             self._silence.begin()
         except LinkLost as error:
@@ -213,17 +245,18 @@ class LastingLink:
                 failure = error
             except KickctlError as refusal:
                 # A robot that says no, such as one without a free place, is not asked again.
-                self._broken = refusal
+                self._give_up(refusal)
                 raise
             self._rest(pause_s)
             pause_s = min(1.0, 2.0 * pause_s)
         else:
             self.link.close()
-            self._broken = NoLink(
+            lost = NoLink(
                 f"the link to {self.link.uri} broke and did not come back: {failure.message}",
                 failure.hint,
             )
-            raise self._broken from failure
+            self._give_up(lost)
+            raise lost from failure
         self._opened_s = self.link.now()
         self.stream.interrupt()
         if self._talk.hello["boot"] != self.hello["boot"]:
@@ -231,6 +264,13 @@ class LastingLink:
             self.clock_zero_s = self._clock_zero()
             self.stream.restart(self.hello, self.clock_zero_s)
         self._whole = True
+
+    def _give_up(self, why: KickctlError) -> None:
+        """The link is gone for good: whoever waits for records need not wait any longer."""
+        self._control.held = False
+        self._broken = why
+        for end in self._endings:
+            end()
 
     def _rest(self, seconds: float) -> None:
         """Let time pass before the next attempt, unless the connection is closed."""
@@ -246,8 +286,9 @@ class LastingLink:
                 lambda: self._talk.answer(number) is not None,
                 self.answer_s,
             )
+            self.gain_control()
         except RefusedByRobot:
-            self._leased = False
+            self._control.held = False
 
     def _clock_zero(self) -> float:
         """UTC, in Unix seconds, when the robot's clock was at zero."""
@@ -257,7 +298,7 @@ class LastingLink:
         """Read what has come, and send what is due. Returns False if the link is gone for good."""
         if self._lock.acquire(blocking=False):
             try:
-                if not self._closed.is_set() and (self._leased or self.stream.wanted):
+                if not self._closed.is_set() and (self._control.held or self.stream.wanted):
                     while self._pump(0.0):
                         pass
             except KickctlError:
@@ -276,9 +317,15 @@ def _keep_alive(connection: ref[LastingLink], closed: threading.Event) -> None:
         del present
 
 
-def _hang_up(link: Link, closed: threading.Event, endings: list[Callable[[], object]]) -> None:
-    """End a connection and what lives on it, without giving control back."""
+def _hang_up(
+    link: Link,
+    closed: threading.Event,
+    endings: list[Callable[[], object]],
+    control: neighbours.Control,
+) -> None:
+    """End a connection and what lives on it, without giving control back to the robot."""
     closed.set()
+    neighbours.inherit(control)  # first: an ssh process may take a while to end
     link.close()
     for end in endings:
         end()

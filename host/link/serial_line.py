@@ -40,7 +40,7 @@ class SerialLink:
         import serial
 
         self.uri = uri
-        self._device = device
+        self.device = device
         self._shared = shared
         self._serial = serial.Serial(baudrate=baud, exclusive=True)
         self._serial.port = device
@@ -51,7 +51,7 @@ class SerialLink:
 
         Who sends a stop must not have to wait until a line is free.
         """
-        return type(self)(self.uri, self._device, int(self._serial.baudrate), shared=True)
+        return type(self)(self.uri, self.device, int(self._serial.baudrate), shared=True)
 
     def open(self) -> None:
         """Open the line, closing it first if it is open. Raises NoLink."""
@@ -74,15 +74,15 @@ class SerialLink:
         """Use the line beside the program that has set it up, if that may be. Raises NoLink."""
         if not self._shared:
             raise NoLink(
-                f"the serial line {self.uri} is in use: {holder(self._device)} has it open",
+                f"the serial line {self.uri} is in use: {holder(self.device)} has it open",
                 "end that program, or use the robot from there; `kickctl stop` works nevertheless",
             )
         try:
-            self._fd = os.open(self._device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+            self._fd = os.open(self.device, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         except OSError as error:
             raise NoLink(
                 f"nothing can be sent over {self.uri}, so the motors may still be running:"
-                f" {holder(self._device)} keeps the line for itself",
+                f" {holder(self.device)} keeps the line for itself",
                 "end that program and try again, press the back button on the brick, or take out"
                 " its battery",
             ) from error

@@ -7,7 +7,7 @@ import weakref
 
 import pytest
 
-from host.client.robot import Robot
+from host.client.robot import Robot, connect
 from host.errors import LeaseLost, NoLink
 from host.link.addresses import make_link
 from robot.record import STATES
@@ -39,6 +39,84 @@ def test_a_cell_that_connects_and_drives_can_be_run_twice(machine):
         robot.wait(0.1)
         assert robot.drives
     robot.close()
+
+
+def test_a_robot_drives_on_under_the_connection_that_replaces_its_driver(machine):
+    """A cell `robot = connect(...)` that is run again after the robot was started."""
+    robot = Robot(machine.link(), TOKEN, "nb")
+    robot.lease()
+    for _ in range(3):
+        robot = Robot(machine.link(), TOKEN, "nb")
+        assert robot.drives
+        robot.wait(0.6)  # three times as long as the robot keeps the lease of a silent host
+        assert STATES[machine.loop.safety.state] == "running"
+    robot.wait(0.1)
+    assert robot.record(0.3).kicks() == []
+    assert machine.loop.lease.name == "nb"
+    assert [event["event"] for _, event in machine.loop.blackbox._journal].count("stop") == 0
+    robot.close()
+
+
+def test_the_newest_connection_that_may_drive_inherits_control(machine):
+    robots = [Robot(machine.link(), TOKEN, f"robot {number}") for number in range(3)]
+    watcher = Robot(machine.link(), None, "watcher")
+    robots[0].lease()
+    robots[2].close()
+    del robots[0]
+    until(lambda: robots[0].drives)
+    assert not watcher.drives
+    assert not robots[1].drives
+    robots[0].wait(0.6)
+    assert STATES[machine.loop.safety.state] == "running"
+    robots[0].close()
+    watcher.close()
+
+
+def test_a_driver_without_an_heir_is_said_to_be_gone(machine, caplog):
+    robot = Robot(machine.link(), TOKEN, "nb")
+    robot.lease()
+    robot = Robot(machine.link(), None, "nb")
+    until(lambda: caplog.records)
+    (said,) = caplog.messages
+    assert "'nb'" in said
+    assert machine.link().uri in said
+    robot.wait(0.1)
+    until(lambda: STATES[machine.loop.safety.state] == "stopped")
+    robot.close()
+
+
+def test_a_connection_that_was_closed_hands_nothing_on(machine, caplog):
+    robot = Robot(machine.link(), TOKEN, "nb")
+    robot.lease()
+    other = Robot(machine.link(), TOKEN, "nb")
+    robot.close()
+    del robot
+    gc.collect()
+    assert not other.drives
+    assert not caplog.records
+    assert machine.loop.lease.holder is None
+    assert STATES[machine.loop.safety.state] == "running"
+    other.close()
+
+
+def test_an_embedded_robot_is_handed_on_too(link):
+    robot = Robot(link, link.token, "nb")
+    robot.lease()
+    robot = Robot(link.another(), link.token, "nb")
+    assert robot.drives
+    robot.wait(5)
+    assert robot.status()["state"] == "running"
+    assert robot.status()["controller"] == "nb"
+    robot.close()
+
+
+def test_two_embedded_robots_are_two(caplog):
+    for _ in range(2):
+        robot = connect("sim://", seed=1)
+        assert not robot.drives
+        robot.lease()
+    robot.close()
+    assert not caplog.records
 
 
 def test_the_last_to_take_control_has_it_and_the_others_do_not_keep_it(machine):
@@ -88,8 +166,10 @@ def test_a_new_connection_over_a_serial_line_takes_the_line(tmp_path):
     try:
         first = Robot(make_link(uri), TOKEN)
         first.kick("membrane")
-        with Robot(make_link(uri), TOKEN) as second:
-            second.wait(0.1)
+        with Robot(make_link(f"{uri}?baud=115200"), TOKEN) as second:
+            assert second.drives
+            second.wait(1.0)
+            assert STATES[machine.loop.safety.state] == "running"
             second.kick("membrane")
             with pytest.raises(NoLink, match="taken over"):
                 first.status()

@@ -45,7 +45,7 @@ def test_tcp_addresses(uri, address):
 def test_serial_addresses(uri, device, baud):
     link = make_link(uri)
     assert isinstance(link, SerialLink)
-    assert (link._device, link._serial.baudrate) == (device, baud)
+    assert (link.device, link._serial.baudrate) == (device, baud)
 
 
 @pytest.mark.parametrize(
