@@ -13,6 +13,7 @@ class KickctlError(Exception):
     status = 1
 
     def __init__(self, message: str, hint: str = "") -> None:
+        message, hint = escaped(message), escaped(hint)
         super().__init__(message)
         self.message = message
         self.hint = hint
@@ -78,6 +79,21 @@ def from_robot(error: dict[str, object]) -> KickctlError:
         "the robot refuses: " + printable(str(error.get("message"))),
         printable(str(error.get("hint", ""))),
     )
+
+
+def escaped(text: str) -> str:
+    """The text with codes for the letters that cannot be printed, but for line ends."""
+    return "".join(
+        letter
+        if letter.isprintable() or letter == "\n"
+        else letter.encode("unicode_escape").decode("ascii")
+        for letter in text
+    )
+
+
+def quotable(text: str) -> str:
+    """What a person gave, on one line of a message: at most 300 letters, codes for odd ones."""
+    return escaped(text[:300]).replace("\n", "\\n")
 
 
 def printable(text: str) -> str:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         WrongUse,
     )
     from host.logs.log import Log
+    from host.logs.mcap_files import LogError
     from host.perform.run import perform as run_experiment
     from kickctl.robots import KickOutcome, Robot, connect
 
@@ -44,6 +45,7 @@ __all__ = (
     "KickctlError",
     "NotDone",
     "WrongUse",
+    "LogError",
     "NoLink",
     "RefusedByRobot",
     "LeaseLost",
@@ -57,6 +59,7 @@ _PLACES = {
     "Listener": "host.client.listeners",
     "Records": "host.client.listeners",
     "Log": "host.logs.log",
+    "LogError": "host.logs.mcap_files",
     "run_experiment": "host.perform.run",
 }
 _OTHER_NAMES = {"run_experiment": "perform"}

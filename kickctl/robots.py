@@ -59,8 +59,9 @@ class KickOutcome(Outcome, Mapping[str, Any]):
 class Robot(client.Robot):
     """A robot to drive and to watch; `connect` returns one.
 
-    Every method that talks to it raises KickctlError in words when that fails. Leaving the `with`
-    block, or `close`, hangs up; the robot goes on as it is.
+    Every method that talks to it raises KickctlError in words when that fails, and WrongUse for an
+    argument that makes no sense, before anything changes. Leaving the `with` block, or `close`,
+    hangs up; the robot goes on as it is.
     """
 
     def kick_and_watch(
@@ -122,28 +123,4 @@ class Robot(client.Robot):
         return KickOutcome(**outcome.as_dict(), brick=self.link.uri, seed=self.hello["seed"])
 
 
-def connect(
-    uri: str | None = None,
-    seed: int | None = None,
-    token: str | None = None,
-    name: str = "kickctl",
-    *,
-    observe: bool = False,
-) -> Robot:
-    """Connect to a robot, real or simulated; to be used as a `with` block.
-
-    Args:
-        uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot. The
-            simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.
-        seed: Fixes all chances of the simulated robot.
-        token: The path of the token file, by default the usual place.
-        name: Who this is, for the robot and for other people.
-        observe: Only look on, and stop the robot if need be, which takes no token.
-
-    Returns:
-        The robot, to be used in a `with` block or closed.
-
-    Raises:
-        KickctlError: The robot cannot be reached, or refuses.
-    """
-    return Robot.connect(uri, seed, token, name, observe=observe)
+connect = Robot.connect

@@ -42,6 +42,8 @@ def load(path):
         TokenError: The file is missing, others may read it, or it holds no token.
     """
     _require_place(path)
+    if os.path.exists(path) and not (os.path.isfile(path) or stat.S_ISFIFO(os.stat(path).st_mode)):
+        raise TokenError("{} is no file that could hold a token".format(path))
     try:
         with open(path, "r") as file:
             mode = os.fstat(file.fileno()).st_mode

@@ -8,12 +8,13 @@ from pathlib import Path
 from host.client.conversation import Conversation
 from host.errors import NoLink, RefusedByRobot
 from host.link.transport import Link
+from host.util.arguments import need_path
 from robot.token import TokenError, default_path, load
 
 LOOK_S = 0.1
 
 
-def find_token(link: Link, path: str | None = None) -> bytes | None:
+def find_token(link: Link, path: str | Path | None = None) -> bytes | None:
     """The token for a link: its own if it has one, else a file's.
 
     Args:
@@ -24,8 +25,11 @@ def find_token(link: Link, path: str | None = None) -> bytes | None:
         The token; None if there is no file in the usual place.
 
     Raises:
+        WrongUse: The path is none.
         RefusedByRobot: The file holds no token, or others can read it.
     """
+    if path is not None:
+        path = need_path("token", path)
     own: bytes | None = getattr(link, "token", None)
     if own is not None:
         return own

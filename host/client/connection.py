@@ -95,6 +95,8 @@ class Connection(LastingLink):
         Raises:
             KickctlError: The robot refuses, does not answer, or cannot be reached.
         """
+        if self._broken is not None:
+            raise self._broken
         with self._lock:
             if not self._whole and self._broken is None:
                 self._reopen("it was left half open")

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from host.client.stop import Stopped, answered
 from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot
+from host.util.arguments import plain, shown, wrong
 from robot import wire
 from robot.record import Record, unpack
 
@@ -86,21 +87,26 @@ class Conversation:
         return _bytes(wire.encode_json(wire.AUTH, {"proof": self._handshake.host_proof.hex()}))
 
     def request(self, command: str, arguments: dict[str, Any], sealed: bool) -> tuple[int, bytes]:
-        """(number, frame) of a request; its answer will carry the number."""
-        self._number += 1
+        """(number, frame) of a request; its answer will carry the number.
+
+        Raises WrongUse for what cannot be sent.
+        """
+        number, counter = self._number + 1, self._counter + 1
+        body = _body(number, command, arguments)
         try:
-            body = wire.dump({"id": self._number, "do": command, **arguments})
+            if sealed:
+                payload = wire.seal(self._handshake.key, counter, body)
+                frame = wire.encode(wire.COMMAND, payload)
+            else:
+                frame = wire.encode(wire.ASK, body)
         except ValueError as error:
             raise WrongUse(
-                f"'{command}' was given NaN or an infinity, which is no value for anything",
-                "give finite numbers",
+                f"what was given to '{command}' is too long to be sent", "give less"
             ) from error
-        if not sealed:
-            return self._number, _bytes(wire.encode(wire.ASK, body))
-        self._counter += 1
-        return self._number, _bytes(
-            wire.encode(wire.COMMAND, wire.seal(self._handshake.key, self._counter, body))
-        )
+        self._number = number
+        if sealed:
+            self._counter = counter
+        return number, _bytes(frame)
 
     def answer(self, number: int) -> dict[str, Any] | None:
         """The result that answers request `number`, None if it has not come.
@@ -180,6 +186,31 @@ class Conversation:
                 self._answers[number] = reply
                 while len(self._answers) > _MAX_UNCLAIMED:
                     del self._answers[next(iter(self._answers))]
+
+
+def _body(number: int, command: str, arguments: dict[str, Any]) -> bytes:
+    """A request as JSON. Raises WrongUse for what JSON does not have."""
+    if not isinstance(command, str):
+        raise wrong("a command", command, "its name, as in 'status'")
+    try:
+        given = plain(arguments)
+        if not isinstance(given, dict):
+            raise TypeError(shown(arguments))
+        for name in ("id", "do"):
+            if name in given:
+                raise WrongUse(f"'{command}' takes no '{name}'", "leave it out")
+        return _bytes(wire.dump({"id": number, "do": command, **given}))
+    except ValueError as error:
+        raise WrongUse(
+            f"'{command}' was given NaN, an infinity or a number of thousands of digits, which is"
+            " no value for anything",
+            "give finite numbers",
+        ) from error
+    except (TypeError, RecursionError) as error:
+        raise WrongUse(
+            f"'{command}' was given what is neither a number nor text: {error}",
+            "give numbers and text",
+        ) from error
 
 
 def _checked_event(event: dict[str, Any]) -> dict[str, Any]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import threading
-from copy import copy
 from collections.abc import Callable
+from copy import copy
 from datetime import UTC, datetime
 from typing import Any
 from weakref import finalize, ref
@@ -14,12 +15,17 @@ from host.client.access import greet, hear
 from host.client.conversation import Conversation
 from host.client.silence import Silence
 from host.client.stream import Stream
-from host.errors import KickctlError, NoLink, RefusedByRobot
+from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
 from host.link.transport import Link, LinkLost
+from host.util.arguments import need_seconds, need_text, shown, wrong
+from host.util.callbacks import failure_of
 from host.util.interrupts import uninterrupted
+from robot.wire import TOKEN_BYTES
 
 # The robot counts a silent host as lost after half a second by default.
 HEARTBEAT_S = 0.1
+# The robot shows so much of a name.
+NAME_LETTERS = 40
 # A link that breaks sooner was no good one: the pause before the next attempt grows.
 GOOD_S = 5.0
 FIRST_PAUSE_S, GROWTH, LONGEST_PAUSE_S = 0.1, 3.0, 10.0
@@ -34,7 +40,7 @@ class LastingLink:
     Args:
         link: The way to the robot, not opened yet.
         token: The robot's token; None observes.
-        name: Who this is, for the robot and for other people.
+        name: Who this is, for the robot and for other people, in at most 40 letters.
 
     Attributes:
         link: The way to the robot.
@@ -51,6 +57,7 @@ class LastingLink:
     reconnect_s = 10.0
 
     def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
+        _check(link, token, name)
         self.link = link
         self.name = name
         self.stream = Stream()
@@ -66,7 +73,7 @@ class LastingLink:
         self._pause_s = 0.0
         self._closed = threading.Event()
         self._broken: KickctlError | None = None
-        self._endings: list[Callable[[], object]] = []
+        self._endings: list[Callable[[KickctlError | None], object]] = []
         self._hang_up = finalize(self, _hang_up, link, self._closed, self._endings, self._control)
         self._hang_up.atexit = False
         self.hello: dict[str, Any] = {"boot": None}
@@ -150,7 +157,7 @@ class LastingLink:
         Raises:
             NoLink: The link broke and did not come back.
         """
-        until = self.link.now() + timeout_s
+        until = self.link.now() + need_seconds("timeout_s", timeout_s)
         with self._lock:
             came = False
             while not came:
@@ -222,7 +229,7 @@ class LastingLink:
         """Find the robot again, to go on in its record where the link broke."""
         if self._broken is not None:
             raise self._broken
-        self.on_trouble(
+        self._say(
             f"the link to {self.link.uri} broke ({why}); looking for the robot for"
             f" {self.reconnect_s:g} s"
         )
@@ -265,12 +272,18 @@ class LastingLink:
             self.stream.restart(self.hello, self.clock_zero_s)
         self._whole = True
 
+    def _say(self, words: str) -> None:
+        """Words for people; a function of theirs that fails must not end the link."""
+        failure = failure_of(lambda: self.on_trouble(words))
+        if failure is not None:
+            logging.getLogger("kickctl").error("on_trouble failed", exc_info=failure)
+
     def _give_up(self, why: KickctlError) -> None:
-        """The link is gone for good: whoever waits for records need not wait any longer."""
+        """The link is gone for good: who waits for records must not wait for ever."""
         self._control.held = False
         self._broken = why
-        for end in self._endings:
-            end()
+        for end in list(self._endings):
+            end(why)
 
     def _rest(self, seconds: float) -> None:
         """Let time pass before the next attempt, unless the connection is closed."""
@@ -303,9 +316,28 @@ class LastingLink:
                         pass
             except KickctlError:
                 return False
+            except Exception as failure:
+                # The robot stops when this thread ends, and nobody would know why.
+                logging.getLogger("kickctl").exception("the thread of a link failed")
+                self._give_up(
+                    NoLink(f"the link to {self.link.uri} failed: {failure!r}", "call connect again")
+                )
+                return False
             finally:
                 self._lock.release()
         return True
+
+
+def _check(link: object, token: object, name: object) -> None:
+    """Raise WrongUse for what a connection cannot be made of."""
+    if not hasattr(link, "another"):
+        raise WrongUse(
+            f"a link to a robot cannot be {shown(link)}", "call connect(ADDRESS) instead of Robot()"
+        )
+    if token is not None and not isinstance(token, bytes):
+        raise wrong("token", token, f"its {TOKEN_BYTES} bytes, or None to look on")
+    if len(need_text("name", name, "text")) > NAME_LETTERS:
+        raise wrong("name", name, f"at most {NAME_LETTERS} letters")
 
 
 def _keep_alive(connection: ref[LastingLink], closed: threading.Event) -> None:
@@ -320,12 +352,12 @@ def _keep_alive(connection: ref[LastingLink], closed: threading.Event) -> None:
 def _hang_up(
     link: Link,
     closed: threading.Event,
-    endings: list[Callable[[], object]],
+    endings: list[Callable[[KickctlError | None], object]],
     control: neighbours.Control,
 ) -> None:
     """End a connection and what lives on it, without giving control back to the robot."""
     closed.set()
     neighbours.inherit(control)  # first: an ssh process may take a while to end
     link.close()
-    for end in endings:
-        end()
+    for end in list(endings):
+        end(None)

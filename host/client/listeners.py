@@ -9,7 +9,9 @@ from collections.abc import Callable, Iterator
 from typing import Self
 from weakref import WeakMethod
 
+from host.errors import KickctlError
 from host.logs.tap import Event
+from host.util.callbacks import failure_of
 from robot.record import Record
 
 # How many records a listener may fall behind, a minute of ticks, before it loses the oldest.
@@ -73,7 +75,7 @@ class Listener:
 
     Attributes:
         failures: How often the callback has raised an exception. The first one is logged.
-        error: The latest exception that it has raised.
+        error: The latest exception that it has raised; when the robot is gone for good, why.
     """
 
     def __init__(
@@ -82,7 +84,7 @@ class Listener:
         forget: WeakMethod[Callable[[Listener], None]],
     ) -> None:
         self.failures = 0
-        self.error: Exception | None = None
+        self.error: BaseException | None = None
         self.backlog = Backlog()
         self._callback = callback
         self._forget = forget
@@ -110,6 +112,17 @@ class Listener:
             forget(self)
         self.backlog.end()
 
+    def finish(self, why: KickctlError | None) -> None:
+        """Have the calls end when those that wait are done, since no more records will come.
+
+        Args:
+            why: What has happened to the robot; None if its connection was closed.
+        """
+        if why is not None:
+            self.error = why
+            logging.getLogger("kickctl").error("on_record ends: %s", why)
+        self.backlog.finish()
+
     def run(self) -> None:
         """Call the callback with what comes, until `close`."""
         while (record := self.backlog.wait()) is not None:
@@ -127,14 +140,13 @@ class Listener:
             self._calling = False
 
     def _call(self, record: Record) -> None:
-        try:
-            self._callback(record)
-        except Exception as error:
+        error = failure_of(lambda: self._callback(record))
+        if error is not None:
             self.failures += 1
             self.error = error
             if self.failures == 1:
-                logging.getLogger("kickctl").exception(
-                    "a callback of on_record failed; the robot and the link go on"
+                logging.getLogger("kickctl").error(
+                    "a callback of on_record failed; the robot and the link go on", exc_info=error
                 )
 
 

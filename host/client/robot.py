@@ -11,6 +11,7 @@ robot passes only within them.
 from __future__ import annotations
 
 import uuid
+from pathlib import Path
 from typing import Any, Self
 
 from host.client.access import find_token
@@ -32,22 +33,23 @@ class Robot(Watcher):
         cls,
         uri: str | None = None,
         seed: int | None = None,
-        token: str | None = None,
+        token: str | Path | None = None,
         name: str = "kickctl",
         *,
         observe: bool = False,
     ) -> Self:
-        """Connect to a robot.
+        """Connect to a robot, real or simulated; to be used as a `with` block.
 
         Args:
-            uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot.
+            uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot. The
+                simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.
             seed: Fixes all chances of the simulated robot.
             token: The path of the token file, by default the usual place.
-            name: Who this is, for the robot and for other people.
+            name: Who this is, for the robot and for other people, in at most 40 letters.
             observe: Only look on, and stop the robot if need be, which takes no token.
 
         Returns:
-            The robot.
+            The robot, to be used in a `with` block or closed.
 
         Raises:
             KickctlError: The robot cannot be reached, or refuses.
@@ -109,6 +111,8 @@ class Robot(Watcher):
     def stop(self) -> int:
         """Stop the motors; needs neither token nor control, and waits for no other call.
 
+        It works after `close` too, over a link of its own.
+
         Returns:
             The first tick of the stop.
 
@@ -152,13 +156,4 @@ class Robot(Watcher):
         return self.command("kick", kick=kick)
 
 
-def connect(
-    uri: str | None = None,
-    seed: int | None = None,
-    token: str | None = None,
-    name: str = "kickctl",
-    *,
-    observe: bool = False,
-) -> Robot:
-    """Connect to a robot: `Robot.connect`, for use in a `with` block."""
-    return Robot.connect(uri, seed, token, name, observe=observe)
+connect = Robot.connect

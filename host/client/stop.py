@@ -120,5 +120,6 @@ def unconfirmed(uri: str, why: str) -> NoLink:
     """The error for a stop that was sent and that nobody has confirmed."""
     return NoLink(
         f"the stop was sent to {uri}, but {why}: the motors may still be running",
-        "try again, press the back button on the brick, or take out its battery",
+        "is this the robot's port? Try again, press the back button on the brick, or take out its"
+        " battery",
     )

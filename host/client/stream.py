@@ -49,7 +49,7 @@ class Feed:
         if tap in self._taps:
             self._taps.remove(tap)
 
-    def take(self, item: Event | Samples, failures: list[Exception]) -> list[Record]:
+    def take(self, item: Event | Samples, failures: list[BaseException]) -> list[Record]:
         """Hand on what continues the stream here, if `item` does.
 
         Args:
@@ -69,18 +69,18 @@ class Feed:
             self._hand_on(lambda tap: tap.take_event(event), failures)
         return []
 
-    def restart(self, event: Event, hello: dict[str, Any], failures: list[Exception]) -> None:
+    def restart(self, event: Event, hello: dict[str, Any], failures: list[BaseException]) -> None:
         """The robot counts ticks from its own beginning; what it sent before is all there was."""
         self.place.begin(hello["oldest_tick"])
         if self.end < inf:
             self.end = hello["tick"]
         self._hand_on(lambda tap: tap.take_event(event), failures)
 
-    def _hand_on(self, give: Callable[[Tap], None], failures: list[Exception]) -> None:
+    def _hand_on(self, give: Callable[[Tap], None], failures: list[BaseException]) -> None:
         for tap in list(self._taps):
             try:
                 give(tap)
-            except Exception as failure:  # noqa: BLE001 - a tap may fail in any way; others go on
+            except BaseException as failure:  # noqa: BLE001 - also sys.exit(): the others go on
                 self._taps.remove(tap)
                 failures.append(failure)
 
@@ -104,7 +104,7 @@ class Stream:
         self._live = Feed()
         self._pulls: list[Feed] = []
         self._due = 0.0
-        self._failures: list[Exception] = []
+        self._failures: list[BaseException] = []
 
     @property
     def wanted(self) -> bool:

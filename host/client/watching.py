@@ -12,8 +12,9 @@ from weakref import WeakMethod
 from host.client.connection import Connection
 from host.client.listeners import Backlog, Listener, Records
 from host.client.stream import Feed
-from host.errors import NoLink, WrongUse
+from host.errors import NoLink
 from host.logs.tap import Tap
+from host.util.arguments import need_function, need_seconds, wrong
 from host.util.provenance import origin
 from robot.record import Record
 
@@ -61,8 +62,9 @@ class Watcher(Connection):
         Raises:
             NoLink: The robot is gone, or sends no more records.
         """
-        if not seconds >= 0.0:
-            raise WrongUse(f"cannot wait for {seconds!r} s", "give a number of seconds, 0 or more")
+        seconds = need_seconds("seconds", seconds)
+        if until is not None:
+            need_function("until", until, "a function without arguments")
         self._subscribe()
         first = self.newest
         patience_s = self.answer_s + self.reconnect_s
@@ -107,6 +109,7 @@ class Watcher(Connection):
         Returns:
             The log, in memory.
         """
+        seconds = need_seconds("seconds", seconds)
         with self.recording() as log:
             self.wait(seconds)
         return log
@@ -132,10 +135,11 @@ class Watcher(Connection):
 
         With a real robot the callback runs in a thread of its own, so it may be slow: link, lease
         and stop do not wait for it. What it cannot take is dropped, the oldest first, and counted
-        (`dropped`). An exception of the callback ends nothing; it is counted (`failures`), and the
-        first one is logged. With sim:// the robot's time passes only within calls such as `wait`,
-        and the callback runs within them, in the same thread, while the robot's time stands still:
-        it misses nothing.
+        (`dropped`). An exception of the callback ends nothing, `sys.exit()` neither; it is counted
+        (`failures`), and the first one is logged. The calls end with the connection; when the robot
+        is gone for good, that is logged, and `error` says why. With sim:// the robot's time passes
+        only within calls such as `wait`, and the callback runs within them, in the same thread,
+        while the robot's time stands still: it misses nothing.
 
         Args:
             callback: Called with one Record at a time.
@@ -143,14 +147,15 @@ class Watcher(Connection):
         Returns:
             The listener; its `close` ends the calls, as does leaving it as a `with` block.
         """
+        need_function("callback", callback, "a function that takes a record")
         # The listener's thread lives as long as the connection; it must not keep it alive.
         listener = Listener(callback, WeakMethod(self._forget))
+        self.add_tap(listener.backlog)
         if self.link.virtual:
             self.stream.after.append(listener.catch_up)
         else:
-            self._endings.append(listener.backlog.finish)
+            self._endings.append(listener.finish)
             threading.Thread(target=listener.run, name="kickctl listener", daemon=True).start()
-        self.add_tap(listener.backlog)
         return listener
 
     def records(self, seconds: float = inf) -> Records:
@@ -165,10 +170,7 @@ class Watcher(Connection):
         Returns:
             An iterator of Records.
         """
-        if not seconds >= 0.0:
-            raise WrongUse(
-                f"cannot wait for records of {seconds!r} s", "give a number of seconds, 0 or more"
-            )
+        seconds = need_seconds("seconds", seconds)
         backlog = Backlog()
         self.add_tap(backlog)
         return Records(backlog, seconds, lambda until: self.wait(inf, until), self.remove_tap)
@@ -179,6 +181,7 @@ class Watcher(Connection):
         Args:
             tap: Has take_records(records) and take_event(event), which return at once.
         """
+        _need_tap(tap)
         with self._lock:
             self._subscribe()
             self.stream.add(tap)
@@ -200,6 +203,7 @@ class Watcher(Connection):
         Args:
             tap: As for `add_tap`.
         """
+        _need_tap(tap)
         self._subscribe()
         feed = Feed(end=self.request("status")["tick"])
         feed.add(tap)
@@ -224,11 +228,19 @@ class Watcher(Connection):
         with suppress(ValueError):
             self.stream.after.remove(listener.catch_up)
         with suppress(ValueError):
-            self._endings.remove(listener.backlog.finish)
+            self._endings.remove(listener.finish)
 
     def _subscribe(self) -> None:
         with self._lock:
+            if self._broken is not None:
+                raise self._broken
             if not self.stream.wanted:
                 tick = self.request("subscribe")["tick"]
                 if not self.stream.wanted:
                     self.stream.begin(tick, self.link.now())
+
+
+def _need_tap(value: object) -> None:
+    """Raise WrongUse for what is no tap."""
+    if not all(callable(getattr(value, name, None)) for name in ("take_records", "take_event")):
+        raise wrong("tap", value, "an object with take_records(records) and take_event(event)")

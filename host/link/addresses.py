@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from ipaddress import IPv6Address
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
-from host.errors import WrongUse, printable
+from host.errors import WrongUse, quotable
 from host.link.serial_line import SerialLink
 from host.link.settings import parse_setting
 from host.link.transport import Link, TcpLink
+from host.util.arguments import need_seed, need_text
 from host.util.interrupts import uninterrupted
 from robot.program import PORT
 from robot.serial_line import BAUD, FASTEST_BAUD
@@ -55,13 +56,13 @@ def no_address(uri: str, why: str, hint: str = _FORMS) -> WrongUse:
         why: What is wrong with it.
         hint: What to write instead.
     """
-    return WrongUse(f"'{printable(uri)}' is no address of a robot: {printable(why)}", hint)
+    return WrongUse(f"'{quotable(uri)}' is no address of a robot: {quotable(why)}", hint)
 
 
 def _split(uri: str) -> _Parts:
     """The pieces of an address. Raises WrongUse."""
     if not uri.isprintable():
-        raise no_address(uri, "it contains a character that cannot be printed")
+        raise no_address(uri, "it contains a letter that cannot be printed")
     try:
         parts = urlsplit(uri)
     except ValueError as error:
@@ -73,13 +74,33 @@ def _split(uri: str) -> _Parts:
     pairs = parse_qsl(parts.query, keep_blank_values=True)
     options = dict(pairs)
     if len(options) < len(pairs):
-        raise no_address(uri, "an option stands in it twice")
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise no_address(uri, f"'{twice}' stands in it twice", "write it once")
     return _Parts(uri, parts.scheme, parts.netloc, parts.path, options)
 
 
 def chosen(uri: str | None) -> str:
-    """The address to use: the one given, else $KICK_BRICK, else the embedded simulated robot's."""
-    return uri or os.environ.get("KICK_BRICK") or SIM
+    """The address to use: the one given, else $KICK_BRICK, else the embedded simulated robot's.
+
+    Raises:
+        WrongUse: What was given is no text, or empty. A shell's variable that is not set is empty,
+            and whoever named a robot must not get a simulated one.
+    """
+    if uri is not None:
+        if uri == "":
+            raise WrongUse(
+                "the robot's address is empty",
+                f"name the robot, or leave its address out for a simulated one; {_FORMS}",
+            )
+        return need_text("the robot's address", uri, f"text; {_FORMS}")
+    named = os.environ.get("KICK_BRICK", SIM)
+    if not named:
+        raise WrongUse(
+            "KICK_BRICK is set, and it is empty",
+            "give it the robot's address, or type `unset KICK_BRICK` for a simulated robot",
+        )
+    return named
 
 
 def with_params(uri: str, settings: list[str]) -> str:
@@ -102,7 +123,12 @@ def with_params(uri: str, settings: list[str]) -> str:
             f" '{uri}' is a robot of its own",
             f"set them there: kickctl --brick {uri} params set {' '.join(settings)}",
         )
-    options.update((name, str(value)) for name, value in map(parse_setting, settings))
+    given = [parse_setting(setting) for setting in settings]
+    names = [name for name, _ in given]
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise WrongUse(f"--set gives {twice} twice", "give each parameter once")
+    options.update((name, str(value)) for name, value in given)
     return f"{SIM}?{urlencode(options)}"
 
 
@@ -126,6 +152,7 @@ def make_link(uri: str, seed: int | None = None) -> Link:
         WrongUse: It is no address of a robot, or a real robot was given a seed.
     """
     parts = _split(uri)
+    seed = need_seed(seed)
     if parts.scheme == "sim":
         return _sim(parts, seed)
     if seed is not None:

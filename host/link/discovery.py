@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import socket
 import threading
 import time
@@ -22,7 +21,8 @@ from zeroconf import (
     Zeroconf,
 )
 
-from host.errors import NoLink, WrongUse, printable
+from host.errors import NoLink, printable
+from host.util.arguments import need_seconds, wrong
 from host.util.installation import deploy_command
 from robot.program import PORT
 
@@ -32,6 +32,7 @@ ROBOT = "_kickctl._tcp.local."
 BRICK = "_sftp-ssh._tcp.local."
 USER = "ev3dev.robot.user"
 _ASK_MS = 1500
+LONGEST_S = 3600
 _LOOK_UPS = 32
 
 
@@ -68,8 +69,8 @@ def look_around(
     Raises:
         KickctlError: This machine cannot listen.
     """
-    if not 0 < seconds < math.inf:
-        raise WrongUse(f"{seconds} is no time to listen", "give a number of seconds, for example 4")
+    if not 0 < need_seconds("seconds", seconds) <= LONGEST_S:
+        raise wrong("seconds", seconds, f"a number of seconds, at most {LONGEST_S}, for example 4")
     listener = _Listener()
     with _network(interfaces) as network:
         ServiceBrowser(network, [ROBOT, BRICK], listener)

@@ -11,7 +11,7 @@ import re
 import shlex
 from dataclasses import dataclass
 
-from host.errors import WrongUse, printable
+from host.errors import WrongUse, quotable
 
 _NAME = "[A-Za-z0-9._+][A-Za-z0-9._+-]*"
 _ZONE = "(?:%[A-Za-z0-9._-]+)?"
@@ -65,7 +65,7 @@ def parse_login(text: str) -> Login:
     parts = _LOGIN.fullmatch(rest)
     port = parts and (parts["p1"] or parts["p2"])
     if parts is None or (port and int(port) > 65535):
-        raise WrongUse(f"'{printable(text)}' is no address of a brick", _FORM)
+        raise WrongUse(f"'{quotable(text)}' is no address of a brick", _FORM)
     # In a URI '%' is written '%25'.
     host = re.sub("%25(?=.)", "%", parts["boxed"] or parts["bare"] or parts["name"], count=1)
     return Login(parts["user"] or "", host, int(port) if port else None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import select
+import stat
 import termios
 import time
 from collections.abc import Iterator
@@ -65,10 +66,8 @@ class SerialLink:
             if isinstance(error, OSError) and error.errno in _TAKEN:
                 self._join()
                 return
-            raise NoLink(
-                f"the serial line {self.uri} cannot be opened: {error}",
-                "is the cable in, and are you in group dialout?",
-            ) from error
+            why, hint = _explained(self.device, error)
+            raise NoLink(f"the serial line {self.uri} cannot be opened: {why}", hint) from error
 
     def _join(self) -> None:
         """Use the line beside the program that has set it up, if that may be. Raises NoLink."""
@@ -138,6 +137,24 @@ class SerialLink:
             os.close(self._fd)
         self._fd = None
         self._serial.close()
+
+
+def _explained(device: str, error: Exception) -> tuple[str, str]:
+    """(why, what to do) of a device file that cannot be opened as a serial line."""
+    try:
+        mode = os.stat(device).st_mode  # noqa: PTH116 - Path refuses a NUL differently
+    except (OSError, ValueError) as missing:
+        cable = "is the cable in? `ls /dev/tty*` shows which lines there are"
+        return f"{device}: {getattr(missing, 'strerror', missing)}", cable
+    if not stat.S_ISCHR(mode):
+        kind = "a folder" if stat.S_ISDIR(mode) else "a file and no device"
+        return f"{device} is {kind}", "name the device file, as in serial:///dev/ttyUSB0"
+    if isinstance(error, OSError) and error.errno in (errno.EACCES, errno.EPERM):
+        return f"this user may not use {device}", "are you in group dialout?"
+    return (
+        f"{device} does not behave as a serial line: {error}",
+        "is the cable in, and the baud rate one that the line has?",
+    )
 
 
 def holder(device: str) -> str:

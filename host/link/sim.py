@@ -6,14 +6,16 @@ Time passes only while somebody waits.
 from __future__ import annotations
 
 import os
+import re
 import socket
 import threading
 from dataclasses import fields
 from typing import Any, Self
 
-from host.errors import WrongUse
+from host.errors import WrongUse, quotable
 from host.link.settings import number_or_text
 from host.link.transport import LinkLost
+from host.util.arguments import need_seed
 from host.util.interrupts import uninterrupted
 from robot.errors import Refused
 from robot.loop import Loop
@@ -75,7 +77,7 @@ class SimLink:
         """
         for name in options:
             if name not in _OPTIONS and name not in TABLE:
-                raise WrongUse(f"sim:// has no option '{name}'", _THEY_ARE)
+                raise WrongUse(f"sim:// has no option '{quotable(name)}'", _THEY_ARE)
         for name in _SCENE:
             if name in options and "walls" not in options:
                 raise WrongUse(
@@ -85,24 +87,28 @@ class SimLink:
         try:
             if seed is None:
                 seed = (
-                    int(options["seed"])
+                    _seed(options["seed"])
                     if "seed" in options
                     else int.from_bytes(os.urandom(4), "big")
                 )
             scene = (
-                Scene(**{name: float(options[name]) for name in _SCENE if name in options})
+                Scene(**{name: _number(options, name) for name in _SCENE if name in options})
                 if "walls" in options
                 else None
             )
-            battery_v = float(options["battery"]) if "battery" in options else None
+            battery_v = _number(options, "battery") if "battery" in options else None
             brick = SimBrick(
                 seed, motor=options.get("motor", "pybricks"), battery_v=battery_v, scene=scene
             )
         except (ValueError, KeyError) as error:
-            raise WrongUse(f"'{uri}' cannot be simulated: {error}", _THEY_ARE) from error
-        idle = options.get("idle", "0") not in ("", "0")
+            raise WrongUse(
+                f"'{uri}' cannot be simulated: {quotable(str(error))}", _THEY_ARE
+            ) from error
+        idle = options.get("idle", "0")
+        if idle not in ("0", "1"):
+            raise WrongUse(f"idle cannot be '{quotable(idle)}'", "write idle=1 for one that rests")
         try:
-            return cls(uri, brick, idle, _params(options))
+            return cls(uri, brick, idle == "1", _params(options))
         except Refused as refusal:
             raise WrongUse(
                 f"'{uri}' cannot be simulated: {refusal.message}", refusal.hint
@@ -177,6 +183,21 @@ class SimLink:
     def _serve(self) -> None:
         with self._turn, uninterrupted():
             self.server.serve(0.0)
+
+
+def _seed(text: str) -> int:
+    if not re.fullmatch("[0-9]+", text):
+        raise WrongUse(
+            f"seed cannot be '{quotable(text)}'", "give a whole number, 0 or more, as in seed=1"
+        )
+    return need_seed(int(text)) or 0
+
+
+def _number(options: dict[str, str], name: str) -> float:
+    value = number_or_text(options[name])
+    if isinstance(value, str):
+        raise WrongUse(f"{name} cannot be '{quotable(value)}'", f"give a number, as in {name}=2.5")
+    return value
 
 
 def _params(options: dict[str, str]) -> dict[str, float | str]:

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from typing import IO, Self
 from urllib.parse import parse_qsl
 
-from host.errors import NoLink, WrongUse, printable
+from host.errors import NoLink, WrongUse, printable, quotable
 from host.link.logins import Login, parse_login, ssh_options
 from host.link.ssh_failures import remedy
 from host.link.transport import CONNECT_TIMEOUT_S, LinkLost, TcpLink
@@ -158,10 +158,15 @@ def _parse(uri: str) -> tuple[Login, str, int]:
             "leave it out: ssh asks for it",
         )
     login = parse_login(address)
-    pairs = parse_qsl(query, keep_blank_values=True)
-    options = dict(pairs)
+    options = dict(parse_qsl(query, keep_blank_values=True))
     host, port = options.pop("host", "127.0.0.1"), options.pop("port", str(PORT))
-    known = not options and len(pairs) == len(dict(pairs))
-    if not known or not _HOST.fullmatch(host) or not _PORT.fullmatch(port) or int(port) > 65535:
-        raise WrongUse(f"'{printable(uri)}' is no address of a robot", _FORM)
+    why = ""
+    if options:
+        why = f"it has no option '{next(iter(options))}'"
+    elif not _HOST.fullmatch(host):
+        why = f"'{host}' is no machine's name"
+    elif not _PORT.fullmatch(port) or int(port) > 65535:
+        why = f"port cannot be '{port}'"
+    if why:
+        raise WrongUse(f"'{quotable(uri)}' is no address of a robot: {quotable(why)}", _FORM)
     return login, host, int(port)

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.experiments.registry import BODIES, TABLE
-from host.link.addresses import sim_options
-from host.perform.run import RESULTS, address, perform
+from host.link.addresses import chosen, sim_options
+from host.perform.run import RESULTS, perform
 from host.runs import html_report as report
 from host.runs.claims import Claim
 from host.runs.registry import Entry
@@ -85,7 +85,7 @@ def reproduce(
         raise WrongUse(
             f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(claim_ids())
         )
-    uri = address(uri)
+    uri = chosen(uri)
     simulated = sim_options(uri) is not None
     skipped = (
         {}

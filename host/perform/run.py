@@ -5,19 +5,19 @@ Then it writes the table, the figure and the claims.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from host.errors import WrongUse
-from host.link.addresses import SIM, make_link, sim_options
+from host.link.addresses import SIM, chosen, make_link, sim_options
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.robots import robots
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.runs.runner import do_cells, finish, open_study, simulate
+from host.util.arguments import need_function, need_path, need_seed, need_text
 from host.util.extras import need
 from host.util.provenance import commit, sources
 from robot import __version__
@@ -58,7 +58,13 @@ def perform(
     Raises:
         KickctlError: The run ended early. The cells that are complete are kept.
     """
-    found = find(name)
+    found = find(need_text("name", name, "the name of an experiment or study"))
+    seed, out = need_seed(seed), Path(need_path("out", out))
+    if token is not None:
+        token = need_path("token", token)
+    if scheduler is not None:
+        need_text("scheduler", scheduler, "the address of a Dask scheduler, as text")
+    need_function("say", say, "a function that takes a text")
     options = complete_options(name, found.entry, arguments)
     settings: dict[str, Any] = {
         "experiment": name,
@@ -67,12 +73,11 @@ def perform(
         "sources": sources(),
     }
     simulated: dict[str, str] | None = {}
-    out = Path(out)
     if found.kind == STUDY:
         out = out / "theory"
         setting = Setting(DEFAULT_SEED if seed is None else seed, options)
     else:
-        uri = address(uri)
+        uri = chosen(uri)
         simulated = _simulated(name, found.kind, uri)
         setting = setting_of(options, simulated, seed)
         settings["brick"] = uri
@@ -106,11 +111,6 @@ def perform(
         # files that compute nothing.
         about = {**settings, "commit": commit()}
         return finish(name, rows, found.work.report(rows, setting), found.draw, study, about)
-
-
-def address(uri: str | None) -> str:
-    """The robot's address: the one given, else $KICK_BRICK, else the simulated robot's."""
-    return uri or os.environ.get("KICK_BRICK") or SIM
 
 
 def _simulated(name: str, kind: str, uri: str) -> dict[str, str] | None:

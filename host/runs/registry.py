@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse
+from host.util.arguments import shown
 
 
 class Option(NamedTuple):
@@ -68,21 +70,20 @@ def _value(option: Option, value: Any) -> Any:
     if option.choices:
         if value not in option.choices:
             raise WrongUse(
-                f"{option.name} cannot be {value!r}",
+                f"{option.name} cannot be {shown(value)}",
                 f"give one of {', '.join(option.choices)}: {option.doc}",
             )
         return value
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float))
-        or not option.least <= value <= option.most
-    ):
+    a_number = isinstance(value, Real) and not isinstance(value, bool)  # numpy's are numbers, too
+    if not a_number or not option.least <= value <= option.most:
         raise WrongUse(
-            f"{option.name} cannot be {value!r}",
+            f"{option.name} cannot be {shown(value)}",
             f"give a number from {option.least:g} to {option.most:g}: {option.doc}",
         )
     if isinstance(option.default, int) and value != int(value):
-        raise WrongUse(f"{option.name} cannot be {value!r}", f"give a whole number: {option.doc}")
+        raise WrongUse(
+            f"{option.name} cannot be {shown(value)}", f"give a whole number: {option.doc}"
+        )
     return _type(option)(value)
 
 

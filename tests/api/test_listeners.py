@@ -6,7 +6,7 @@ import pytest
 
 import kickctl
 from host.client.listeners import Backlog
-from robot.record import Record
+from robot.record import STATES, Record
 from tests.link.machines import TcpRobot
 from tests.rig import TOKEN
 
@@ -87,6 +87,31 @@ def test_a_callback_that_fails_is_logged_once_and_goes_on(caplog):
     assert f"{listener.failures} failures" in repr(listener)
 
 
+@pytest.mark.parametrize("kind", [SystemExit, GeneratorExit])
+def test_a_callback_does_not_end_the_program_that_waits(caplog, kind):
+    def callback(record):
+        raise kind
+
+    with kickctl.connect("sim://", seed=1) as robot:
+        listener = robot.on_record(callback)
+        assert robot.wait(1) is False
+        assert isinstance(listener.error, kind)
+    assert len(caplog.records) == 1
+
+
+def test_an_interrupt_of_a_person_is_no_failure_of_the_callback():
+    """^C falls into the callback when the callback is what takes the time."""
+
+    def callback(record):
+        raise KeyboardInterrupt
+
+    with kickctl.connect("sim://", seed=1) as robot:
+        listener = robot.on_record(callback)
+        with pytest.raises(KeyboardInterrupt):
+            robot.wait(1)
+        assert listener.failures == 0
+
+
 def test_records_come_one_by_one_while_other_things_are_done():
     with kickctl.connect("sim://", seed=1) as robot:
         seen = []
@@ -152,13 +177,14 @@ def test_a_callback_that_never_returns_touches_neither_link_nor_lease_nor_stop(m
     listener.close()
 
 
-def test_a_callback_that_fails_ends_neither_its_thread_nor_the_links(machine, robot, caplog):
+@pytest.mark.parametrize("kind", [ValueError, SystemExit, KeyboardInterrupt])
+def test_a_callback_that_fails_ends_neither_its_thread_nor_the_links(machine, robot, caplog, kind):
     enough = threading.Event()
 
     def callback(record):
         if listener.failures > 20:
             enough.set()
-        raise ValueError
+        raise kind
 
     robot.lease()
     listener = robot.on_record(callback)
@@ -187,6 +213,96 @@ def test_a_tap_that_fails_in_the_links_thread_is_told_to_the_next_caller(machine
         robot.wait(1.0)
     robot.wait(0.1)
     assert machine.loop.lease.holder is not None
+
+
+@pytest.mark.parametrize("kind", [ValueError, SystemExit])
+def test_words_for_people_that_fail_do_not_end_the_link(machine, robot, caplog, kind):
+    tried = threading.Event()
+
+    def on_trouble(words):
+        tried.set()
+        raise kind
+
+    robot.lease()
+    robot.on_trouble = on_trouble
+    robot.wait(0.1)
+    robot.link.close()
+    assert tried.wait(PATIENCE_S)
+    robot.wait(0.5)
+    assert robot.drives
+    assert "on_trouble failed" in caplog.text
+
+
+# A robot that is gone, and a connection that was closed: nobody waits for ever
+
+
+def test_a_listener_learns_that_the_robot_is_gone_for_good(machine, robot, caplog):
+    robot.reconnect_s = 0.2
+    heard = threading.Event()
+    listener = robot.on_record(lambda record: heard.set())
+    (thread,) = [one for one in threading.enumerate() if one.name == "kickctl listener"]
+    assert heard.wait(PATIENCE_S)
+    machine.close()
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
+    assert isinstance(listener.error, kickctl.NoLink)
+    assert "on_record ends" in caplog.text
+    for wait in (
+        lambda: robot.wait(1),
+        lambda: list(robot.records()),
+        lambda: robot.on_record(print),
+        lambda: robot.add_tap(kickctl.Log()),
+        lambda: robot.pull(kickctl.Log()),
+        robot.status,
+    ):
+        with pytest.raises(kickctl.NoLink):
+            wait()
+
+
+@pytest.mark.parametrize("followed", [True, False])
+def test_after_close_everything_says_so_and_leaves_no_thread(machine, robot, followed):
+    if followed:
+        robot.wait(0.1)
+    records = robot.records() if followed else None
+    robot.close()
+    threads = threading.active_count()
+    for use in (
+        lambda: robot.wait(1),
+        lambda: robot.record(1),
+        robot.records,
+        lambda: robot.on_record(print),
+        lambda: robot.add_tap(kickctl.Log()),
+        lambda: robot.pull(kickctl.Log()),
+        lambda: robot.pump(1),
+        lambda: robot.kick("membrane"),
+        robot.lease,
+        robot.status,
+        *([lambda: next(records)] if followed else []),
+    ):
+        with pytest.raises(kickctl.NoLink, match="closed"):
+            use()
+    assert threading.active_count() <= threads
+
+
+def test_a_stop_after_close_stops_the_robot(machine, robot):
+    robot.close()
+    assert machine.loop.safety.state != STATES.index("stopped")
+    assert robot.stop() > 0
+    assert machine.loop.safety.state == STATES.index("stopped")
+
+
+def test_a_stop_after_close_of_an_embedded_robot_stops_it():
+    robot = kickctl.connect("sim://", seed=1)
+    robot.close()
+    assert robot.stop() > 0
+    assert robot.link.loop.safety.state == STATES.index("stopped")
+
+
+def test_a_stop_after_close_says_that_the_robot_is_gone(machine, robot):
+    robot.close()
+    machine.close()
+    with pytest.raises(kickctl.NoLink):
+        robot.stop()
 
 
 # The queue between link and listener

@@ -43,6 +43,7 @@ def test_stop_needs_no_robot_that_understands_hello(kickctl, monkeypatch, answer
         status, out, _ = kickctl("stop", "--brick", uri, "--json")
         assert status == 0
         assert json.loads(out)["state"] == STATES[machine.loop.safety.state] == "stopped"
+        assert json.loads(out)["brick"] == uri
     finally:
         machine.close()
 
@@ -59,8 +60,27 @@ def test_a_stop_that_nobody_confirms_exits_3_and_claims_nothing(kickctl, monkeyp
     assert "may still be running" in err
 
 
-def test_a_stop_of_the_embedded_robot_says_that_no_other_is_stopped(kickctl):
-    assert "only the simulated robot of this command stops" in kickctl("stop")[2]
+def test_a_stop_without_a_robot_of_its_own_is_no_success(kickctl):
+    """It ends with the command, and a real robot may drive: nobody must take that for a stop."""
+    for arguments in ((), ("--brick", "sim://"), ("--seed", "1"), ("--set", "k=2")):
+        status, out, err = kickctl("stop", *arguments)
+        assert (status, out) == (2, "")
+        assert "none has been stopped" in err
+        status, out, _ = kickctl("stop", *arguments, "--json")
+        assert json.loads(out)["error"]["status"] == status == 2
+
+
+@pytest.mark.parametrize("verb", ["stop", "status", "kick", "doctor", "experiment"])
+def test_an_empty_address_is_no_simulated_robot(kickctl, monkeypatch, verb):
+    """As in `--brick "$ROBOT"` with a variable of the shell that is not set."""
+    arguments = {"kick": ["--mode", "membrane"], "experiment": ["timeline"]}.get(verb, [])
+    status, out, err = kickctl(verb, *arguments, "--brick", "")
+    assert status == 2
+    assert "address is empty" in out + err
+    monkeypatch.setenv("KICK_BRICK", "")
+    status, out, err = kickctl(verb, *arguments)
+    assert status == 2
+    assert "unset KICK_BRICK" in out + err
 
 
 def test_a_robot_that_begins_anew_while_it_is_recorded_is_told(kickctl, tmp_path):

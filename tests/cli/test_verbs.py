@@ -275,7 +275,6 @@ def test_status_start_stop_clear(kickctl):
     assert (
         json.loads(kickctl("start", "--brick", "sim://?idle=1", "--json")[1])["state"] == "running"
     )
-    assert json.loads(kickctl("stop", "--json")[1])["state"] == "stopped"
     assert kickctl("clear")[0] == 1
 
 

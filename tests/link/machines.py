@@ -114,7 +114,9 @@ class TcpRobot:
     def close(self):
         self.loop.done = True
         self._thread.join()
-        self.server.close()
+        if self.server is not None:
+            self.server.close()
+            self.server = None
 
 
 class Middlebox:

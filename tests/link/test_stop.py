@@ -278,8 +278,9 @@ def _talk_rubbish(peer):
 def test_a_stop_that_nobody_confirms_is_no_success(serve):
     listener = Listener(serve)
     try:
-        with pytest.raises(NoLink, match="motors may still be running"):
+        with pytest.raises(NoLink, match="motors may still be running") as error:
             stop_robot(listener.link(), patience_s=0.3)
+        assert "the robot's port?" in error.value.hint
     finally:
         listener.close()
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from host.errors import KickctlError, WrongUse
+from host.errors import KickctlError, NoLink, WrongUse
 from host.link.addresses import chosen, make_link, sim_options, with_params
 from host.link.serial_line import SerialLink
 from host.link.transport import TcpLink
@@ -85,7 +85,7 @@ def test_serial_addresses(uri, device, baud):
         ("serial:///dev/ttyUSB0?baud=", "no baud rate"),
         ("serial:///dev/ttyUSB0?baudrate=9600", "no option 'baudrate'; the only option is baud"),
         ("serial:///dev/ttyUSB0?baud=9600&parity=E", "no option 'parity'"),
-        ("serial:///dev/ttyUSB0?baud=9600&baud=4800", "twice"),
+        ("serial:///dev/ttyUSB0?baud=9600&baud=4800", "'baud' stands in it twice"),
         ("serial:///dev/tty\0", "cannot be printed"),
         ("sim://robot", "has no name"),
         ("sim:///x", "has no name"),
@@ -104,6 +104,76 @@ def test_what_is_no_address_is_refused_with_why_and_what_to_write(uri, why):
     assert error.value.message.isprintable()
 
 
+@pytest.mark.parametrize(
+    ("uri", "words"),
+    [
+        ("sim://?k=2&k=3", "'k' stands in it twice"),
+        ("sim://?seed=1&k=2&seed=1", "'seed' stands in it twice"),
+        ("ssh://h?port=1&port=2", "'port' stands in it twice"),
+        ("tcp://h?port=1&port=2", "'port' stands in it twice"),
+        ("ssh://h?baud=1", "no option 'baud'"),
+        ("ssh://h?port=no", "port cannot be 'no'"),
+        ("ssh://h?host=a b", "'a b' is no machine's name"),
+        ("sim://?nosuch=1", "no option 'nosuch'"),
+        ("sim://?seed=1e3", "seed cannot be '1e3'"),
+        ("sim://?seed=1_0", "seed cannot be '1_0'"),
+        ("sim://?seed=-1", "seed cannot be '-1'"),
+        ("sim://?seed=", "seed cannot be ''"),
+        ("sim://?seed=" + "9" * 41, "seed cannot be 9"),
+        ("sim://?battery=full", "battery cannot be 'full'"),
+        ("sim://?walls=2,5", "walls cannot be '2,5'"),
+        ("sim://?walls=2&grip=x", "grip cannot be 'x'"),
+        ("sim://?idle=no", "idle cannot be 'no'"),
+        ("sim://?k=1_0", "k cannot be '1_0'"),
+        ("sim://?motor=nosuch", "no motor 'nosuch'"),
+    ],
+)
+def test_options_are_refused_in_plain_words(uri, words):
+    with pytest.raises(WrongUse, match=words) as error:
+        make_link(uri)
+    assert error.value.hint
+    for raw in ("literal", "base 10", "convert", "float", "expected"):
+        assert raw not in error.value.message
+
+
+@pytest.mark.parametrize(
+    ("uri", "shown"),
+    [
+        ("tcp://h\x1b[2J", r"'tcp://h\\x1b\[2J'"),
+        ("tcp://h\n", r"'tcp://h\\n'"),
+        ("tcp://\udcff", r"'tcp://\\udcff'"),
+        ("sim://?k%0a=1", r"'k\\n'"),
+        ("sim://?motor=%1b", r"'\\x1b'"),
+        ("ssh://h\0", r"'ssh://h\\x00'"),
+    ],
+)
+def test_letters_that_cannot_be_printed_are_shown_as_codes(uri, shown):
+    with pytest.raises(WrongUse, match=shown) as error:
+        make_link(uri)
+    assert error.value.message.isprintable()
+
+
+def test_a_parameter_is_set_once():
+    with pytest.raises(WrongUse, match="--set gives k twice"):
+        with_params("sim://", ["k=1", "tau_s=1", "k=2"])
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        (".", "is a folder"),
+        ("file", "is a file and no device"),
+        ("nosuch", "No such file"),
+        ("/dev/null", "does not behave as a serial line"),
+    ],
+)
+def test_what_is_no_serial_line_is_named(tmp_path, path, words):
+    (tmp_path / "file").touch()
+    with pytest.raises(NoLink, match=words) as error:
+        make_link(f"serial://{tmp_path / path}").open()
+    assert ("cable" in error.value.hint) == (path in ("nosuch", "/dev/null"))
+
+
 def test_only_the_embedded_robot_takes_a_seed_and_parameters():
     with pytest.raises(WrongUse, match="seed"):
         make_link("tcp://h", seed=1)
@@ -116,6 +186,14 @@ def test_the_address_that_is_used(monkeypatch):
     assert chosen(None) == "sim://"
     monkeypatch.setenv("KICK_BRICK", "tcp://h")
     assert (chosen(None), chosen("tcp://other")) == ("tcp://h", "tcp://other")
+    with pytest.raises(WrongUse, match="is empty") as error:
+        chosen("")
+    assert error.value.hint
+    monkeypatch.setenv("KICK_BRICK", "")
+    assert chosen("tcp://other") == "tcp://other"
+    with pytest.raises(WrongUse, match="KICK_BRICK") as error:
+        chosen(None)
+    assert "unset KICK_BRICK" in error.value.hint
 
 
 PIECES = st.sampled_from(
