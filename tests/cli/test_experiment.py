@@ -169,7 +169,11 @@ def test_reliability_ends_with_its_claims_and_files(kickctl):
         (("experiment", "reliabilty"), 2, "invalid choice"),
         (("experiment", "reliability", "--brick", "ftp://x"), 2, "no address of a robot"),
         (("experiment", "reliability", "--brick", "sim://?motor=none"), 2, "none"),
-        (("experiment", "reliability", "--brick", "sim://?battery=much"), 2, "cannot be simulated"),
+        (
+            ("experiment", "reliability", "--brick", "sim://?battery=much"),
+            2,
+            "battery cannot be 'much'",
+        ),
         (
             ("experiment", "reliability", "--brick", "tcp://127.0.0.1:1"),
             3,
