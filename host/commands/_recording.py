@@ -65,8 +65,12 @@ class Recording:
 
 
 @contextmanager
-def recorded(robot: Robot, kind: str) -> Iterator[Recording]:
+def recorded(robot: Robot, what: str) -> Iterator[Recording]:
     """Record all that the robot does meanwhile, in memory and in a new file under logs/.
+
+    Args:
+        robot: The robot.
+        what: What is done, for the file's name.
 
     Yields:
         The recording.
@@ -76,7 +80,7 @@ def recorded(robot: Robot, kind: str) -> Iterator[Recording]:
     from host.logs.mcap_files import McapTap
 
     info = robot.info()
-    recording = Recording(Log(info), in_folder(kind, lambda path: McapTap(path, info)))
+    recording = Recording(Log(info), in_folder(what, info, lambda path: McapTap(path, info)))
     try:
         robot.add_tap(recording)
         yield recording

@@ -30,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)
-        with recorded(robot, "drive") as recording:
+        with recorded(robot, f"drive-{options.primitive}") as recording:
             result = drive(robot, recording.log, options.primitive, motor)
         result.update(brick=robot.link.uri, seed=robot.hello["seed"])
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"

@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
     _check(options.mode, options.wheel, details)
     with robot_of(options, moves=True) as robot:
         require_running(robot)
-        with recorded(robot, "kick") as recording:
+        with recorded(robot, _in_name(options)) as recording:
             if not options.now and not wait_settled(robot):
                 raise NotDone(
                     "the wheels did not settle",
@@ -92,6 +92,13 @@ def run(options: argparse.Namespace) -> int:
     if not outcome.reversed:
         say("the robot did not reverse" + advice(outcome))
     return 0 if outcome.reversed and not recording.failure else 1
+
+
+def _in_name(options: argparse.Namespace) -> str:
+    """The kick in its log's name, as in kick-phase-4-ticks-left."""
+    ticks = options.ticks or DEFAULT_TICKS[options.mode]
+    side = "" if options.wheel == "both" else f"-{options.wheel}"
+    return f"kick-{options.mode}-{ticks}-tick{'s' if ticks > 1 else ''}{side}"
 
 
 def _check(mode: str, wheel: str, details: dict[str, object]) -> None:

@@ -138,7 +138,7 @@ def _pull(options: argparse.Namespace) -> int:
     with robot_of(options) as robot:
         log = Log(robot.info())
         robot.pull(log)
-    path = log.save(options.out) if options.out else in_folder("pull", log.save)
+    path = log.save(options.out) if options.out else in_folder("pull", log.info, log.save)
     answer(
         options,
         {"log": str(path), "ticks": len(log)},

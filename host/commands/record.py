@@ -85,7 +85,7 @@ def _new_log(out: Path | None, info: dict[str, Any]) -> McapTap:
 
     if out is not None:
         return McapTap(out, info)
-    return in_folder("record", lambda path: McapTap(path, info))
+    return in_folder("record", info, lambda path: McapTap(path, info))
 
 
 def _wait(robot: Robot, seconds: float) -> None:

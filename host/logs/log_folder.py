@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
 from itertools import chain, count
 from math import inf
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from mcap.reader import SeekingReader
 
@@ -25,13 +26,16 @@ LOG_FOLDER = Path("logs")
 BREAKS_OFF = "breaks off"
 
 
-def in_folder(kind: str, write: Callable[[Path], T]) -> T:
-    """Write a log that begins now to ./logs, as logs/kick-20261122-153012.mcap.
+def in_folder(what: str, info: dict[str, Any], write: Callable[[Path], T]) -> T:
+    """Write a log that begins now to ./logs, under a name that says what it is.
 
-    The time is local. The folder is created if it does not exist.
+    It is named as in logs/20261122-153012-ev3dev.local-kick-phase-4-ticks.mcap: by the local time,
+    so that names sort by it, the robot, and what was done. The folder is created if it does not
+    exist.
 
     Args:
-        kind: The first part of the name.
+        what: What was done.
+        info: What is known of it, as in Log; `brick` is the robot's address.
         write: Creates the file that it gets; see `under_free_name`.
 
     Returns:
@@ -48,7 +52,23 @@ def in_folder(kind: str, write: Callable[[Path], T]) -> T:
             "go to a folder that you may write to",
         ) from None
     moment = datetime.now().astimezone()
-    return under_free_name(LOG_FOLDER / f"{kind}-{moment:%Y%m%d-%H%M%S}.mcap", write)
+    parts = [f"{moment:%Y%m%d-%H%M%S}", robot_in_name(str(info.get("brick", ""))), what]
+    return under_free_name(LOG_FOLDER / ("-".join(filter(None, parts)) + ".mcap"), write)
+
+
+def robot_in_name(address: str) -> str:
+    """What a file's name says of a robot: its host or device, or the kind of its address.
+
+    Args:
+        address: The robot's, as in ssh://robot@ev3dev.local; may be empty.
+
+    Returns:
+        Letters, digits, points and hyphens, at most 40.
+    """
+    kind, _, rest = address.partition("://")
+    place = rest.partition("?")[0].rpartition("@")[2].rstrip("/").rpartition("/")[2]
+    plain, plain_kind = (re.sub("[^A-Za-z0-9.]+", "-", text).strip("-.") for text in (place, kind))
+    return (plain or plain_kind)[:40].strip("-.")
 
 
 def under_free_name(path: Path, write: Callable[[Path], T]) -> T:

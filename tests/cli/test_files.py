@@ -169,7 +169,7 @@ def test_logs_that_begin_in_the_same_second_have_names_of_their_own(kickctl):
 
     def record():
         barrier.wait()
-        with in_folder("record", lambda path: McapTap(path, {})) as tap:
+        with in_folder("record", {}, lambda path: McapTap(path, {})) as tap:
             paths.append(tap.path)
 
     recorders = [threading.Thread(target=record) for _ in range(4)]

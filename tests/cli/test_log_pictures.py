@@ -67,3 +67,18 @@ def test_a_log_without_ticks_has_no_picture(kickctl):
         status, _, err = kickctl("log", action, str(path))
         assert status == 1
         assert "holds no ticks" in err
+
+
+@pytest.mark.parametrize(
+    ("line", "ending"),
+    [
+        (("kick", "--mode", "membrane", "--wheel", "left"), "-sim-kick-membrane-1-tick-left.mcap"),
+        (("record", "0.1"), "-sim-record.mcap"),
+        (("log", "pull"), "-sim-pull.mcap"),
+        (("drive", "forward"), "-sim-drive-forward.mcap"),
+    ],
+)
+def test_a_logs_name_says_what_was_done(kickctl, line, ending):
+    name = Path(json.loads(kickctl(*line, "--seed", "1", "--json")[1])["log"]).name
+    assert name[15:] == ending
+    assert name[:8].isdecimal()

@@ -324,13 +324,31 @@ def test_new_logs_have_names_of_their_own_in_the_present_folder(tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(log_folder, "datetime", Now)
     log = running(3)
-    names = [in_folder("kick", log.save).relative_to("logs").name for _ in range(3)]
-    assert names == [
-        "kick-20261122-153012.mcap",
-        "kick-20261122-153012-2.mcap",
-        "kick-20261122-153012-3.mcap",
+    paths = [in_folder("kick-phase-4-ticks", {"brick": "sim://?k=2"}, log.save) for _ in range(3)]
+    assert [path.relative_to("logs").name for path in paths] == [
+        "20261122-153012-sim-kick-phase-4-ticks.mcap",
+        "20261122-153012-sim-kick-phase-4-ticks-2.mcap",
+        "20261122-153012-sim-kick-phase-4-ticks-3.mcap",
     ]
-    assert in_folder("record", log.save).name == "record-20261122-153012.mcap"
+    assert in_folder("record", {}, log.save).name == "20261122-153012-record.mcap"
+
+
+@pytest.mark.parametrize(
+    ("address", "name"),
+    [
+        ("sim://", "sim"),
+        ("sim://?motor=a/b", "sim"),
+        ("tcp://192.168.0.7:5425", "192.168.0.7-5425"),
+        ("tcp://[fe80::1%usb0]", "fe80-1-usb0"),
+        ("ssh://robot@ev3dev.local", "ev3dev.local"),
+        ("serial:///dev/ttyUSB0?baud=115200", "ttyUSB0"),
+        ("", ""),
+        ("tcp://host/../..", "tcp"),
+        ("tcp://" + 60 * "a", 40 * "a"),
+    ],
+)
+def test_a_logs_name_says_which_robot_it_is_of(address, name):
+    assert log_folder.robot_in_name(address) == name
 
 
 def test_the_list_of_logs_separates_whole_broken_and_foreign_files(tmp_path):
