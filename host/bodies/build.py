@@ -103,12 +103,15 @@ def build_scene(request: BodyRequest) -> mujoco.MjSpec:
         )
 
 
-def build_body(request: BodyRequest, scene: mujoco.MjSpec | None = None) -> Body:
+def build_body(
+    request: BodyRequest, scene: mujoco.MjSpec | None = None, keep: int | None = None
+) -> Body:
     """The body, at rest.
 
     Args:
         request: what it should be.
         scene: what `build_scene` made of the same request, if it is already there.
+        keep: how many of its last states it keeps; None for all.
 
     Returns:
         A body that can run and be kicked.
@@ -126,7 +129,7 @@ def build_body(request: BodyRequest, scene: mujoco.MjSpec | None = None) -> Body
     phases = np.full(2 * request.cars, PUSHED) if start == PUSHED_FORWARD else None
     own = choose_preset(request)
     with value_errors_as_wrong_use():
-        return Body(model, own, seed=request.seed, torque=request.torque, phases=phases)
+        return Body(model, own, seed=request.seed, torque=request.torque, phases=phases, keep=keep)
 
 
 @contextmanager

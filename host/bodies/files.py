@@ -14,7 +14,6 @@ import numpy as np
 from mcap.writer import CompressionType, Writer
 from numpy.typing import NDArray
 
-from host.util.whole_files import whole_file
 from robot import __version__
 
 TOPIC = "/state"
@@ -27,59 +26,68 @@ def unit(column: str) -> str:
     return _UNITS[max(endings, key=len)] if endings else "1"
 
 
-def write_csv(path: Path, columns: tuple[str, ...], rows: NDArray[np.float64]) -> Path:
-    """Write a line for each time, with every bit of the numbers.
+class CsvStates:
+    """A file with a line for each time, with every bit of the numbers.
 
     Args:
-        path: the file.
-        columns: names of the columns.
-        rows: (times, columns).
-
-    Returns:
-        The path.
+        path: The file.
+        columns: Names of the columns.
     """
-    with whole_file(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(row.tolist() for row in rows)  # not all at once: that takes much memory
-    return path
+
+    def __init__(self, path: Path, columns: tuple[str, ...]) -> None:
+        self._file = path.open("w", newline="", encoding="utf-8")
+        self._writer = csv.writer(self._file)
+        self._writer.writerow(columns)
+
+    def add(self, rows: NDArray[np.float64]) -> None:
+        """Write the next rows, (times, columns)."""
+        self._writer.writerows(rows.tolist())
+
+    def finish(self) -> None:
+        """End the file."""
+        self._file.close()
 
 
-def write_mcap(
-    path: Path, columns: tuple[str, ...], rows: NDArray[np.float64], info: dict[str, Any]
-) -> Path:
-    """Write a message for each time on the channel /state; log times are simulated times.
+class McapStates:
+    """A file with a message for each time on the channel /state; log times are simulated times.
 
     Args:
-        path: the file.
-        columns: names of the columns; the first is the time in s.
-        rows: (times, columns).
-        info: plain data about the run, kept as metadata.
-
-    Returns:
-        The path.
+        path: The file.
+        columns: Names of the columns; the first is the time in s.
+        info: Plain data about the run, kept as metadata.
     """
-    schema = {
-        "title": "state",
-        "description": "a simulated body",
-        "type": "object",
-        "properties": {
-            column: {"type": "number", "description": f"[{unit(column)}]"} for column in columns
-        },
-        "required": list(columns),
-    }
-    metadata = {name: json.dumps(value, allow_nan=False) for name, value in info.items()}
-    with whole_file(path) as draft, draft.open("wb") as file:
-        writer: Any = Writer(file, compression=CompressionType.LZ4, enable_data_crcs=True)
-        writer.start(library=f"kickctl {__version__}")
-        writer.add_metadata("kickctl", metadata)
-        schema_id = writer.register_schema(
+
+    def __init__(self, path: Path, columns: tuple[str, ...], info: dict[str, Any]) -> None:
+        schema = {
+            "title": "state",
+            "description": "a simulated body",
+            "type": "object",
+            "properties": {
+                column: {"type": "number", "description": f"[{unit(column)}]"} for column in columns
+            },
+            "required": list(columns),
+        }
+        metadata = {name: json.dumps(value, allow_nan=False) for name, value in info.items()}
+        self._columns, self._count, self._file = columns, 0, path.open("wb")
+        self._writer: Any = Writer(
+            self._file, compression=CompressionType.LZ4, enable_data_crcs=True
+        )
+        self._writer.start(library=f"kickctl {__version__}")
+        self._writer.add_metadata("kickctl", metadata)
+        schema_id = self._writer.register_schema(
             "kickctl.State", "jsonschema", json.dumps(schema, allow_nan=False).encode()
         )
-        channel = writer.register_channel(TOPIC, "json", schema_id)
-        for number, row in enumerate(map(np.ndarray.tolist, rows)):
+        self._channel = self._writer.register_channel(TOPIC, "json", schema_id)
+
+    def add(self, rows: NDArray[np.float64]) -> None:
+        """Write the next rows, (times, columns)."""
+        for row in rows.tolist():
             time_ns = round(row[0] * 1e9)
-            message = json.dumps(dict(zip(columns, row, strict=True)), allow_nan=False)
-            writer.add_message(channel, time_ns, message.encode(), time_ns, number)
-        writer.finish()
-    return path
+            message = json.dumps(dict(zip(self._columns, row, strict=True)), allow_nan=False)
+            self._writer.add_message(self._channel, time_ns, message.encode(), time_ns, self._count)
+            self._count += 1
+
+    def finish(self) -> None:
+        """End the file."""
+        with self._file:
+            self._writer.finish()

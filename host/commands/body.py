@@ -18,6 +18,7 @@ from host.util.whole_files import write_text
 
 if TYPE_CHECKING:
     from host.bodies.build import BodyRequest
+    from host.bodies.keeping import Keeper
     from host.bodies.kicks import ScheduledKick
     from sim_motor.bodies.body import Body
     from sim_motor.bodies.measures import Summary
@@ -101,6 +102,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Simulate, and keep what there is even if it ends early."""
     from host.bodies.build import CARS_OF_A_TRAIN, BodyRequest, build_body, build_scene
+    from host.bodies.keeping import BLOCK
     from host.bodies.kicks import parse_kick
     from host.errors import WrongUse
     from host.runs.folder import digest
@@ -128,7 +130,7 @@ def run(options: argparse.Namespace) -> int:
         start=options.start,
     )
     scene = build_scene(request)
-    body = build_body(request, scene)
+    body = build_body(request, scene, BLOCK)
     if options.film:
         require_place(options, options.film)
     if options.model:
@@ -178,26 +180,21 @@ class Result(NamedTuple):
         """The settings and the summary as plain data."""
         return {**self.settings, **summary, "folder": str(self.folder)}
 
-    def write(self) -> tuple[Summary, dict[str, str]]:
-        """Write all files, as far as disk and matplotlib allow.
+    def finish(self, keeper: Keeper) -> tuple[Summary, dict[str, str]]:
+        """Write what is left to write, as far as disk and matplotlib allow.
 
         Returns:
             The summary of the run so far, and why files could not be written, by their names.
         """
-        from host.bodies.files import write_csv, write_mcap
-        from sim_motor.bodies.measures import summary as summarize
-
-        columns, rows = self.body.columns, self.body.rows
-        summary = summarize(columns, rows)
+        keeper.finish()
+        summary = keeper.summary()
+        unwritten = {name: os_words(error) for name, error in keeper.failures.items()}
         text = json.dumps(self.as_dict(summary), indent=1, allow_nan=False) + "\n"
         work: dict[str, Callable[[Path], object]] = {
-            "state.csv": lambda path: write_csv(path, columns, rows),
-            "state.mcap": lambda path: write_mcap(path, columns, rows, self.settings),
             "summary.json": lambda path: write_text(path, text),
-            "body.png": lambda path: self._draw(path, summary),
-            "body.svg": lambda path: self._draw(path, summary),
+            "body.png": lambda path: self._draw(path, keeper, summary),
+            "body.svg": lambda path: self._draw(path, keeper, summary),
         }
-        unwritten = {}
         for name, write in work.items():
             try:
                 write(self.folder / name)
@@ -207,17 +204,17 @@ class Result(NamedTuple):
                 unwritten[name] = figure_words(error)
         return summary, unwritten
 
-    def _draw(self, path: Path, summary: Summary) -> Path:
+    def _draw(self, path: Path, keeper: Keeper, summary: Summary) -> Path:
         from host.figures.bodies.body import draw
         from host.figures.style import save
 
         kicks_s = [kick.t_s for kick in self.kicks]
-        columns, rows = self.body.columns, self.body.rows
-        return save(draw(columns, rows, self.request, summary, kicks_s), path)
+        return save(draw(keeper.columns, keeper.rows(), self.request, summary, kicks_s), path)
 
 
 def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dict[str, str]]:
     """Run the body, and write everything, also if it is interrupted or becomes unstable."""
+    from host.bodies.keeping import Keeper
     from host.bodies.kicks import run_with_kicks
     from host.util.progress import progress
 
@@ -225,22 +222,24 @@ def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dic
     with ExitStack() as stack:
         watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
         folder.mkdir(parents=True, exist_ok=True)
+        keeper = Keeper(folder, body, result.settings)
         try:
             advance = stack.enter_context(
                 progress(f"{options.body}, simulated seconds", options.time)
             )
 
             def watch(time_s: float) -> None:
+                keeper.note()
                 advance(time_s)
                 for watcher in watchers:
                     watcher(body.data)
 
             run_with_kicks(body, options.time, result.kicks, watch)
         except (KickctlError, KeyboardInterrupt):
-            result.write()
+            result.finish(keeper)
             say(f"the first {body.time_s:g} s are kept in {folder}")
             raise
-    return result.write()
+    return result.finish(keeper)
 
 
 def _watchers(
