@@ -29,6 +29,9 @@ MOVING_HZ = 0.1
 ALWAYS = 50
 # A rate that is 100 % in whole percents, as the paper writes it.
 ALL = 0.995
+# The paper's quenched kicks, in words.
+INVERTED = "inverting the positions (beta = 1)"
+SHIFTED = "a phase shift of 3 pi/4, positive for forward wheels and negative for backward ones,"
 # The rates at which a quenched kick is reliable, and fails; the lengths (ticks) at which it should
 # be reliable; and the trials that it takes to decide.
 RELIABLE, FAILS = 0.95, 0.1
@@ -86,14 +89,14 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
     asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
     claim = Claim(
         "R1",
-        "forward and backward locomotion coexist",
+        "forward and backward locomotion coexist; the start alone decides between them",
         "both from random starts, speeds equal within 3 %",
         asymmetry,
         "1",
         None,
         both and asymmetry <= 0.03,
-        f"difference of the mean speeds; of {len(speeds)} wheels {len(forward)} roll forward,"
-        f" {len(backward)} backward",
+        f"the relative difference of the two mean speeds; of {len(speeds)} wheels {len(forward)}"
+        f" roll forward, {len(backward)} backward",
     )
     return claim.doubted(too_few(len(speeds), LEAST_STARTS, "wheels that started"))
 
@@ -110,33 +113,34 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
     return [
         Claim(
             "R2",
-            "turns per second at k = 8",
+            "at k = 8 a wheel makes about 2 turns per second",
             "1.8 to 2.3 Hz",
             mean,
             "Hz",
             interval,
             1.8 <= mean <= 2.3,
+            f"the mean of {len(wheels)} wheels",
         ),
         Claim(
             "R3",
-            "speed, and share of the motor's power, at k = 8",
+            "at k = 8 the robot drives at 0.35 m/s, with 80 to 90 % of the motor's power",
             "0.32 to 0.39 m/s, duty 80 to 90 %",
             mean * to_m_s,
             "m/s",
             (interval[0] * to_m_s, interval[1] * to_m_s) if interval else None,
             0.32 <= mean * to_m_s <= 0.39 and 80.0 <= duty <= 90.0,
-            f"at a duty cycle of {duty:.0f} %",
+            f"the mean speed, at a duty cycle of {duty:.0f} %",
         ),
         Claim(
             "R4",
-            "the torque M is quasi-stationary",
+            "the torque M hardly changes in locomotion",
             "std(M) / mean(|M|) < 0.1",
             ripple,
             "1",
             None,
             ripple < 0.1 and min(hertz) > MOVING_HZ,
-            f"the greatest of {len(wheels)} wheels; the slowest makes {min(hertz):.2f} turns a"
-            " second",
+            f"std(M) / mean(|M|) of that of {len(wheels)} wheels which varies most; the slowest"
+            f" wheel makes {min(hertz):.2f} turns per second",
         ),
     ]
 
@@ -172,8 +176,9 @@ def break_away(log: Log, span: Span) -> Claim:
             0.09 <= low <= 0.102 and 0.1 <= high <= 0.11
             for low, high in zip(stalls, moves, strict=True)
         ),
-        "; ".join(
-            f"{side}: rests at M = {low:.3f}, moves at {high:.3f}"
+        "the mean |M| at which a wheel begins to move; "
+        + "; ".join(
+            f"{side}: rests at |M| = {low:.3f}, moves at {high:.3f}"
             for side, low, high in zip(WHEELS, stalls, moves, strict=True)
         ),
     )
@@ -188,13 +193,13 @@ def inversions(reversals: Sequence[bool]) -> Claim:
     done, tried = sum(reversals), len(reversals)
     claim = Claim(
         "R8",
-        "membrane inversion is 100 % reliable",
+        "inverting the membrane potentials always reverses the wheels",
         f"{ALWAYS} of {ALWAYS}",
         done / max(1, tried),
         "1",
         wilson(done, tried),
         not tried or done / tried >= ALL,
-        f"{done} of {tried}",
+        f"the share of inversions that reversed them: {done} of {tried}",
     )
     # An inversion that fails among few disproves it.
     return claim.doubted(too_few(tried, ALWAYS, "inversions")) if claim.holds else claim
@@ -241,7 +246,8 @@ def quenched(
         "1",
         wilson(*least_sure[best]),
         rate >= RELIABLE and rates[1] <= FAILS and long <= FAILS,
-        f"at {best} ticks, {where}; at 1 tick {rates[1]:.0%}; {long:.0%} at the worst length from"
-        f" {SURE_LENGTHS[-1] + 1} to {max(rates)} ticks",
+        f"the share of kicks of {best} ticks that reverse a wheel, {where}; of 1 tick:"
+        f" {rates[1]:.0%}; of the worst length from {SURE_LENGTHS[-1] + 1} to {max(rates)} ticks:"
+        f" {long:.0%}",
     )
     return found.doubted(too_few(fewest, LEAST_TRIALS, of_what))

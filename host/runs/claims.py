@@ -16,18 +16,19 @@ class Claim:
         id: The number under which the project keeps the claim, such as R8.
         claim: What is claimed.
         paper: The paper's number; a range is the target.
-        measured: The number that was measured, in `unit`.
+        measured: The number that was measured, in `unit`; None if there was nothing to measure.
         unit: The unit of `measured`; "1" for a number without one.
         interval: Where the number lies with a confidence of 95 %; None where chance plays no part.
         holds: Whether the claim holds; None if this run cannot decide it, because it has too few
             trials or is not at the parameters that the claim is made for.
-        note: What the number leaves out; why the claim does not hold or is undecided.
+        note: What was measured, and what else was found; why the claim does not hold or is
+            undecided.
     """
 
     id: str
     claim: str
     paper: str
-    measured: float
+    measured: float | None
     unit: str
     interval: tuple[float, float] | None
     holds: bool | None
@@ -62,15 +63,20 @@ class Claim:
 
     def number(self) -> str:
         """What was measured, with unit and interval."""
+        if self.measured is None:
+            return "nothing"
         unit = "" if self.unit == "1" else " " + self.unit
         interval = f" ({self.interval[0]:.3g} to {self.interval[1]:.3g})" if self.interval else ""
         return f"{self.measured:.3g}{unit}{interval}"
 
     def sentence(self) -> str:
-        """The claim and its verdict in one line."""
+        """The verdict, the claim, what was measured and the paper's number, on one line."""
         verdict = self.verdict.upper() if self.holds is False else self.verdict
-        note = f"; {self.note}" if self.note else ""
-        return f"{self.id} {verdict}: {self.claim}: {self.number()}{note} (paper: {self.paper})"
+        note = f", {self.note}" if self.note else ""
+        return (
+            f"{self.id} {verdict}: {self.claim}. Measured: {self.number()}{note}. Paper:"
+            f" {self.paper}."
+        )
 
 
 def exit_status(claims: list[dict[str, Any]]) -> int:

@@ -175,13 +175,17 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     ]
     claim = Claim(
         "B1",
-        "a car with one rod for each wheel follows intricate trajectories inside confining slopes",
+        "a car with one rod for each wheel follows intricate trajectories, and stays inside"
+        " confining slopes",
         "all stay inside for 10 min, and do not flip",
         fraction(good, len(tried)),
         "1",
         wilson(good, len(tried)),
         good == len(tried) > 0,
-        "; ".join([f"{good} of {len(tried)} for {seconds:g} s", *notes]),
+        "; ".join(
+            [f"the share of cars that stay upright inside: {good} of {len(tried)}, {seconds:g} s"]
+            + notes
+        ),
     )
     numbers: Numbers = {"angles": angles}
     return Findings([claim.doubted(setting.short_of(seconds=CLAIMED_S))], numbers)

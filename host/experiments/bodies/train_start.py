@@ -134,14 +134,14 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     }
     done, tried = sum(start["order"] > ORDERED for start in found), len(found)
     both = all(count["forward"] and count["backward"] for count in numbers.values())
-    note = "; ".join(
+    note = "the share of trains that do; " + "; ".join(
         f"{name}: {count['ordered']} of {count['trains']}, {count['forward']} forward and"
         f" {count['backward']} backward"
         for name, count in numbers.items()
     )
     claim = Claim(
         "B2",
-        "the ten wheels of a train coordinate speed and direction on their own, from random phases",
+        "from random phases, the ten wheels of a train find one speed and direction by themselves",
         f"order parameter > {ORDERED:g} in all, in both presets; both directions occur",
         fraction(done, tried),
         "1",

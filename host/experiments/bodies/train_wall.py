@@ -232,14 +232,14 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     still = all(kind["constant_torque"]["ended"] == STUCK for kind in kinds)
     claim = Claim(
         "B3",
-        "the train reverses as a whole at a wall, with no sensor for it",
+        "a train reverses as a whole at a wall, with no sensor for it",
         f">= {LEAST} reversals in a row in both presets; a train with constant torque gets stuck",
         least,
         "1",
         None,
         least >= LEAST and still,
-        f"median of the runs, in the preset that has fewer, in {setting.options['seconds']:g} s; "
-        + "; ".join(map(_describe_kind, kinds)),
+        f"the reversals in {setting.options['seconds']:g} s, median of the runs, in the preset that"
+        " has fewer; " + "; ".join(map(_describe_kind, kinds)),
     )
     numbers: Numbers = {"kinds": kinds}
     doubt = setting.short_of(seeds=LEAST_TRAINS, seconds=LEAST_S)

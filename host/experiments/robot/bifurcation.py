@@ -172,7 +172,7 @@ def _ramp(robot: Robot, log: Log) -> Ramp:
             "see its screen and its log, and run the same again",
         )
     found = break_away(log, span)
-    return {"torque": found.measured, "holds": found.holds is True, "note": found.note}
+    return {"torque": found.measured or 0.0, "holds": found.holds is True, "note": found.note}
 
 
 def report(rows: list[BifurcationRow], setting: Setting) -> Findings:
@@ -227,8 +227,8 @@ def _stall(ramps: list[RampRow]) -> Claim:
         bootstrap_interval(torques),
         bool(ramps) and not failed,
         "; ".join(failed)
-        or f"slow ramps from rest: {len(ramps)}, in all of which both wheels rest below 0.1 and"
-        " move at 0.11 at most",
+        or "the mean |M| at which a wheel begins to move; in all of"
+        f" {len(ramps)} slow ramps from rest both wheels rest below 0.1 and move at 0.11 at most",
     )
 
 
@@ -241,14 +241,15 @@ def _jump(folds: list[FoldRow], critical: list[float], again: list[float]) -> Cl
     low, high = bootstrap_interval(critical) or (0.0, 0.0)
     return Claim(
         "R6",
-        "lowering k, M falls discontinuously to zero at k_c, with a stopped state coexisting",
+        "as k decreases, M jumps to zero at k_c; above k_c, rest and locomotion coexist",
         "a jump from |M| > 0.15 to |M| < 0.1; hysteresis",
         _mean(before),
         "1",
         interval,
         jumps and hysteresis,
-        f"|M| before it falls, of {len(before)} wheels; at most {after:.2f} after; k_c ="
-        f" {_mean(critical):.3f} ({low:.3f} to {high:.3f}); going up, {len(again)} wheels run again"
-        f" from k = {min(again, default=0.0):.2f} to {max(again, default=0.0):.2f} on, in the"
-        f" median from {float(np.median(again)) if again else 0.0:.2f}",
+        f"the mean |M| of {len(before)} wheels before the jump; after it at most {after:.2f}; k_c ="
+        f" {_mean(critical):.3f} ({low:.3f} to {high:.3f}). As k increases, {len(again)} wheels"
+        f" start to move between k = {min(again, default=0.0):.2f} and"
+        f" {max(again, default=0.0):.2f}, half of them by"
+        f" {float(np.median(again)) if again else 0.0:.2f}",
     )

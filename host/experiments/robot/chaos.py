@@ -128,10 +128,10 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         f"{rate['per_s']:.2f}/s" if rate else "none (too short, or still in part)" for rate in rates
     )
     switching = (
-        f"{own['to_the_end']} of {own['wheels']} wheels switch to the end, the median until"
-        f" {own['median_until_s']:.1f} s"
+        f"the share of wheels that switch to the end: {own['to_the_end']} of {own['wheels']}; half"
+        f" of them switch until {own['median_until_s']:.1f} s"
     )
-    exponents = f"exponent of the series {rates_text}, where noise alone makes {of_noise():.2f}/s"
+    exponents = f"Lyapunov exponent of the time series {rates_text}; of noise {of_noise():.2f}/s"
     notes = [switching, exponents]
     numbers: dict[str, object] = {
         "series": {f"{condition}, {side}": found for (condition, side), found in series.items()}
@@ -143,7 +143,7 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         notes += reasons(explanations, delayed["exponent"])
     claim = Claim(
         "R14",
-        "k = 15, tau = 1000 ms: chaotic, irregular switching of the motors",
+        "at k = 15 and tau = 1000 ms the motors switch irregularly: the motion is chaotic",
         "sustained irregular switching over 10 min; positive largest Lyapunov exponent estimate",
         own["to_the_end"] / own["wheels"],
         "1",

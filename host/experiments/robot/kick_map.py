@@ -27,7 +27,7 @@ from host.kicking.kick_map import (
 )
 from host.kicking.outcome import DIRECTIONS, OPPOSITE
 from host.kicking.planning import choose
-from host.kicking.robot_claims import quenched, surest
+from host.kicking.robot_claims import INVERTED, SHIFTED, quenched, surest
 from host.logs.log import Log
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
@@ -157,8 +157,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     position = [of_kind(rows, POSITION, 0, before) for before in (1, -1)]
     named = [of_kind(rows, PHASE, before, before) for before in (1, -1)]
     claims = [
-        _at_any_phase("R9", "inverted positions", position),
-        _at_any_phase("R10", "a phase shift of the named sign", named),
+        _at_any_phase("R9", INVERTED, position),
+        _at_any_phase("R10", SHIFTED, named),
     ]
     numbers: Numbers = {
         "kicks": count(rows)[1],
@@ -214,7 +214,7 @@ def _at_any_phase(number: str, what: str, directions: list[list[Row]]) -> Claim:
     least_sure = {ticks: _least_sure(own) for ticks, own in by_length.items()}
     return quenched(
         number,
-        f"{what}: reliable for 3 to 5 ticks at any phase",
+        f"{what} reverses a wheel reliably at any phase if it lasts 3 to 5 ticks",
         "in the direction and at the phase where it is least sure",
         least_sure,
         {ticks: fraction(*own.sum(axis=1)) for ticks, own in by_length.items()},

@@ -236,15 +236,16 @@ def _primitives(rows: list[PrimitivesRow]) -> Claim:
     tried = sum(bool(transitions(rows, *pair)) for pair in PAIRS)
     claim = Claim(
         "R7",
-        "forward, backward and both spins from each other by kicks alone; stopped and back",
+        "kicks alone lead from each of forward, backward and both spins to each other; a pulse of k"
+        " leads to rest",
         "all reached; the range of k where the stopped state coexists with locomotion shown",
         alone / max(1, len(kicked)),
         "1",
         wilson(alone, len(kicked)),
         _is_sure(alone, len(kicked)) and _is_sure(stopped, len(stops)) and bool(sure),
-        f"{alone} of {len(kicked)} by kicks alone; to stopped and back {stopped} of"
-        f" {len(stops)}; after a pulse of k to 0 the robot always rests, and always runs without"
-        f" it, at k = {_range(sure)}; sometimes so at k = {_range(shared)}",
+        f"the share of transitions by kicks alone that succeed: {alone} of {len(kicked)}; to"
+        f" stopped and back {stopped} of {len(stops)}; at k = {_range(sure)} the robot always runs,"
+        f" and always rests after a pulse of k to 0; at k = {_range(shared)} it sometimes does",
     )
     # Failures count even if other transitions were never tried.
     return claim.doubted(too_few(tried, len(PAIRS), "transitions")) if claim.holds else claim

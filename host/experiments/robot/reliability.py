@@ -17,7 +17,7 @@ from host.client.robot import Robot
 from host.errors import NotDone
 from host.kicking.kick_map import KickCell, request, shift_of
 from host.kicking.outcome import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
-from host.kicking.robot_claims import inversions, quenched
+from host.kicking.robot_claims import INVERTED, SHIFTED, inversions, quenched
 from host.logs.log import Log
 from host.logs.motion import settling_s
 from host.runs.claims import Claim
@@ -172,8 +172,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     """R8 to R10."""
     claims = [
         inversions([row["reversed"] for row in points(rows, MEMBRANE, 1)]),
-        _quenched("R9", "inverted positions are", rows, POSITION, None),
-        _quenched("R10", "a phase shift of the named sign is", rows, PHASE, named=True),
+        _quenched("R9", INVERTED, rows, POSITION, None),
+        _quenched("R10", SHIFTED, rows, PHASE, named=True),
     ]
     kinds = (
         ("position", POSITION, None),
@@ -204,7 +204,7 @@ def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | 
         fewest = min(fewest, *(tried for _, tried in both))
     return quenched(
         number,
-        f"{what} reliable for 3 to 5 ticks",
+        f"{what} reverses a wheel reliably if it lasts 3 to 5 ticks",
         "in the worse direction",
         least_sure,
         rates,

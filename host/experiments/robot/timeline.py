@@ -203,14 +203,15 @@ def _settling(done: list[SettledKick]) -> Claim:
     slow = sum(time >= 0.5 for time in times)
     return Claim(
         "R11",
-        "settling into the reversed cycle outlasts the kick (half a second or more is seen)",
+        "settling into the reversed cycle takes longer than the kick, at times half a second or"
+        " more",
         "distribution of settling times",
         median,
         "s",
         bootstrap_interval(times, np.median),
         slow > 0 and all(kick.settling_s > kick.kick_s for kick in done),
-        f"median of {len(times)} reversals, the slower wheel; 5 to 95 %: {low:.2f} to {high:.2f} s;"
-        f" {slow} took half a second or more",
+        f"the median settling time of {len(times)} reversals, each that of the slower wheel; 5 to"
+        f" 95 %: {low:.2f} to {high:.2f} s; {slow} took half a second or more",
     )
 
 
@@ -221,13 +222,13 @@ def _slips(done: list[SettledKick]) -> Claim:
     beyond = sum(slip > usual for slip in slips)
     return Claim(
         "R12",
-        "a phase slip between left and right appears after kicks",
+        "a kick changes the relative phase of the left and the right wheel (phase slip)",
         "relative phase shown before and after",
         median,
         "rad",
         bootstrap_interval(slips, np.median),
         wilson(beyond, len(slips))[0] > 1 - USUAL,
-        f"median |slip| of {len(slips)} reversals; 5 to 95 %: {low:.3f} to {high:.3f} rad, at most"
-        f" {max(slips, default=0.0):.2f}; without a kick {USUAL:.0%} stay below {usual:.3f} in that"
-        f" time, which {beyond} slips exceed",
+        f"the median |slip| of {len(slips)} reversals; 5 to 95 %: {low:.3f} to {high:.3f} rad, at"
+        f" most {max(slips, default=0.0):.2f}. {beyond} slips exceed {usual:.3f} rad; without a"
+        f" kick {USUAL:.0%} stay below it in the same time",
     )

@@ -189,7 +189,7 @@ def _changes_sign(row: HitRow) -> bool:
 
 
 def _note(rows: list[WallRow], hits: list[HitRow]) -> str:
-    notes = ["{} of {}".format(*count_bounces(hits))]
+    notes = ["the share of hits that reverse it: {} of {}".format(*count_bounces(hits))]
     failed = Counter(row["ended"] for row in hits if not row["reversed"])
     if failed:
         ways = ", ".join(f"{how} ({count})" for how, count in failed.most_common())

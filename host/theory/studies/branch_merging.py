@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -91,33 +92,54 @@ def dry_branch(rows: list[BranchRow]) -> dict[str, Any] | None:
 
 def claim_m5(
     rows: list[BranchRow],
-    merging: MergingRow,
-    first_hopf: HopfRow,
+    merging: MergingRow | None,
+    first_hopf: HopfRow | None,
     second: dict[CyclePart, float | None],
     both: dict[str, float] | None,
+    along: str,
 ) -> Claim:
-    """M5: cycles are born stable, and both branches reach the merging."""
-    k_merge, k_hopf = merging["value"], first_hopf["value"]
-    born_stable = first_hopf["l1"] < 0.0
-    joined = all(value and abs(value / k_merge - 1) < _SAME for value in second.values())
-    amplitude = max((row["amplitude"] or 0.0 for row in cycles_of(rows, "FB")), default=0.0)
-    hysteresis = "no hysteresis"
-    if both:
-        hysteresis = f"hysteresis from k = {both['from']:.9g} to {both['to']:.9g}"
-    paper = ""
-    if k_hopf < _SWINGS_K < k_merge < _ROLLS_K:
-        paper = f"; k = {_SWINGS_K} swings, k = {_ROLLS_K} rolls, as in its portraits"
-    return Claim(
+    """M5: cycles are born stable, and both branches reach the merging.
+
+    Args:
+        rows: The branches.
+        merging: Where cycles and rotations merge; None if no merging was found.
+        first_hopf: The first Hopf bifurcation; None if there was none.
+        second: The merging by extrapolation of each branch.
+        both: The range of k with hysteresis, if any.
+        along: The constant that is followed.
+    """
+    claim = Claim(
         "M5",
-        "a supercritical Hopf bifurcation, whose four cycles merge with the saddles into a"
-        " rotation",
+        "the Hopf bifurcation is supercritical; its four cycles grow until they merge with the"
+        " saddles into a rotation",
         "amplitude of the cycle against k up to the merging; merging value located",
-        k_merge,
-        "k",
+        merging["value"] if merging else None,
+        "1",
         None,
-        born_stable and joined,
-        f"cycles are born {'stable' if born_stable else 'unstable'} at k = {k_hopf:.9g} and"
-        f" grow to {amplitude:.4f} rad (pi/4: 0.7854); they and the rotations reach k_merge ="
-        f" {k_merge:.12g} from both sides; the connection is heteroclinic, a ring of four saddles"
-        f" of saddle quantity {merging['saddle_quantity']:.3g}/s, {hysteresis}{paper}",
+        holds=False,
+    )
+    if not merging or not first_hopf:
+        missing = "merging" if first_hopf else "Hopf bifurcation"
+        return replace(claim, note=f"as there is no {missing} on the branch in {along}")
+    at_merging, at_hopf = merging["value"], first_hopf["value"]
+    born_stable = first_hopf["l1"] < 0.0
+    joined = all(value and abs(value / at_merging - 1) < _SAME for value in second.values())
+    amplitude = max((row["amplitude"] or 0.0 for row in cycles_of(rows, "FB")), default=0.0)
+    notes = [f"saddle quantity {merging['saddle_quantity']:.3g}/s"]
+    if along == "k":
+        notes.append(
+            f"hysteresis from k = {both['from']:.9g} to {both['to']:.9g}"
+            if both
+            else "no hysteresis"
+        )
+        if at_hopf < _SWINGS_K < at_merging < _ROLLS_K:
+            notes.append(f"k = {_SWINGS_K} swings, k = {_ROLLS_K} rolls, as in its portraits")
+    return replace(
+        claim,
+        holds=born_stable and joined,
+        note=f"the {along} of the merging, more exactly {at_merging:.12g}, which"
+        f" {'both' if joined else 'not both'} cycles and rotations reach. Cycles are born"
+        f" {'stable' if born_stable else 'unstable'} at {along} = {at_hopf:.9g} and grow to"
+        f" {amplitude:.4f} rad (pi/4: 0.7854). They merge in a heteroclinic ring of four saddles;"
+        f" {'; '.join(notes)}",
     )

@@ -70,13 +70,16 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
         "ends": _ends(rows, along),
         "accuracy": _accuracy(rows, merging, second),
     }
-    claims = []
-    if along == "k" and merging and first_hopf:
-        claims.append(claim_m5(rows, merging, first_hopf, second, both))
-    if along == "k" and deviations:
-        far = setting.short_of(to=FAR_K)
-        claims.append(claim_m6(deviations, turned, near, along, wheel).doubted(far))
-    claims.append(claim_m9(turned))
+    other = setting.elsewhere(along="k")
+    # A branch in another constant may end anywhere.
+    far = "" if other else setting.short_of(to=FAR_K)
+    m5 = claim_m5(rows, merging, first_hopf, second, both, along)
+    m6 = claim_m6(deviations, turned, near, along, wheel)
+    claims = [
+        m5.doubted(other, "" if merging and first_hopf else far),
+        m6.doubted(other, far),
+        claim_m9(turned),
+    ]
     foreign = setting.elsewhere(**PAPER)
     return Findings([claim.doubted(foreign) for claim in claims], numbers)
 

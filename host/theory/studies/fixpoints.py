@@ -98,14 +98,16 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
         [
             Claim(
                 "M1",
-                "eight fixpoints omega = 0, phi = n pi/4; those with odd n are always unstable",
+                "a wheel has eight fixpoints, omega = 0 and phi = n pi/4; those with odd n are"
+                " always unstable",
                 "odd n unstable; even n stable for small a k tau / (2 f)",
                 float(len(one)),
                 "fixpoints",
                 None,
                 odd_unstable and len(set(even)) == 1,
-                f"odd n are saddles, even n {'stable' if even[0] else 'unstable'} at a k tau / (2"
-                f" f) = {ratio}; growth rates agree with time courses within"
+                f"with odd n {'saddles' if odd_unstable else 'not all saddles'}, with even n"
+                f" {'stable' if even[0] else 'unstable'}, at a k tau / (2 f) = {ratio}; growth"
+                " rates agree with time courses within"
                 f" {max(row['growth_off_by'] for row in one):.0e}/s",
             ).doubted(foreign),
             Claim(
@@ -116,8 +118,8 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
                 "stable states",
                 None,
                 stable_pairs == (16 if all(even) else 0),
-                "of 64 pairs of fixpoints; below the Hopf line 16 are stable, above it none: here"
-                f" {'below' if all(even) else 'above'}",
+                f"among 64 pairs of fixpoints, {'below' if all(even) else 'above'} the Hopf line;"
+                " below it 16 are stable, above it none",
             ).doubted(foreign),
         ],
         numbers,

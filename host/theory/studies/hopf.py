@@ -92,15 +92,16 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
     }
     claim = Claim(
         "M3",
-        "a resting wheel becomes unstable at about k_c = 2 f / (a tau)",
+        "rest becomes unstable at about k_c = 2 f / (a tau)",
         "the line, beside the numerically exact Hopf line",
         ratio,
-        "k_c / exact",
+        "1",
         None,
         abs(small["k_estimate"] / small["k_hopf"] - 1) < 2 * LIMIT,
-        f"at tau = {wheel.tau_s:g} s the exact k is {point['k_hopf']:.4f}, the estimate"
-        f" {point['k_estimate']:.4f}: it is the limit of f tau << I, and f tau / I is {slow:.2g}"
-        f" here; at f tau / I = {LIMIT:g} the ratio is {small['k_estimate'] / small['k_hopf']:.3f};"
-        f" cycles are born {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
+        f"the ratio of this estimate, {point['k_estimate']:.4f}, to the exact k,"
+        f" {point['k_hopf']:.4f}, at tau = {wheel.tau_s:g} s. The estimate is made for f tau << I:"
+        f" here f tau / I = {slow:.2g}, and at {LIMIT:g} the ratio is"
+        f" {small['k_estimate'] / small['k_hopf']:.3f}. Limit cycles are born"
+        f" {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
     )
     return Findings([claim.doubted(setting.elsewhere(**PAPER))], numbers)

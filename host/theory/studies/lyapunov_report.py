@@ -219,18 +219,18 @@ def spectrum_claim(point: dict[str, Any], series: dict[str, Any] | None, route: 
     low, high = wilson(chaotic, point["of_wheels"])
     from_force = "none"
     if series is not None:
-        from_force = f"{series['per_s']:.2f}/s, where noise alone makes {series['of_noise']:.2f}/s"
+        from_force = f"{series['per_s']:.2f}/s, and of noise {series['of_noise']:.2f}/s"
     others = ", ".join(f"{exponent:.3f}" for exponent in point["exponents"])
     return Claim(
         "M8",
-        "chaos at k = 15, tau = 1: the largest Lyapunov exponent is positive",
+        "at k = 15 and tau = 1 s a wheel is chaotic: its largest Lyapunov exponent is positive",
         "series and Lyapunov spectrum",
         rate,
         "1/s",
         (rate - SURE * error, rate + SURE * error),
         positive and off < VERY_SURE * most_off,
-        f"spectrum {others} 1/s, dimension {point['dimension']:.3f}; by pairs of near wheels"
-        f" {point['by_pairs']:.3f} +- {point['by_pairs_error']:.3f}/s; from the series of the force"
-        f" {from_force}; {chaotic} of {point['of_wheels']} wheels are chaotic ({low:.0%} to"
-        f" {high:.0%}); {route}",
+        f"the largest exponent. By pairs of near wheels it is {point['by_pairs']:.3f} +-"
+        f" {point['by_pairs_error']:.3f}/s, from the time series of the force {from_force}; all"
+        f" exponents: {others} 1/s, dimension {point['dimension']:.3f}; {chaotic} of"
+        f" {point['of_wheels']} wheels are chaotic ({low:.0%} to {high:.0%}); {route}",
     )

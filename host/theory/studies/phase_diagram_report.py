@@ -126,12 +126,12 @@ def _claim(numbers: dict[str, Any], way: Way) -> Claim:
     in_plane = ", ".join(f"{share:.1%} {name}" for name, share in shares[f"plane, {way}"].items())
     return Claim(
         "M7",
-        "four phases in (k, tau): S, FB, LLM and C; rest ends near k tau = 2 f / a",
+        "the plane (k, tau) has four phases, S, FB, LLM and C; rest ends near k tau = 2 f / a",
         "std(omega), |mean(omega)|, the inset, the numeric and the analytic line",
         by_hopf,
-        "of the inset's points rest otherwise than the exact Hopf line says",
+        "1",
         None,
         not missing and by_hopf < MISJUDGED,
-        f"{not_found}{by_estimate:.2%} otherwise than k tau = 2 f / a says;"
-        f" of the plane {in_plane}",
+        "the share of the inset's points that the exact Hopf line misjudges, as resting or not;"
+        f" k tau = 2 f / a misjudges {by_estimate:.2%}; {not_found}of the plane {in_plane}",
     )

@@ -136,14 +136,14 @@ def _claim(found: list[SummaryRow], k_hopf: float) -> Claim:
     )
     return Claim(
         "M4",
-        "tau = 0.25 s: k = 1.4 stationary, k = 1.65 forth-and-back, k = 1.85 locomotion",
+        "at tau = 0.25 s a wheel rests at k = 1.4, swings at 1.65 and rolls at 1.85",
         "the three portraits",
         float(agreed),
         f"of {len(found)} portraits",
         None,
         agreed == len(found),
-        f"{kinds}; rest is unstable from k = {k_hopf:.4f}, and the saddles' unstable manifolds"
-        f" {manifolds}",
+        f"as in the paper; {kinds}. Rest is unstable from k = {k_hopf:.4f} on; the saddles'"
+        f" unstable manifolds {manifolds}",
     )
 
 

@@ -116,6 +116,31 @@ def test_other_constants_decide_nothing(rows):
     assert all("made for tau = 0.25 (here 0.1)" in claim.note for claim in found.claims)
 
 
+def test_along_another_constant_m5_and_m6_are_undecided_and_name_theirs(rows):
+    found = branch.report(rows, setting(along="tau"))
+    assert [(claim.id, claim.holds) for claim in found.claims] == [
+        ("M5", None),
+        ("M6", None),
+        ("M9", True),
+    ]
+    for number in ("M5", "M6"):
+        assert "made for along = k (here tau)" in claim(found, number).note
+
+
+def test_a_branch_that_ends_before_the_merging_decides_neither(rows):
+    before = [row for row in rows if row.get("value", 0.0) < 1.6]
+    found = branch.report(before, setting(to=1.6))
+    for number in ("M5", "M6"):
+        one = claim(found, number)
+        assert (one.measured, one.holds, one.number()) == (None, None, "nothing")
+        assert "to = 20 or more (here 1.6)" in one.note
+
+
+def test_a_whole_branch_without_a_merging_disproves_m5(rows):
+    without = [row for row in rows if row.get("type") != "merging"]
+    assert claim(branch.report(without, setting()), "M5").holds is False
+
+
 def test_m6_does_not_hold_if_the_formula_is_off_at_the_end_of_the_whole_branch(rows):
     assert claim(branch.report(rows, setting()), "M6").holds is False
 
@@ -148,7 +173,11 @@ def test_nothing_to_find_is_said_and_drawn():
     assert found.numbers["k_merge"] is None
     assert found.numbers["special_points"] == []
     assert "rolling" in found.numbers["ends"][0]["end"]
-    assert [claim.id for claim in found.claims] == ["M9"]
+    assert [(claim.id, claim.holds) for claim in found.claims] == [
+        ("M5", None),
+        ("M6", None),
+        ("M9", True),
+    ]
     draw(rows, found).canvas.draw()
 
 

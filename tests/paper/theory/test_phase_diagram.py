@@ -103,7 +103,7 @@ def test_points_out_of_chaos_do_not_depend_on_the_step(diagram):
         ({}, None, "points = 200 or more (here 10)"),
         ({"points": 200, "a": 3.0}, None, "a = 4 (here 3)"),
         ({"points": 200, "start": "up"}, None, "start = sweep (here up)"),
-        ({"points": 200, "transient": 100.0, "seconds": 100.0}, False, "otherwise"),
+        ({"points": 200, "transient": 100.0, "seconds": 100.0}, False, "misjudges"),
     ],
 )
 def test_m7_is_decided_by_a_fine_diagram_of_the_papers_wheel(diagram, options, holds, words):
