@@ -14,7 +14,7 @@ from host.client.listeners import Backlog, Listener, Records
 from host.client.stream import Feed
 from host.errors import NoLink
 from host.logs.tap import Tap
-from host.util.arguments import need_function, need_seconds, wrong
+from host.util.arguments import need_function, need_seconds, need_tap
 from host.util.provenance import origin
 from robot.record import Record
 
@@ -181,7 +181,7 @@ class Watcher(Connection):
         Args:
             tap: Has take_records(records) and take_event(event), which return at once.
         """
-        _need_tap(tap)
+        need_tap(tap)
         with self._lock:
             self._subscribe()
             self.stream.add(tap)
@@ -203,7 +203,7 @@ class Watcher(Connection):
         Args:
             tap: As for `add_tap`.
         """
-        _need_tap(tap)
+        need_tap(tap)
         self._subscribe()
         feed = Feed(end=self.request("status")["tick"])
         feed.add(tap)
@@ -238,9 +238,3 @@ class Watcher(Connection):
                 tick = self.request("subscribe")["tick"]
                 if not self.stream.wanted:
                     self.stream.begin(tick, self.link.now())
-
-
-def _need_tap(value: object) -> None:
-    """Raise WrongUse for what is no tap."""
-    if not all(callable(getattr(value, name, None)) for name in ("take_records", "take_event")):
-        raise wrong("tap", value, "an object with take_records(records) and take_event(event)")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from host.errors import WrongUse
 from host.logs.tap import Event, Tap
+from host.util.arguments import need_path, need_tap, plain, wrong
 from robot.kicks import WHEELS
 from robot.record import CHANNELS, NAMES, Record
 
@@ -62,7 +63,7 @@ class Log:
     """
 
     def __init__(self, info: dict[str, Any] | None = None) -> None:
-        self.info: dict[str, Any] = dict(info or {})
+        self.info: dict[str, Any] = {} if info is None else _table("info", info)
         self.records: list[Record] = []
         self.events: list[Event] = []
         self.places: list[int] = []
@@ -73,6 +74,8 @@ class Log:
         Args:
             records: The next records, oldest first.
         """
+        if not isinstance(records, list) or not all(isinstance(one, Record) for one in records):
+            raise wrong("records", records, "a list of Records, oldest first")
         self.records.extend(records)
 
     def take_event(self, event: Event) -> None:
@@ -81,6 +84,8 @@ class Log:
         Args:
             event: Its name (`event`), its tick, and what belongs to it.
         """
+        if not isinstance(event, dict) or not isinstance(event.get("event"), str):
+            raise wrong("event", event, "a dictionary with the event's name under 'event'")
         self.events.append(event)
         self.places.append(len(self.records))
 
@@ -103,6 +108,7 @@ class Log:
         Args:
             tap: Has take_records(records) and take_event(event).
         """
+        need_tap(tap)
         done = 0
         for event, place in zip(self.events, self.places, strict=True):
             if place > done:
@@ -128,6 +134,8 @@ class Log:
         """
         import numpy as np
 
+        if not isinstance(name, str):
+            raise wrong("name", name, "a column's name, as in left_torque")
         if name in SPEEDS:
             return self.omega(SPEEDS[name])
         if name not in NAMES:
@@ -164,6 +172,8 @@ class Log:
         """
         import numpy as np
 
+        if not isinstance(side, str) or side not in WHEELS:
+            raise wrong("side", side, "'left' or 'right'")
         omega = np.full(len(self.records), np.nan)
         if len(omega) > 1:
             omega[1:] = np.diff(self.column(side + "_phi_rad")) / np.diff(self.column("t_s"))
@@ -232,7 +242,7 @@ class Log:
         """
         from host.logs.mcap_files import new_log
 
-        with new_log(path, self.info) as tap:
+        with new_log(need_path("path", path), self.info) as tap:
             self.play(tap)
         return tap.path
 
@@ -253,7 +263,7 @@ class Log:
         from host.logs.mcap_reading import play
 
         log = cls()
-        log.info, whole = play(path, log)
+        log.info, whole = play(need_path("path", path), log)
         if not whole:
             log.info["truncated"] = True
         return log
@@ -273,7 +283,7 @@ class Log:
         """
         from host.logs.tables import save_csv
 
-        save_csv(self.stream(), path)
+        save_csv(self.stream(), need_path("path", path))
         return Path(path)
 
     def to_npz(self, path: str | Path) -> Path:
@@ -291,7 +301,7 @@ class Log:
         """
         from host.logs.tables import save_npz
 
-        save_npz(self.stream(), self.info, path)
+        save_npz(self.stream(), self.info, need_path("path", path))
         return Path(path)
 
     def __len__(self) -> int:
@@ -304,3 +314,15 @@ class Log:
         parts += [str(self.info["brick"])] if "brick" in self.info else []
         parts += ["the file breaks off or is damaged"] if self.info.get("truncated") else []
         return f"<Log: {', '.join(parts)}>"
+
+
+def _table(name: str, value: object) -> dict[str, Any]:
+    """What a log says beside its records: plain JSON data by names. Raises WrongUse."""
+    wanted = "a dictionary of text, numbers, lists and dictionaries"
+    try:
+        table = plain(value)
+    except (TypeError, RecursionError) as error:
+        raise wrong(name, value, wanted) from error
+    if not isinstance(table, dict):
+        raise wrong(name, value, wanted)
+    return table

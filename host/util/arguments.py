@@ -87,6 +87,12 @@ def need_function(name: str, value: object, wanted: str) -> Callable[..., Any]:
     return value
 
 
+def need_tap(value: object) -> None:
+    """Raise WrongUse for what cannot be fed with records and events."""
+    if not all(callable(getattr(value, name, None)) for name in ("take_records", "take_event")):
+        raise wrong("tap", value, "an object with take_records(records) and take_event(event)")
+
+
 def plain(value: object) -> Any:
     """A value as JSON has it: text, numbers (numpy's too), None, and lists and tables of them.
 

@@ -102,6 +102,13 @@ TABLE = [
     ),
     ("Robot.kick", "id", (*NO_VALUE, 5, "", [])),
     ("Robot.kick", "nosuch", (1,)),
+    ("Log", "info", (5, "x", b"x", [1], True, {5: 1}, {"x": Odd()}, {"x": ROUND}, Odd())),
+    ("Log.take_records", "records", (5, "x", None, [5], Odd(), {})),
+    ("Log.take_event", "event", (5, "x", None, [], {}, {"event": 5}, Odd())),
+    ("Log.play", "tap", (*NO_TEXT, "tap")),
+    ("Log.column", "name", (*NO_TEXT, "", "nosuch")),
+    ("Log.omega", "side", (*NO_TEXT, "", "middle", "both")),
+    *((f"Log.{name}", "path", (*NO_PATH, None)) for name in ("save", "load", "to_csv", "to_npz")),
 ]
 OTHERS = {
     "run_experiment": {"name": "timeline"},
@@ -127,10 +134,11 @@ def own_arguments(place):
     return [name for name in inspect.signature(named(place)).parameters if name != "self"]
 
 
-def test_every_public_function_of_a_robot_is_in_the_table():
+def test_every_public_function_is_in_the_table():
     places = [
-        f"Robot.{name}"
-        for name, value in inspect.getmembers(kickctl.Robot, inspect.isroutine)
+        f"{kind}.{name}"
+        for kind in ("Robot", "Log")
+        for name, value in inspect.getmembers(getattr(kickctl, kind), inspect.isroutine)
         if not name.startswith("_")
     ]
     missing = {
@@ -164,6 +172,8 @@ def test_wrong_arguments_are_refused_in_words(robot, place, argument, values):
     function = named(place)
     if place.startswith("Robot.") and place != "Robot.connect":
         function = getattr(robot, place.removeprefix("Robot."))
+    elif place.startswith("Log.") and place != "Log.load":
+        function = getattr(kickctl.Log(), place.removeprefix("Log."))
     before, journal = state(robot.link), len(robot.link.events())
     for value in values:
         if value is None and argument in ("ticks", "wheel", "shift", "seed", "uri", "token"):
@@ -221,6 +231,16 @@ def test_nothing_but_kickctl_error_comes_of_any_value(robot, place, value):
         function(**{**OTHERS.get(name, {}), argument: value})
     except kickctl.KickctlError as error:
         assert error.message.isprintable()
+
+
+def test_a_log_that_was_refused_something_is_as_it_was():
+    log = kickctl.Log({"brick": "sim://", "k": np.float64(2)})
+    for take in (log.take_records, log.take_event):
+        with pytest.raises(kickctl.WrongUse):
+            take([5])
+    assert (len(log), log.events, log.places) == (0, [], [])
+    assert log.info == {"brick": "sim://", "k": 2.0}
+    assert kickctl.Log.load(log.save("a.mcap")).info == log.info
 
 
 def test_numbers_of_numpy_are_numbers():
