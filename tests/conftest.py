@@ -34,6 +34,7 @@ REAL_TIME = (
     "tests/contract/test_motor.py",
     "tests/deploy/",
     "tests/link/test_own_motors.py",
+    "tests/link/test_neighbours.py",
     "tests/link/test_program_start.py",
     "tests/link/test_robots_line.py",
     "tests/link/test_serial.py",

@@ -89,6 +89,20 @@ def test_a_tunnel_is_gone_with_the_link(desk, through, tmp_path):
 
 
 @needs_sshd
+def test_a_robot_drives_on_when_a_cell_connects_again(desk, through, tmp_path):
+    uri, token = f"ssh://brick?port={desk}", str(tmp_path / "token")
+    robot = connect(uri, token=token, name="nb")
+    robot.lease()
+    for _ in range(2):
+        robot = connect(uri, token=token, name="nb")
+        robot.wait(1.0)  # twice as long as the robot keeps the lease of a silent host
+        assert robot.drives
+        assert robot.status()["state"] == "running"
+    assert len(tunnels()) == 1
+    robot.close()
+
+
+@needs_sshd
 def test_a_tunnel_that_dies_is_dug_anew_and_no_tick_is_lost(desk, through, tmp_path):
     with connect(f"ssh://brick?port={desk}", token=str(tmp_path / "token")) as robot:
         log = robot.record(0.3)

@@ -24,6 +24,14 @@ def machine():
     machine.close()
 
 
+@pytest.fixture
+def patient():
+    """A robot that takes a host for lost a second late, for a machine that is busy."""
+    machine = TcpRobot(link_loss_s=1.0)
+    yield machine
+    machine.close()
+
+
 def until(true):
     """Wait for what is to come at once."""
     end = time.monotonic() + PATIENCE_S
@@ -41,14 +49,15 @@ def test_a_cell_that_connects_and_drives_can_be_run_twice(machine):
     robot.close()
 
 
-def test_a_robot_drives_on_under_the_connection_that_replaces_its_driver(machine):
+def test_a_robot_drives_on_under_the_connection_that_replaces_its_driver(patient):
     """A cell `robot = connect(...)` that is run again after the robot was started."""
+    machine = patient
     robot = Robot(machine.link(), TOKEN, "nb")
     robot.lease()
-    for _ in range(3):
+    for _ in range(2):
         robot = Robot(machine.link(), TOKEN, "nb")
+        robot.wait(1.5)  # longer than the robot keeps the lease of a silent host
         assert robot.drives
-        robot.wait(0.6)  # three times as long as the robot keeps the lease of a silent host
         assert STATES[machine.loop.safety.state] == "running"
     robot.wait(0.1)
     assert robot.record(0.3).kicks() == []
@@ -57,7 +66,8 @@ def test_a_robot_drives_on_under_the_connection_that_replaces_its_driver(machine
     robot.close()
 
 
-def test_the_newest_connection_that_may_drive_inherits_control(machine):
+def test_the_newest_connection_that_may_drive_inherits_control(patient):
+    machine = patient
     robots = [Robot(machine.link(), TOKEN, f"robot {number}") for number in range(3)]
     watcher = Robot(machine.link(), None, "watcher")
     robots[0].lease()
@@ -66,7 +76,7 @@ def test_the_newest_connection_that_may_drive_inherits_control(machine):
     until(lambda: robots[0].drives)
     assert not watcher.drives
     assert not robots[1].drives
-    robots[0].wait(0.6)
+    robots[0].wait(1.5)
     assert STATES[machine.loop.safety.state] == "running"
     robots[0].close()
     watcher.close()
