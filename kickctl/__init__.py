@@ -8,6 +8,13 @@
     print(outcome)
 
 The names in `__all__` are the public API. Each is loaded when it is first used.
+
+What goes wrong is a KickctlError with `message`, `hint` and `status`, of one of these kinds:
+    WrongUse: The request makes no sense; nothing has changed. LogError is one about a log's file.
+    NotDone: The robot has not done it.
+    NoLink: The robot cannot be reached, or its link broke.
+    RefusedByRobot: Version, token or lease. LeaseLost is one about the lease.
+    RobotFault: The robot is in fault.
 """
 
 from __future__ import annotations
