@@ -46,7 +46,7 @@ _WITHOUT_ROBOT = ("discover", "deploy", "theory", "body", "rods")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
-Exit status: 0 it worked; 1 tried, and the robot did not do it; 2 wrong use; 3 no link to the robot;
+Exit status: 0 it worked; 1 tried, and not or not wholly done; 2 wrong use; 3 no link to the robot;
 4 refused (version, token, lease); 5 fault on the robot; 130 interrupted."""
 
 

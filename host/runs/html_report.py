@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import errno
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
@@ -24,6 +25,7 @@ img { max-width: 100%; }
 dt { font-weight: bold; }
 """
 
+_TITLE = "Kick control: the paper's claims, measured"
 # The style of each verdict.
 _CLASSES = {HOLDS: "holds", FAILS: "fails", UNDECIDED: "undecided"}
 
@@ -44,7 +46,15 @@ def write(
 
     Returns:
         The path.
+
+    Raises:
+        FileExistsError: There is another file of this name, which is no report.
+        OSError: The report cannot be written.
     """
+    if path.is_file() and _TITLE.encode() not in path.read_bytes()[:500]:
+        raise FileExistsError(
+            errno.EEXIST, "it is there already, and no report of kickctl", str(path)
+        )
     first = summaries[0] if summaries else {"seed": "none", "version": ""}
     robots = sorted({summary["brick"] for summary in summaries if "brick" in summary})
     facts = {
@@ -57,13 +67,10 @@ def write(
     )
     parts = [
         (
-            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Kick'
-            " control: the paper's claims, measured</title>\n"
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+            f"<title>{_TITLE}</title>\n"
         ),
-        (
-            f"<style>{_STYLE}</style>\n</head>\n<body>\n<h1>Kick control: the paper's claims,"
-            " measured</h1>\n"
-        ),
+        (f"<style>{_STYLE}</style>\n</head>\n<body>\n<h1>{_TITLE}</h1>\n"),
         (
             "<p>Claims of S&aacute;ndor et al., <i>Kick control: using the attracting states"
             " arising within the sensorimotor loop of"

@@ -1,5 +1,7 @@
 """`recover` rebuilds what can be read of a log that breaks off, for the strictest readers."""
 
+import threading
+
 import pytest
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.stream_reader import StreamReader
@@ -65,6 +67,35 @@ def test_nothing_is_overwritten(tmp_path):
             recover(path, out)
     assert bits(Log.load(path)) == bits(running(10))
     assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_programs_that_recover_one_log_at_a_time_have_files_of_their_own(tmp_path):
+    path = running(50).save(tmp_path / "log.mcap")
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(path.read_bytes()[:-200])
+    barrier, results = threading.Barrier(4), []
+
+    def work():
+        barrier.wait()
+        results.append(recover(cut))
+
+    workers = [threading.Thread(target=work) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert len({result.path for result in results}) == 4
+    assert {len(Log.load(result.path)) for result in results} == {results[0].ticks}
+    assert len(list(tmp_path.iterdir())) == 6
+
+
+def test_a_link_is_recovered_beside_itself(tmp_path):
+    (tmp_path / "logs").mkdir()
+    path = running(50).save(tmp_path / "logs" / "log.mcap")
+    link = tmp_path / "link.mcap"
+    link.symlink_to(path)
+    assert recover(link).path == tmp_path / "link-recovered.mcap"
+    assert [item.name for item in (tmp_path / "logs").iterdir()] == ["log.mcap"]
 
 
 def test_what_holds_no_log_cannot_be_rebuilt(tmp_path):
