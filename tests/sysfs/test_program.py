@@ -8,12 +8,14 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from random import Random
 
 import pytest
 
+from host.logs.log import Log
+from host.logs.mcap_files import LogError
 from tests.live import PORTS, Live, impatient, wait_until
 from tests.sysfs.mount import ROOT, mounted, needs_mount
 
@@ -101,9 +103,8 @@ def test_motors_that_do_not_obey_at_first_stop_all_the_same(live, end):
         if end == "killed":
             live.process.kill()
         wait_until(lambda: not watch.running(), "the other motor stops")
-        time.sleep(1.0)  # twenty more attempts
         with live.watch([PORTS[0]]) as disturbed:
-            assert disturbed.running() == 0
+            wait_until(lambda: not disturbed.running(), "the disturbed motor stops")
     if end == "frozen":
         live.process.send_signal(signal.SIGCONT)
         live.told("fault")
@@ -140,20 +141,23 @@ def test_the_lights_are_red_when_the_program_is_dead(live):
 
 
 def test_a_record_tells_of_a_fault(live, tmp_path):
-    threading.Timer(1.0, lambda: live.inject("unplug " + PORTS[0])).start()
-    done = python(
-        "host",
-        "--brick",
-        live.address,
-        "--json",
-        "record",
-        "3",
-        "--out",
-        str(tmp_path / "log.mcap"),
-    )
+    log = tmp_path / "log.mcap"
+    command = ("host", "--brick", live.address, "--json", "record", "4", "--out", str(log))
+    with ThreadPoolExecutor() as pool:
+        recording = pool.submit(python, *command)
+        wait_until(lambda: _holds_ticks(log), "the first second is recorded")
+        live.inject("unplug " + PORTS[0])
+        done = recording.result()
     assert done.returncode == 5
     assert "its cable came off" in json.loads(done.stdout)["fault"]
     live.inject("replug " + PORTS[0])
+
+
+def _holds_ticks(path):
+    try:
+        return len(Log.load(path)) > 0
+    except LogError:  # it is not there yet, or does not say what it is
+        return False
 
 
 @pytest.mark.parametrize("line", ["eio outB -1", "eio outB many", "eio outZ 1"])
