@@ -10,6 +10,7 @@
 
 import tomllib
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
@@ -113,8 +114,11 @@ def tables(motors: Sequence[Constants]) -> Array:
     Raises:
         ValueError: A motor is too fast for the step.
     """
-    groups = range(0, len(motors), _GROUP)
-    return np.concatenate([_tables(motors[first : first + _GROUP]) for first in groups])
+    groups = [motors[first : first + _GROUP] for first in range(0, len(motors), _GROUP)]
+    if len(groups) == 1:
+        return _tables(motors)
+    with ThreadPoolExecutor() as pool:  # numpy multiplies matrices on all cores
+        return np.concatenate(list(pool.map(_tables, groups)))
 
 
 def _tables(motors: Sequence[Constants]) -> Array:

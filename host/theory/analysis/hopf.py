@@ -12,7 +12,6 @@ from math import cos, inf, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from host.errors import WrongUse
 from host.theory.analysis.fixpoints import ANGLES, fixpoint
@@ -136,7 +135,11 @@ def by_eigenvalues(wheel: Wheel) -> float:
     """
     k = hopf(wheel).k
 
-    def growth(factor: float) -> float:
-        return float(fixpoint(ANGLES[0], wheel._replace(k=factor * k)).eigenvalues[0].real)
+    def grows(factor: float) -> bool:
+        return bool(fixpoint(ANGLES[0], wheel._replace(k=factor * k)).eigenvalues[0].real > 0.0)
 
-    return k * float(brentq(growth, 0.5, 2.0, xtol=1e-14, rtol=1e-13))
+    # Bisection down to the last bit. To import a root finder would take longer than all of this.
+    low, high = 0.5, 2.0
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (low, middle) if grows(middle) else (middle, high)
+    return k * low
