@@ -87,7 +87,10 @@ def compute_on_cluster(
         }
         for future in _as_completed(client, address, list(futures), start_s):
             try:
-                outcome, worker, result = future.result()
+                # It comes by way of the scheduler, which may have fallen silent since.
+                outcome, worker, result = future.result(timeout=ANSWER_S)
+            except TimeoutError as error:
+                raise _silent(address) from error
             except (CancelledError, KilledWorker) as error:
                 raise NoLink(f"the Dask cluster at {address} was lost: {error}", _RESUME) from error
             except ImportError as error:
@@ -173,7 +176,8 @@ def _count_workers(client: Client, address: str) -> int:
     try:
         return len(client.sync(client.scheduler.ncores, callback_timeout=ANSWER_S))
     except OSError as error:
-        raise NoLink(
-            f"the Dask cluster at {address} was lost: its scheduler does not answer",
-            _RESUME,
-        ) from error
+        raise _silent(address) from error
+
+
+def _silent(address: str) -> NoLink:
+    return NoLink(f"the Dask cluster at {address} was lost: its scheduler does not answer", _RESUME)

@@ -25,7 +25,7 @@ SETTING = Setting(5, {})
 @pytest.fixture(scope="module")
 def address():
     """A scheduler without workers."""
-    with LocalCluster(n_workers=0, dashboard_address=None) as scheduler:
+    with LocalCluster(n_workers=0, dashboard_address=":0") as scheduler:
         yield scheduler.scheduler_address
 
 
