@@ -24,6 +24,18 @@ from robot.kicks import (
 )
 from robot.params import TABLE, check_step, check_value
 
+FIELDS = (
+    "id",
+    "mode",
+    "wheel",
+    "ticks",
+    "shape",
+    "shift",
+    "param",
+    "value",
+    "variable",
+    "delta",
+)
 _OWN_FIELDS = {PHASE: ("shift",), PULSE: ("param", "value"), JUMP: ("variable", "delta")}
 
 
@@ -44,21 +56,9 @@ def parse(request, directions, params, begin):
     Raises:
         Refused: Something in the request is unknown, missing or out of range.
     """
-    known = (
-        "id",
-        "mode",
-        "wheel",
-        "ticks",
-        "shape",
-        "shift",
-        "param",
-        "value",
-        "variable",
-        "delta",
-    )
     for name in request:
-        if name not in known:
-            raise Refused("usage", "a kick has no '{}'".format(name), "it has " + ", ".join(known))
+        if name not in FIELDS:
+            raise Refused("usage", "a kick has no '{}'".format(name), "it has " + ", ".join(FIELDS))
     identity = request.get("id")
     if not isinstance(identity, str) or not 0 < len(identity) <= 64:
         raise Refused(

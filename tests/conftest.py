@@ -36,6 +36,7 @@ REAL_TIME = (
     "tests/link/test_own_motors.py",
     "tests/link/test_neighbours.py",
     "tests/link/test_program_start.py",
+    "tests/link/test_protocol_page.py",
     "tests/link/test_robots_line.py",
     "tests/link/test_serial.py",
     "tests/link/test_stop.py",

@@ -6,7 +6,7 @@ import pytest
 
 from tests.package.conftest import ROOT
 
-PAGES = ["README.md", "CHANGELOG.md", "robot/README.md"] + sorted(
+PAGES = ["README.md", "CHANGELOG.md", "robot/README.md", "robot/PROTOCOL.md"] + sorted(
     str(path.relative_to(ROOT)) for path in (ROOT / "docs").glob("*.md")
 )
 
