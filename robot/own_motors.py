@@ -34,16 +34,16 @@ def load(text):
     """
     factory = _factory(text)
     try:
-        made = _call(text, factory)
+        parts = _call(text, factory)
     except MotorFault as fault:
         raise NoMotors(str(fault)) from None
-    if not isinstance(made, (tuple, list)) or len(made) not in (2, 3):
+    if not isinstance(parts, (tuple, list)) or len(parts) not in (2, 3):
         raise NoMotors(
             "{} returned {!r}: let it return the left and the right motor, and a battery if there"
-            " is one".format(text, made)
+            " is one".format(text, parts)
         )
-    motors = tuple(made[:2])
-    battery = made[2] if len(made) == 3 else None
+    motors = tuple(parts[:2])
+    battery = parts[2] if len(parts) == 3 else None
     for side, motor in zip(WHEELS, motors):
         _require("the {} motor of {}".format(side, text), motor, Motor, _MOTOR_NEEDS)
     if motors[0] is motors[1]:

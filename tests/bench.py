@@ -46,9 +46,9 @@ def best_of(repeats, function):
     """
     times = []
     for _ in range(repeats):
-        begun = time.perf_counter()
+        start_s = time.perf_counter()
         function()
-        times.append(time.perf_counter() - begun)
+        times.append(time.perf_counter() - start_s)
     return min(times)
 
 
@@ -170,17 +170,17 @@ def bodies() -> None:
             for _ in range(3):
                 # The same motion three times: to hear what pushes it in each step, with its
                 # controllers, and with what was heard.
-                begun, sizes = (
+                start, sizes = (
                     np.empty(mujoco.mj_stateSize(model, full)),
                     mujoco.mj_stateSize(model, pushed),
                 )
-                mujoco.mj_getState(model, body.data, begun, full)
+                mujoco.mj_getState(model, body.data, start, full)
                 floats, step = body.neurons.floats.copy(), body.step
                 heard = np.empty((1, steps, sizes))
                 for number in range(steps):
                     body.run(step_s)
                     mujoco.mj_getState(model, body.data, heard[0, number], pushed)
-                mujoco.mj_setState(model, body.data, begun, full)
+                mujoco.mj_setState(model, body.data, start, full)
                 body.neurons.floats[:], body.step = floats, step
                 own_s.append(
                     best_of(1, lambda body=body, seconds=steps * step_s: body.run(seconds))
@@ -188,7 +188,7 @@ def bodies() -> None:
                 plain_s.append(
                     best_of(
                         1,
-                        lambda m=model, d=data, b=begun, h=heard: rollout(
+                        lambda m=model, d=data, b=start, h=heard: rollout(
                             m, d, b, h, control_spec=int(pushed)
                         ),
                     )
@@ -280,9 +280,9 @@ def _kick_latency(robot, log) -> float:
     offset = (asked + sent) / 2 - clock_s
     tick = robot.kick("membrane")
     robot.wait(5.0, until=lambda: log.records[-1].tick >= tick)
-    begun = next(record.t_s for record in reversed(log.records) if record.tick == tick)
+    begin_s = next(record.t_s for record in reversed(log.records) if record.tick == tick)
     time.sleep(0.2 + random.uniform(0.0, 0.03))  # at any moment between two ticks
-    return begun + offset - sent
+    return begin_s + offset - sent
 
 
 if __name__ == "__main__":

@@ -52,9 +52,9 @@ def _fastest(*ways):
     times = [inf] * len(ways)
     for _ in range(ROUNDS):
         for index, way in enumerate(ways):
-            begun = time.perf_counter()
+            start_s = time.perf_counter()
             way()
-            times[index] = min(times[index], time.perf_counter() - begun)
+            times[index] = min(times[index], time.perf_counter() - start_s)
     return [elapsed / len(DUTIES) for elapsed in times]
 
 

@@ -251,7 +251,7 @@ class Live:
     def inject(self, fault):
         inject(self.folder, fault)
 
-    def told(self, event, since=0):
+    def reason_of(self, event, since=0):
         """The reason of the first event of a kind since event number `since`, once it is there."""
 
         def found():

@@ -76,15 +76,15 @@ class Vitals:
         late = self.samples[len(self.samples) // 4 :]
         times, sizes = [time_s for time_s, _, _ in late], [kilobytes for _, kilobytes, _ in late]
         mean_s, mean_kb = sum(times) / len(times), sum(sizes) / len(sizes)
-        spread = sum((time_s - mean_s) ** 2 for time_s in times)
+        squares = sum((time_s - mean_s) ** 2 for time_s in times)
         return (
             HOUR_S
             * sum(
                 (time_s - mean_s) * (size - mean_kb)
                 for time_s, size in zip(times, sizes, strict=True)
             )
-            / spread
-            if spread
+            / squares
+            if squares
             else 0.0
         )
 

@@ -126,17 +126,17 @@ class Result:
     def __init__(self, contestant, parameters, reference):
         own = np.ascontiguousarray(parameters[:, :: contestant.every])
         self.contestant, self.points = contestant, own.shape[1]
-        begun = time.perf_counter()
+        start_s = time.perf_counter()
         self._run = contestant.prepare(own)
-        self.compile_s = time.perf_counter() - begun
+        self.compile_s = time.perf_counter() - start_s
         self._times, self._reference = [], reference
         self.errors = None
 
     def run(self):
         """Once more."""
-        begun = time.perf_counter()
+        start_s = time.perf_counter()
         found = self._run()
-        self._times.append(time.perf_counter() - begun)
+        self._times.append(time.perf_counter() - start_s)
         every = self.contestant.every
         judged = Averages(*(values[:: max(1, JUDGED // every)] for values in found))
         self.errors = difference(

@@ -32,11 +32,13 @@ def equations():
     Tau, k and omega's offset in it are parameters.
     """
     state = heyoka.make_vars("x1", "x2", "phi", "omega")
-    told = with_mathematics(rates, {"sin": heyoka.sin, "cos": heyoka.cos, "exp": heyoka.exp})
+    symbolic_rates = with_mathematics(
+        rates, {"sin": heyoka.sin, "cos": heyoka.cos, "exp": heyoka.exp}
+    )
     wheel = list(
         zip(
             state,
-            told(*state, *Wheel()._replace(tau_s=heyoka.par[0], k=heyoka.par[1])),
+            symbolic_rates(*state, *Wheel()._replace(tau_s=heyoka.par[0], k=heyoka.par[1])),
             strict=True,
         )
     )
@@ -67,12 +69,12 @@ def propagated(integrator, states, parameters, seconds):
 def _followed(transient, measuring, parameters, real):
     count = parameters.shape[1]
     constants = np.vstack([parameters[1:3], np.zeros(count)]).astype(real)
-    begun = propagated(transient, starts(count).astype(real), constants, TRANSIENT_S)
-    constants[2] = begun[3]
+    at_start = propagated(transient, starts(count).astype(real), constants, TRANSIENT_S)
+    constants[2] = at_start[3]
     return averages(
-        begun,
+        at_start,
         propagated(
-            measuring, np.vstack([begun, np.zeros(count, dtype=real)]), constants, MEASURED_S
+            measuring, np.vstack([at_start, np.zeros(count, dtype=real)]), constants, MEASURED_S
         ),
     )
 

@@ -41,8 +41,8 @@ def _followed(solver, tolerance, wheel):
         )
         return tuple(values[-1] for values in found.ys)
 
-    begun = after(tuple(jnp.asarray(value) for value in START), 0.0, TRANSIENT_S)
-    return begun, after((*begun, jnp.zeros(())), begun[3], MEASURED_S)
+    at_start = after(tuple(jnp.asarray(value) for value in START), 0.0, TRANSIENT_S)
+    return at_start, after((*at_start, jnp.zeros(())), at_start[3], MEASURED_S)
 
 
 def prepared(solver, tolerance, parameters):
@@ -51,9 +51,9 @@ def prepared(solver, tolerance, parameters):
     ready = jax.pmap(jax.vmap(partial(_followed, solver, tolerance))).lower(shares).compile()
 
     def run():
-        begun, ended = jax.block_until_ready(ready(shares))
+        at_start, at_end = jax.block_until_ready(ready(shares))
         return averages(
-            *(np.array([np.asarray(row).T.ravel() for row in rows]) for rows in (begun, ended))
+            *(np.array([np.asarray(row).T.ravel() for row in rows]) for rows in (at_start, at_end))
         )
 
     return run

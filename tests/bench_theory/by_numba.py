@@ -46,16 +46,16 @@ def _follow(y, p, around, step_s, count):
 @numba.njit(error_model="numpy", parallel=True)
 def _all(states, parameters, step_s, transient, measured):
     count = states.shape[1]
-    begun, ended = np.empty((4, count)), np.empty((5, count))
+    at_start, at_end = np.empty((4, count)), np.empty((5, count))
     for i in numba.prange(count):
         p = parameters[:, i].copy()
         y = _follow(
             (states[0, i], states[1, i], states[2, i], states[3, i], 0.0), p, 0.0, step_s, transient
         )
-        begun[0, i], begun[1, i], begun[2, i], begun[3, i] = y[:4]
+        at_start[0, i], at_start[1, i], at_start[2, i], at_start[3, i] = y[:4]
         y = _follow((y[0], y[1], y[2], y[3], 0.0), p, y[3], step_s, measured)
-        ended[0, i], ended[1, i], ended[2, i], ended[3, i], ended[4, i] = y
-    return begun, ended
+        at_end[0, i], at_end[1, i], at_end[2, i], at_end[3, i], at_end[4, i] = y
+    return at_start, at_end
 
 
 def prepared(step_s, parameters):

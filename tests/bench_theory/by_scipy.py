@@ -62,8 +62,8 @@ def by_odeint(tolerance, state, seconds, constants):
 
 def follow(solve, constants):
     """(before, after) measuring, of one wheel."""
-    begun = solve(np.array(START), TRANSIENT_S, np.append(constants, 0.0))
-    return begun, solve(np.append(begun, 0.0), MEASURED_S, np.append(constants, begun[3]))
+    at_start = solve(np.array(START), TRANSIENT_S, np.append(constants, 0.0))
+    return at_start, solve(np.append(at_start, 0.0), MEASURED_S, np.append(constants, at_start[3]))
 
 
 def warm(solve):
@@ -83,7 +83,8 @@ def prepared(pool, solve, parameters):
     def run():
         found = list(pool.map(partial(follow, solve), wheels))
         return averages(
-            np.array([begun for begun, _ in found]).T, np.array([ended for _, ended in found]).T
+            np.array([at_start for at_start, _ in found]).T,
+            np.array([at_end for _, at_end in found]).T,
         )
 
     return run

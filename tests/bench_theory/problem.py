@@ -57,15 +57,15 @@ def starts(count: int) -> Array:
     return np.repeat(np.array(START)[:, None], count, axis=1)
 
 
-def averages(begun: Any, ended: Any) -> Averages:
+def averages(at_start: Any, at_end: Any) -> Averages:
     """Averages, from states (4, wheels) before and (5, wheels) after measuring.
 
     The fifth is the integral of (omega - omega at the beginning)^2: with that of omega^2 every
     engine would lose digits of std(omega).
     """
-    begun, ended = np.asarray(begun), np.asarray(ended)
-    mean = (ended[2] - begun[2]) / MEASURED_S
-    variance = ended[4] / MEASURED_S - (mean - begun[3]) ** 2
+    at_start, at_end = np.asarray(at_start), np.asarray(at_end)
+    mean = (at_end[2] - at_start[2]) / MEASURED_S
+    variance = at_end[4] / MEASURED_S - (mean - at_start[3]) ** 2
     return Averages(
         np.abs(mean).astype(np.float64), np.sqrt(np.maximum(variance, 0.0)).astype(np.float64)
     )

@@ -62,20 +62,20 @@ class Toy:
 def toy(monkeypatch):
     from matplotlib.figure import Figure
 
-    made = Toy()
+    experiment = Toy()
     monkeypatch.setitem(
         table.ROBOT,
         "toy",
         table.Entry("a toy", (table.Option("cells", COUNT, 1, 100, "how many"),), ("R1",)),
     )
     monkeypatch.setattr(run, "PAUSE_S", 0.1)
-    monkeypatch.setitem(sys.modules, "host.experiments.robot.toy", made)
+    monkeypatch.setitem(sys.modules, "host.experiments.robot.toy", experiment)
     monkeypatch.setitem(
         sys.modules,
         "host.figures.robot.toy",
         types.SimpleNamespace(draw=lambda rows, findings: Figure()),
     )
-    return made
+    return experiment
 
 
 @pytest.fixture

@@ -45,11 +45,11 @@ def live(tmp_path_factory):
 )
 def rig(request):
     if request.param == "files":
-        made = OnFiles(str(request.getfixturevalue("live")), "outB")
+        rig = OnFiles(str(request.getfixturevalue("live")), "outB")
     else:
-        made = Simulated() if request.param == "simulated" else real()
-    yield made
-    made.close()
+        rig = Simulated() if request.param == "simulated" else real()
+    yield rig
+    rig.close()
     gc.collect()
 
 

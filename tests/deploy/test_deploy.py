@@ -112,8 +112,8 @@ def test_a_robot_in_fault_is_told_with_what_to_do(brick, checkout):
     status, output = checkout.deploy()
     assert status == 0  # as --help says: another release would not bring the motor
     assert "left motor (outB): there is none" in output
-    told = output.partition("robot is in fault")[2].splitlines()
-    assert [line.split()[-1] for line in told[1:3]] == ["clear", "start"]
+    commands = output.partition("robot is in fault")[2].splitlines()
+    assert [line.split()[-1] for line in commands[1:3]] == ["clear", "start"]
     assert "kick --mode" not in output
     assert "kickctl clear" in checkout.deploy("--status")[1]
 

@@ -218,14 +218,14 @@ def test_a_program_that_ends_well_is_not_started_again(served):
 
 
 def test_the_network_is_told_the_port_that_the_robot_listens_on(served):
-    told = dict(
+    fields = dict(
         re.findall(
             r"<(\S+)>(.*)</\1>",
             (served.etc / "avahi" / "services" / "kickctl.service").read_text(encoding="utf-8"),
         )
     )
-    assert told["type"] == "_kickctl._tcp"
-    assert told["port"] == served.uri().partition("port=")[2]
+    assert fields["type"] == "_kickctl._tcp"
+    assert fields["port"] == served.uri().partition("port=")[2]
 
 
 @pytest.mark.skipif(

@@ -17,10 +17,10 @@ def unplug(live, chance):
         since = time.monotonic()
         live.inject("unplug " + port)
         seconds = watch.stopped_after(since)
-    told = live.told("fault", first)
-    assert port in told
+    reason = live.reason_of("fault", first)
+    assert port in reason
     live.inject("replug " + port)
-    return seconds, told
+    return seconds, reason
 
 
 def replug(permissions_s):
@@ -65,12 +65,12 @@ def disturb(times):
             since = time.monotonic()
             live.inject(f"eio {disturbed} {times}")
             seconds = watch.stopped_after(since)
-        told = live.told("fault", first)
-        assert disturbed in told
+        reason = live.reason_of("fault", first)
+        assert disturbed in reason
         time.sleep(3 * TICK_S)
         with live.watch([disturbed]) as watch:
             assert watch.running() == 0
-        return seconds, told
+        return seconds, reason
 
     return attempt
 
@@ -82,7 +82,7 @@ def empty_battery(live, chance):
             since = time.monotonic()
             live.inject(f"battery {EMPTY_V}")
             seconds = watch.stopped_after(since)
-        assert "is low" in live.told("battery")
-        return seconds, live.told("stop")
+        assert "is low" in live.reason_of("battery")
+        return seconds, live.reason_of("stop")
     finally:
         live.inject(f"battery {FULL_V}")

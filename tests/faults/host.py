@@ -50,8 +50,8 @@ def fill_disk(live, chance):
         kept = Log.load(folder / "log.mcap")
         assert len(kept) > 1.0 / TICK_S / 2
         assert kept.missing() == []
-    (told,) = [line for line in done.stderr.splitlines() if line.startswith("kickctl: ")]
-    return None, told
+    (reason,) = [line for line in done.stderr.splitlines() if line.startswith("kickctl: ")]
+    return None, reason
 
 
 def jumping_clock(folder):

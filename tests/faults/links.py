@@ -36,14 +36,14 @@ def cut_link(policy):
                     seconds = watch.stopped_after(since)
             finally:
                 live.relay.silent = False
-            told = live.told("link_loss", first)
+            reason = live.reason_of("link_loss", first)
             state = live.state()
             assert state == {"stop": "stopped", "hold": "held", "continue": "running"}[policy], (
                 state
             )
             live.robot.lease()
             assert live.state() == {"stop": "stopped"}.get(policy, "running")
-        return seconds, told
+        return seconds, reason
 
     return attempt
 
@@ -77,9 +77,9 @@ def kill_host(live, chance):
             since = time.monotonic()
             host.kill()
         seconds = watch.stopped_after(since)
-    told = live.told("link_loss", first)
-    assert "killed host" in told
-    return seconds, told
+    reason = live.reason_of("link_loss", first)
+    assert "killed host" in reason
+    return seconds, reason
 
 
 def send_stop_frame(live, chance):
@@ -94,4 +94,4 @@ def send_stop_frame(live, chance):
         since = time.monotonic()
         stranger.sendall(wire.encode(wire.STOP, b""))
         seconds = watch.stopped_after(since)
-    return seconds, live.told("stop", first)
+    return seconds, live.reason_of("stop", first)

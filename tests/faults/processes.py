@@ -34,11 +34,11 @@ def silence_loop(number, wakes):
             if wakes:
                 assert "does not answer" in live.refusal(live.robot.status)
                 live.process.send_signal(signal.SIGCONT)
-            told = live.told("fault")
+            reason = live.reason_of("fault")
             assert watch.running() == 0
         live.robot.clear()
         live.run(chance)
-        return seconds, told
+        return seconds, reason
 
     return attempt
 
@@ -49,9 +49,9 @@ def crash_loop(live, chance):
         since = time.monotonic()
         live.process.send_signal(signal.SIGUSR2)
         seconds = watch.stopped_after(since)
-    told = live.told("fault")
+    reason = live.reason_of("fault")
     assert live.process.wait(5.0) == 1
-    return seconds, told
+    return seconds, reason
 
 
 def kill_watchdog(live, chance):
@@ -60,7 +60,7 @@ def kill_watchdog(live, chance):
         since = time.monotonic()
         os.kill(live.watchdog, signal.SIGKILL)
         seconds = watch.stopped_after(since)
-    return seconds, live.told("fault")
+    return seconds, live.reason_of("fault")
 
 
 def freeze_watchdog(live, chance):
@@ -70,7 +70,7 @@ def freeze_watchdog(live, chance):
         since = time.monotonic()
         os.kill(live.watchdog, signal.SIGSTOP)
         seconds = watch.stopped_after(since)
-    told = live.told("fault")
+    reason = live.reason_of("fault")
     live.process.terminate()
     assert live.process.wait(5.0) == 0
-    return seconds, told
+    return seconds, reason

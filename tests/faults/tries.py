@@ -14,12 +14,12 @@ class Result(NamedTuple):
     """
 
     seconds: list
-    told: str
+    reason: str
     failures: list
 
 
 def attempt(row, folder, scratch, tries, chance):
-    """The Result of so many tries of a row on the mount at `folder`."""
+    """The Result of `tries` tries of a row on the mount at `folder`."""
     result = Result([], "", [])
     environment = row.environment(scratch)
     done = 0
@@ -36,10 +36,10 @@ def attempt(row, folder, scratch, tries, chance):
             while done < tries and well:
                 done += 1
                 try:
-                    seconds, told = row.attempt(live, chance)
-                    assert row.words in told, f"the host is told '{told}'"
+                    seconds, reason = row.attempt(live, chance)
+                    assert row.words in reason, f"the host is told '{reason}'"
                     result.seconds.append(seconds)
-                    result = result._replace(told=result.told or told)
+                    result = result._replace(reason=result.reason or reason)
                 except (AssertionError, KickctlError, OSError, subprocess.SubprocessError) as error:
                     result.failures.append(f"{type(error).__name__}: {error}")
                 well = row.lasting and not result.failures
@@ -58,7 +58,7 @@ def line(row, result):
         "goes on" if worst is None else f"{1000 * sum(times) / len(times):.0f}",
         "" if worst is None else f"{1000 * worst:.0f}",
         "" if row.limit_s is None else f"{1000 * row.limit_s:.0f}",
-        result.told or "nothing",
+        result.reason or "nothing",
         verdict,
     )
     return "| " + " | ".join(cells) + " |", verdict == "holds"

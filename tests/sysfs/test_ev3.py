@@ -73,12 +73,12 @@ def text(folder, name):
     return (folder / name).read_text(encoding="ascii").strip()
 
 
-def made(plain):
+def make_motor(plain):
     return Ev3Motor("left", "outB", str(plain.parent.parent))
 
 
 def test_a_motor_that_nobody_looked_for_says_so(plain):
-    motor = made(plain)
+    motor = make_motor(plain)
     for use in (motor.angle_rad, motor.stop, lambda: motor.write_duty(5)):
         with pytest.raises(MotorFault, match=r"left motor \(outB\): nobody has looked"):
             use()
@@ -99,7 +99,7 @@ def test_a_machine_without_motors_is_told_the_same(tmp_path):
 
 def test_another_kind_of_motor_is_refused_by_name(plain):
     (plain / "driver_name").write_text("lego-ev3-m-motor\n", encoding="ascii")
-    motor = made(plain)
+    motor = make_motor(plain)
     with pytest.raises(MotorFault, match="a lego-ev3-m-motor is there: plug in a large motor"):
         motor.find()
     with pytest.raises(MotorFault, match="lego-ev3-m-motor"):
@@ -107,7 +107,7 @@ def test_another_kind_of_motor_is_refused_by_name(plain):
 
 
 def test_a_motor_that_does_not_stop_is_told_and_counts_as_lost(plain):
-    motor = made(plain)
+    motor = make_motor(plain)
     motor.find()
     (plain / "duty_cycle").write_text("30\n", encoding="ascii")
     with pytest.raises(MotorFault, match="does not stop: pull its cable"):

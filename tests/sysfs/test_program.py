@@ -114,7 +114,7 @@ def test_motors_that_do_not_obey_at_first_stop_all_the_same(live, end):
         wait_until(stopped, "the disturbed motor stops")
     if end == "frozen":
         live.process.send_signal(signal.SIGCONT)
-        live.told("fault")
+        live.reason_of("fault")
         live.robot.clear()
 
 
@@ -130,7 +130,7 @@ def test_a_silence_of_a_robot_that_does_not_run_is_no_fault(live):
 
 def test_what_cannot_be_mended_is_not_cleared(live):
     os.kill(live.watchdog, signal.SIGKILL)
-    live.told("fault")
+    live.reason_of("fault")
     assert "the fault stays: the watchdog has ended" in live.refusal(live.robot.clear)
 
 

@@ -179,8 +179,8 @@ def test_a_plan_is_computed_once_for_a_robots_parameters(monkeypatch):
 
 
 def test_a_plan_of_other_sources_is_not_taken(monkeypatch):
-    made = iter([Plan(PHASE, 4), Plan(PHASE, 5)])
-    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(made))
+    plans = iter([Plan(PHASE, 4), Plan(PHASE, 5)])
+    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(plans))
     monkeypatch.setattr(planning, "sources", lambda: "1111")
     first = reversal(1, DEFAULTS)
     monkeypatch.setattr(planning, "sources", lambda: "2222")

@@ -75,9 +75,9 @@ def test_what_is_taken_from_a_module_counts():
         return digest("def f(x):\n    return m.a * x", m=module(a=value))
 
     def module(**names):
-        made = types.ModuleType("m")
-        vars(made).update(names)
-        return made
+        m = types.ModuleType("m")
+        vars(m).update(names)
+        return m
 
     assert of(2.0) == of(2.0)
     assert of(2.0) != of(3.0)

@@ -219,15 +219,15 @@ def test_wherever_a_file_breaks_off_the_rest_is_right(tmp_path):
     log = running(75)
     whole = log.save(tmp_path / "log.mcap").read_bytes()
     path = tmp_path / "cut.mcap"
-    lengths, begun = [], False
+    lengths, readable = [], False
     for size in [*range(0, len(whole), 53), *range(len(whole) - 40, len(whole))]:
         path.write_bytes(whole[:size])
         try:
             back = Log.load(path)
         except LogError:
-            assert not begun
+            assert not readable
             continue
-        begun = True
+        readable = True
         assert back.info == {**INFO, "truncated": True}
         assert bits(back) == bits(log)[: len(back)]
         lengths.append(len(back))

@@ -32,7 +32,7 @@ def tree(tmp_path):
 
 
 def stopped(tree):
-    """Whether every motor has been told to stop, with a stored duty of 0."""
+    """Whether every motor has been reasons to stop, with a stored duty of 0."""
     motors = list((tree / "tacho-motor").iterdir())
     return all(
         (motor / "command").read_text() == "stop" and (motor / "duty_cycle_sp").read_text() == "0"
@@ -220,48 +220,48 @@ def watching(stop, silence_s=0.05):
 
 
 def test_motors_that_do_not_obey_while_the_loop_is_silent_are_told_again_until_they_do():
-    told = []
-    link, thread = watching(lambda reason: told.append(reason) or len(told) >= 3)
+    reasons = []
+    link, thread = watching(lambda reason: reasons.append(reason) or len(reasons) >= 3)
     # One for each time, for the loop may have driven the motors in between.
     assert [link.recv(1) for _ in range(3)] == [b"!"] * 3
-    assert len(told) == 3
+    assert len(reasons) == 3
     time.sleep(0.3)
     link.close()
     thread.join(PATIENCE_S)
-    assert told == [SILENT] * 3 + [DEAD]
+    assert reasons == [SILENT] * 3 + [DEAD]
 
 
 def test_a_loop_that_reads_nothing_does_not_keep_the_watchdog_from_stopping_the_motors(monkeypatch):
     monkeypatch.setattr(watchdog_module, "AGAIN_S", 1e-5)
-    told = []
-    link, thread = watching(lambda reason: told.append(reason) or reason == DEAD)
-    assert eventually(lambda: len(told) > 5000)  # more than the link can hold
+    reasons = []
+    link, thread = watching(lambda reason: reasons.append(reason) or reason == DEAD)
+    assert eventually(lambda: len(reasons) > 5000)  # more than the link can hold
     link.close()
     thread.join(PATIENCE_S)
-    assert told[-1] == DEAD
+    assert reasons[-1] == DEAD
 
 
 def test_motors_that_do_not_obey_when_the_loop_is_dead_are_told_again_until_they_do():
-    told = []
+    reasons = []
     link, thread = watching(
-        lambda reason: told.append(reason) or len(told) >= 3, silence_s=PATIENCE_S
+        lambda reason: reasons.append(reason) or len(reasons) >= 3, silence_s=PATIENCE_S
     )
     link.close()
     thread.join(PATIENCE_S)
-    assert told == [DEAD] * 3
+    assert reasons == [DEAD] * 3
 
 
 def test_a_loop_that_lives_again_is_watched_again_though_the_motors_did_not_obey():
-    told = []
-    link, thread = watching(lambda reason: told.append(reason) or reason == DEAD)
+    reasons = []
+    link, thread = watching(lambda reason: reasons.append(reason) or reason == DEAD)
     assert link.recv(1) == b"!"
     link.send(b".")
     assert link.recv(1) == b"."
     assert link.recv(1) == b"!"
     link.close()
     thread.join(PATIENCE_S)
-    assert told[-1] == DEAD
-    assert set(told[:-1]) == {SILENT}
+    assert reasons[-1] == DEAD
+    assert set(reasons[:-1]) == {SILENT}
 
 
 @pytest.mark.parametrize("where", ["full", "blocked"])

@@ -23,16 +23,16 @@ def make(mode, directions=(1, 1), begin=5, **details):
 
 
 def wheel(side="left", x1=0.4, x2=-0.3, phi=PHI):
-    made = Wheel(side)
-    made.x1, made.x2, made.phi = x1, x2, phi
-    return made
+    one = Wheel(side)
+    one.x1, one.x2, one.phi = x1, x2, phi
+    return one
 
 
 def stepped(kick, tick=5, side="left", phi=PHI, dt_s=DT):
     """(x1, x2, force, torque) of a tick from the same potentials every time."""
-    made = wheel(side, phi=phi)
-    made.step(tick, dt_s, Params(), kick)
-    return made.x1, made.x2, made.force, made.torque
+    one = wheel(side, phi=phi)
+    one.step(tick, dt_s, Params(), kick)
+    return one.x1, one.x2, one.force, one.torque
 
 
 def expected(x1=0.4, x2=-0.3, seen=PHI, sign=1.0, a=4.0, tau_s=0.25, k=8.0):
@@ -93,12 +93,12 @@ def test_a_kick_alters_what_neurons_see_and_never_the_projection(kick):
 
 def test_the_neurons_step_before_they_act():
     """The force belongs to the potentials of the same record: of x after the step, not before."""
-    made = wheel()
-    made.step(0, DT, Params(), None)
-    after = step_wheel(made.x1, made.x2, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
+    one = wheel()
+    one.step(0, DT, Params(), None)
+    after = step_wheel(one.x1, one.x2, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
     before = step_wheel(0.4, -0.3, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
-    assert (made.force, made.torque) == after[2:]
-    assert made.force != before[2]
+    assert (one.force, one.torque) == after[2:]
+    assert one.force != before[2]
 
 
 def test_a_membrane_kick_acts_before_the_step_of_its_tick():
@@ -106,9 +106,9 @@ def test_a_membrane_kick_acts_before_the_step_of_its_tick():
 
     Inverted last it would be exactly opposite.
     """
-    made = wheel(x1=1.0, x2=0.0, phi=0.0)
-    made.step(5, DT, Params(), make("membrane"))
-    assert made.x1 == pytest.approx(-1.0 + 2.0 * DT / 0.25)
+    one = wheel(x1=1.0, x2=0.0, phi=0.0)
+    one.step(5, DT, Params(), make("membrane"))
+    assert one.x1 == pytest.approx(-1.0 + 2.0 * DT / 0.25)
 
 
 def test_a_smooth_pulse_swells_and_fades_evenly_and_a_rectangular_one_is_all_there():
@@ -128,26 +128,26 @@ def test_after_a_quenched_kick_everything_is_as_before():
     before = dict(params.values())
     for mode, ticks in product(("position", "phase"), (1, 4)):
         kick = make(mode, ticks=ticks)
-        made = wheel()
+        one = wheel()
         for tick in range(12):
-            made.step(tick, DT, params, kick)
+            one.step(tick, DT, params, kick)
     assert dict(params.values()) == before
 
 
 def test_jumps_cannot_carry_a_potential_out_of_the_range_of_the_exponential():
-    made = wheel()
+    one = wheel()
     params = Params()
     params.apply({"a": 50.0, "tau_s": 10.0})
     for tick in range(200):
-        made.step(
+        one.step(
             tick, DT, params, Kick("k", "jump", ("left",), 1, variable="x1", delta=-2.0, begin=tick)
         )
-    assert -10.0 <= made.x1 <= -9.0
+    assert -10.0 <= one.x1 <= -9.0
 
 
 def test_a_resting_wheel_keeps_its_potentials():
-    made = wheel()
-    made.step(0, DT, Params(), None)
-    potentials = made.x1, made.x2
-    made.rest()
-    assert (made.x1, made.x2, made.force, made.torque) == (*potentials, 0.0, 0.0)
+    one = wheel()
+    one.step(0, DT, Params(), None)
+    potentials = one.x1, one.x2
+    one.rest()
+    assert (one.x1, one.x2, one.force, one.torque) == (*potentials, 0.0, 0.0)
