@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from host.client.robot import Robot
-from host.errors import NotDone, WrongUse
+from host.errors import WrongUse
 from sim_motor.constants import Constants, load
 
 # What the robot's program calls the EV3's large motor, and its published entry.
@@ -11,8 +11,8 @@ EV3 = "lego-ev3-l-motor"
 EV3_ENTRY = "pybricks"
 
 MEASURE = (
-    "measure it (kickctl experiment calibrate) and install the file that this writes, or name an"
-    " entry that fits with --motor; docs/own-motors.md says how"
+    "measure it (kickctl experiment calibrate) and install the file that this writes; kickctl plan"
+    " and kickctl drive also take an entry that fits: --motor NAME; docs/own-motors.md says how"
 )
 
 
@@ -43,8 +43,8 @@ def motor_of(robot: Robot, entry: str | None = None) -> Constants:
         entry: The name of an entry of a motors file; by default that of the robot's own model.
 
     Raises:
-        WrongUse: There is no entry of this name.
-        NotDone: The robot has a motor that this computer does not know.
+        WrongUse: There is no entry of this name, or the robot has a motor that this computer does
+            not know.
     """
     if entry is not None:
         try:
@@ -53,13 +53,13 @@ def motor_of(robot: Robot, entry: str | None = None) -> Constants:
             raise WrongUse(str(error), "name one of these: --motor NAME") from error
     model = model_of(robot)
     if not model:
-        raise NotDone(
+        raise WrongUse(
             "the robot does not say which motor it has, so nobody can compute which kicks turn it",
             MEASURE,
         )
     try:
         return load(EV3_ENTRY if model == EV3 else model)
     except ValueError as error:
-        raise NotDone(
+        raise WrongUse(
             f"which kicks turn this robot follows from its motor, '{model}', and {error}", MEASURE
         ) from error

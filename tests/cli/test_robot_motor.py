@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from host.errors import NotDone, WrongUse
+from host.errors import WrongUse
 from host.experiments.robot.motors_entry import name_of
 from host.kicking.robot_motor import EV3, known_entry, motor_of
 from robot.ev3 import DRIVER
@@ -64,7 +64,7 @@ def test_an_entry_that_is_named_counts_more_than_the_robots_own_word():
 
 @pytest.mark.parametrize("motor", ["", "stepper", None, 3, ["pybricks"]])
 def test_a_motor_that_nobody_knows_is_never_taken_for_the_ev3s(motor):
-    with pytest.raises(NotDone) as refusal:
+    with pytest.raises(WrongUse) as refusal:
         motor_of(Talker(motor=motor))
     assert "motor" in refusal.value.message
     assert "kickctl experiment calibrate" in refusal.value.hint
@@ -75,7 +75,7 @@ def test_a_motor_that_nobody_knows_is_never_taken_for_the_ev3s(motor):
 
 def test_an_entry_that_is_broken_is_named_and_not_taken_for_another(own_file):
     own_file.write_text("[toy]\nresistance = [5.0]\n")
-    with pytest.raises(NotDone, match=r"motor 'toy' in .*motors\.toml lacks"):
+    with pytest.raises(WrongUse, match=r"motor 'toy' in .*motors\.toml lacks"):
         motor_of(Talker(motor="toy"))
     assert known_entry("toy") is None
 
@@ -104,7 +104,7 @@ def test_plan_and_drive_refuse_before_anything_moves_and_say_what_to_do(
     moved = []
     monkeypatch.setattr("host.client.robot.Robot.start", lambda robot: moved.append("start"))
     status, out, err = kickctl("--json", "--brick", "sim://?idle=1", *verb)
-    assert status == 1
+    assert status == 2
     assert "'stepper'" in json.loads(out)["error"]["message"]
     assert "kickctl experiment calibrate" in err
     assert moved == []

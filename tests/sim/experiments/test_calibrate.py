@@ -150,6 +150,23 @@ def test_the_entry_makes_a_robot_that_behaves_as_the_one_measured(odd, own_file)
     assert abs(share_mine - share) < 0.08
 
 
+def test_a_foreign_motor_gets_an_entry_of_its_own_name_and_says_what_is_of_the_ev3(odd):
+    _, rows, _ = odd[0]
+    text = calibrate.report([{**row, "motor": "toy"} for row in rows], SETTING).files["motors.toml"]
+    assert "\n[toy]\n" in text
+    assert "sim://?motor=toy is this robot" in text
+    assert set(tomllib.loads(text)["toy"]) == set(tomllib.loads(ODD)["odd"])
+    assert "as of pybricks" in tomllib.loads(text)["toy"]["resistance"][2]
+
+
+def test_a_motor_with_an_entry_takes_from_it_what_a_drive_does_not_show(own_file, odd):
+    _, rows, _ = odd[0]
+    text = calibrate.report([{**row, "motor": "odd"} for row in rows], SETTING).files["motors.toml"]
+    entry = tomllib.loads(text)["odd"]
+    assert entry["resistance"] == [6.6, "ohm", entry["resistance"][2]]
+    assert "as of odd" in entry["resistance"][2]
+
+
 def test_a_disturbance_that_no_model_knows_widens_the_intervals(odd):
     """An eccentric gear, a sixth of the friction; the right motor is mounted mirrored."""
     brick = SimBrick(4, mount=(1, -1))
