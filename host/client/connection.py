@@ -16,7 +16,6 @@ from host.client.lasting_link import HEARTBEAT_S, LastingLink
 from host.client.stop import REPEAT_S, Stopped, stop_frame, stop_robot, unconfirmed
 from host.errors import KickctlError, NoLink, RefusedByRobot
 from host.link.transport import LinkLost
-from host.util.arguments import wrong
 from host.util.installation import deploy_command
 from host.util.interrupts import uninterrupted
 from robot.token import default_path
@@ -96,8 +95,6 @@ class Connection(LastingLink):
         Raises:
             KickctlError: The robot refuses, does not answer, or cannot be reached.
         """
-        if not isinstance(command, str):
-            raise wrong("a command", command, "its name, as in 'status'")
         if self._broken is not None:
             raise self._broken
         with self._lock:

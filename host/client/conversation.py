@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from host.client.stop import Stopped, answered
 from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot
-from host.util.arguments import plain, shown
+from host.util.arguments import plain, shown, wrong
 from robot import wire
 from robot.record import Record, unpack
 
@@ -190,6 +190,8 @@ class Conversation:
 
 def _body(number: int, command: str, arguments: dict[str, Any]) -> bytes:
     """A request as JSON. Raises WrongUse for what JSON does not have."""
+    if not isinstance(command, str):
+        raise wrong("a command", command, "its name, as in 'status'")
     try:
         given = plain(arguments)
         if not isinstance(given, dict):

@@ -2,6 +2,7 @@
 
 import argparse
 
+from host.commands._efforts import add_effort, question, sized
 from host.commands._options import common
 from host.commands._terminal import finish, say
 from host.experiments.registry import TABLE
@@ -18,6 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             name, help=entry.help, description=entry.help, parents=[common(defaults=False)]
         )
         add_options(own, entry)
+        add_effort(own, name, entry)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -25,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     from host.perform.run import perform
 
     name = options.experiment
-    arguments = options_given(options, TABLE[name])
+    arguments = {**options_given(options, TABLE[name]), **sized(options, name, TABLE[name])}
     summary = perform(
         name,
         options.brick,
@@ -34,6 +36,7 @@ def run(options: argparse.Namespace) -> int:
         out=options.out,
         scheduler=options.scheduler,
         say=say,
+        ask=question(options),
         **arguments,
     )
     return finish(options, summary, summary)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from host.errors import WrongUse
+from host.experiments.efforts import EFFORTS, in_words
 from host.link.addresses import SIM, chosen, make_link, sim_options
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.robots import robots
@@ -37,6 +38,7 @@ def perform(
     out: str | Path = RESULTS,
     scheduler: str | None = None,
     say: Callable[[str], None] = lambda words: None,
+    ask: Callable[[float], None] = lambda seconds: None,
     **arguments: Any,
 ) -> dict[str, Any]:
     """Run an experiment or a study of the model, or resume it if it was interrupted.
@@ -50,6 +52,8 @@ def perform(
             there.
         scheduler: The address of a Dask scheduler that computes the cells.
         say: Called with messages for people.
+        ask: Called before a real robot begins, with about how long it will be busy, s. It raises a
+            KickctlError if that is too long.
         arguments: The run's own options.
 
     Returns:
@@ -103,7 +107,11 @@ def perform(
                 scheduler,
                 processes=found.kind == BODY,
             )
-        elif uri is not None and any(cell not in study for cell in cells):
+        elif uri is not None and (missing := sum(cell not in study for cell in cells)):
+            if simulated is None and name in EFFORTS:
+                busy_s = EFFORTS[name].seconds(options) * missing / len(cells)
+                say(f"{name}: about {in_words(busy_s)} on this robot")
+                ask(busy_s)
             with robots(found.work, uri, setting, token, study.folder / "logs", say) as work:
                 do_cells(name, cells, study, work)
         rows = study.rows(cells)

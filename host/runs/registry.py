@@ -95,11 +95,10 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
             if option.choices
             else {"type": _type(option), "metavar": "N"}
         )
-        words = option.doc if option.default is None else f"{option.doc} (default %(default)s)"
+        words = option.doc + ("" if option.default is None else f" (default {option.default})")
         parser.add_argument(
             "--" + option.name.replace("_", "-"),
             dest=option.name,
-            default=option.default,
             help=words,
             **own,
         )
@@ -120,5 +119,6 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
 
 
 def options_given(options: argparse.Namespace, entry: Entry) -> dict[str, Any]:
-    """The values that were given for an entry's own options."""
-    return {option.name: getattr(options, option.name) for option in entry.options}
+    """The values that were given for an entry's own options; those left out are missing."""
+    given = {option.name: getattr(options, option.name) for option in entry.options}
+    return {name: value for name, value in given.items() if value is not None}

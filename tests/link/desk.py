@@ -43,20 +43,14 @@ class Desk(Rig):
 class Peer:
     """A host's end of a connection, which sends and reads only when a test says so."""
 
-    def __init__(self, desk, token=TOKEN, name="peer", receive_buffer=None, *, pair=False):
+    def __init__(self, desk, token=TOKEN, name="peer", receive_buffer=None):
         self.desk = desk
         self.talk = Conversation(token, name, name)
         self.stream = []
-        if pair:  # the kernel moves nothing by itself, however long the test takes
-            self.socket, theirs = socket.socketpair()
-            theirs.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, FRAME)
-            theirs.setblocking(False)
-            desk.server.adopt(theirs)
-        else:
-            self.socket = socket.socket()
-            if receive_buffer:
-                self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-            self.socket.connect(desk.address)
+        self.socket = socket.socket()
+        if receive_buffer:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+        self.socket.connect(desk.address)
         self.socket.setblocking(False)
 
     def greet(self):

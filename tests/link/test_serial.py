@@ -4,8 +4,9 @@ Pseudo-terminals with a cable between them that makes noise and comes off.
 """
 
 import os
-import socket
 import threading
+import time
+import tty
 from pathlib import Path
 from random import Random
 
@@ -93,25 +94,26 @@ def test_the_robot_ends_its_side_with_its_program(joined):
 
 @pytest.fixture
 def line():
-    """A rig, its server, and the file descriptor of its serial line's far end.
-
-    A pair of sockets stands for the line: what is written has arrived, however busy the machine is.
-    """
+    """A rig, its server, and the file descriptor of its serial line's far end."""
     rig = Rig()
     rig.loop.start()
     server = Server(rig.loop, TOKEN)
-    near, far = socket.socketpair()
-    far.setblocking(False)
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    os.set_blocking(slave, False)
+    far = os.fdopen(slave, "r+b", buffering=0)
     server.attach(lambda: far)
-    yield rig, server, near.fileno()
+    yield rig, server, master
     server.close()
-    near.close()
+    far.close()
+    os.close(master)
 
 
 def served(rig, server, seconds=0.03):
     """Serve until the line has been heard, and let time pass."""
     for _ in range(20):
         server.serve(0.0)
+        time.sleep(0.0005)
     rig.clock.time += seconds
 
 

@@ -147,7 +147,7 @@ def test_of_too_many_strangers_the_one_that_came_first_gives_way(desk):
 
 def test_who_reads_nothing_for_a_minute_is_hung_up_on(desk):
     """Else a lost computer would keep its place until the kernel gives up, which takes hours."""
-    peers = [desk.connect(name=name, pair=True).greet() for name in ("deaf", "slow")]
+    peers = [desk.connect(name=name, receive_buffer=4096).greet() for name in ("deaf", "slow")]
     for peer in peers:
         peer.ask("subscribe", **{"from": 0})
     slow = peers[1]
