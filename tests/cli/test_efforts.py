@@ -8,6 +8,11 @@ import pytest
 
 from host.commands._efforts import question
 from host.errors import NotDone
+from host.experiments.efforts import EFFORTS, Effort
+from host.perform.run import perform
+from tests.cli.test_experiment import COUNT, desk, toy
+
+__all__ = ["desk", "toy"]  # fixtures
 
 
 class Terminal(io.StringIO):
@@ -87,3 +92,42 @@ def test_wrong_use_is_refused_in_words(kickctl, arguments, words):
     assert (status, out) == (2, "")
     assert words in err
     assert "Traceback" not in err
+
+
+# The time that a real robot needs.
+
+
+def test_on_a_robot_the_time_that_is_left_is_said_and_asked_about_before_anything_moves(
+    toy, desk, tmp_path, monkeypatch
+):
+    monkeypatch.setitem(EFFORTS, "toy", Effort("cells", 50.0))
+    said = []
+    asked = []
+
+    def refuse(seconds):
+        asked.append(seconds)
+        raise NotDone("not started")
+
+    def ask_and_run(**options):
+        return perform("toy", desk[0], out=tmp_path, say=said.append, **options)
+
+    with pytest.raises(NotDone):
+        ask_and_run(ask=refuse)
+    assert asked == [50.0 * COUNT]
+    assert "toy: about 5 minutes on this robot" in said
+    assert toy.done == []
+    toy.trouble = {2: [KeyboardInterrupt()]}
+    with pytest.raises(KeyboardInterrupt):
+        ask_and_run()
+    with pytest.raises(NotDone):
+        ask_and_run(ask=refuse)
+    assert asked[1:] == [50.0 * (COUNT - 2)]  # two cells are complete
+    assert ask_and_run(ask=asked.append)["trials"] == COUNT
+    assert ask_and_run(ask=refuse)["trials"] == COUNT  # nothing is left to be done
+
+
+def test_nobody_is_asked_about_a_simulated_robot(toy, tmp_path, monkeypatch):
+    monkeypatch.setitem(EFFORTS, "toy", Effort("cells", 5000.0))
+    said = []
+    perform("toy", "sim://", out=tmp_path, say=said.append, ask=said.append)
+    assert not [words for words in said if "on this robot" in str(words) or words == 30000.0]

@@ -17,7 +17,6 @@ import pytest
 
 from host.errors import NoLink, NotDone, RobotFault
 from host.experiments import registry as table
-from host.experiments.efforts import EFFORTS, Effort
 from host.perform import robots as run
 from host.perform.run import perform
 from host.runs.claims import Claim
@@ -386,39 +385,3 @@ def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
     assert "http" not in page
     for claim in claims:
         assert f"<td>{claim['id']}</td>" in page
-
-
-def test_on_a_robot_the_time_that_is_left_is_said_and_asked_about_before_anything_moves(
-    toy, desk, tmp_path, monkeypatch
-):
-    monkeypatch.setitem(EFFORTS, "toy", Effort("cells", 50.0))
-    said = []
-    asked = []
-
-    def refuse(seconds):
-        asked.append(seconds)
-        raise NotDone("not started")
-
-    def ask_and_run(**options):
-        return perform("toy", desk[0], out=tmp_path, say=said.append, **options)
-
-    with pytest.raises(NotDone):
-        ask_and_run(ask=refuse)
-    assert asked == [50.0 * COUNT]
-    assert "toy: about 5 minutes on this robot" in said
-    assert toy.done == []
-    toy.trouble = {2: [KeyboardInterrupt()]}
-    with pytest.raises(KeyboardInterrupt):
-        ask_and_run()
-    with pytest.raises(NotDone):
-        ask_and_run(ask=refuse)
-    assert asked[1:] == [50.0 * (COUNT - 2)]  # two cells are complete
-    assert ask_and_run(ask=asked.append)["trials"] == COUNT
-    assert ask_and_run(ask=refuse)["trials"] == COUNT  # nothing is left to be done
-
-
-def test_nobody_is_asked_about_a_simulated_robot(toy, tmp_path, monkeypatch):
-    monkeypatch.setitem(EFFORTS, "toy", Effort("cells", 5000.0))
-    said = []
-    perform("toy", "sim://", out=tmp_path, say=said.append, ask=said.append)
-    assert not [words for words in said if "on this robot" in str(words) or words == 30000.0]
