@@ -43,7 +43,6 @@ def change(path, old, new):
 def test_changed_code_computes_again_and_the_same_code_resumes(copy):
     kickctl, folder = copy
     assert "0 of 3 cells complete" in kickctl(*HOPF)
-    assert "3 of 3 cells complete" in kickctl(*HOPF)
     with (folder / "host" / "figures" / "style.py").open("a", encoding="utf-8") as file:
         file.write("# A figure's look changes no number.\n")
     assert "3 of 3 cells complete" in kickctl(*HOPF)
