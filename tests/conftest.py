@@ -28,8 +28,10 @@ os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
 # Tests with real sockets, sshd, mounted files, processes of their own or the watchdog. `make test`
 # runs them after all others, so that nothing that computes slows them down.
 REAL_TIME = (
+    "tests/api/test_listen_page.py",
     "tests/api/test_listeners.py",
     "tests/api/test_own_motors_page.py",
+    "tests/api/test_slow_listeners.py",
     "tests/cli/test_desk.py",
     "tests/contract/test_motor.py",
     "tests/deploy/",

@@ -129,12 +129,18 @@ class Listener:
             self._call(record)
 
     def catch_up(self) -> None:
-        """Call the callback with what is there. Does nothing when called from the callback."""
+        """Call the callback with what is there. Does nothing when called from the callback.
+
+        A callback that lets the robot's time pass makes new records. It gets them the next time, so
+        that whoever waits for the robot does not wait for ever.
+        """
         if self._calling:
             return
         self._calling = True
         try:
-            while (record := self.backlog.get()) is not None:
+            left = len(self.backlog)
+            while len(self.backlog) <= left and (record := self.backlog.get()) is not None:
+                left = len(self.backlog)
                 self._call(record)
         finally:
             self._calling = False

@@ -139,7 +139,7 @@ class Watcher(Connection):
         (`failures`), and the first one is logged. The calls end with the connection; when the robot
         is gone for good, that is logged, and `error` says why. With sim:// the robot's time passes
         only within calls such as `wait`, and the callback runs within them, in the same thread,
-        while the robot's time stands still: it misses nothing.
+        while the robot's time stands still. docs/listen.md has examples.
 
         Args:
             callback: Called with one Record at a time.
