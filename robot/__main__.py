@@ -5,11 +5,13 @@ import socket
 import sys
 
 from robot import own_motors
+from robot.beacon import Announcer
 from robot.button import BackButton
 from robot.lights import Lights
 from robot.motors import MonotonicClock, MotorFault
 from robot.notify import Notify
 from robot.program import choose_seed, parser, run, say
+from robot.speaker import Speaker
 from robot.watchdog import Watchdog, stop_all
 
 PORTS = ("outA", "outB", "outC", "outD")
@@ -119,9 +121,14 @@ def _drive_brick(options):
                 options.sysfs
             )
         )
-    lights = Lights(options.sysfs)
+    lights, speaker = Lights(options.sysfs), Speaker()
+
+    def alarm():
+        lights.alarm()
+        speaker.silence()
+
     try:
-        watchdog = Watchdog(lambda: stop_all(options.sysfs), lights.alarm)
+        watchdog = Watchdog(lambda: stop_all(options.sysfs), alarm)
     except OSError as error:
         return _give_up(_NO_WATCHDOG.format(error.strerror))
     motors = (
@@ -140,7 +147,7 @@ def _drive_brick(options):
     except OSError as error:
         say("the battery cannot be watched: {}".format(error), sys.stderr)
         battery = None
-    panels = (watchdog, lights, BackButton(), Notify(os.environ))
+    panels = (watchdog, lights, speaker, BackButton(), Notify(os.environ))
     try:
         return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
     finally:
@@ -164,7 +171,8 @@ def _drive_own(options):
             watchdogs.append(Watchdog(lambda: own_motors.stop_all(motors), lambda: None))
         except OSError as error:
             return _give_up(_NO_WATCHDOG.format(error.strerror))
-    panels = (*watchdogs, Notify(os.environ))
+    announcer = Announcer(lambda text: say(text, sys.stderr))
+    panels = (*watchdogs, announcer, Notify(os.environ))
     return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
 
 

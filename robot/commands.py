@@ -5,6 +5,7 @@ from collections import OrderedDict, namedtuple
 from robot import params, record
 from robot.errors import Refused
 from robot.loop import LATENESS_EDGES_S
+from robot.words import person
 
 Command = namedtuple("Command", "name sealed arguments doc run")
 
@@ -19,6 +20,7 @@ def _status(loop, session, message):
         "oldest_tick": loop.blackbox.oldest_tick,
         "battery_v": loop.battery_v,
         "controller": None if loop.lease.holder is None else loop.lease.name,
+        "controller_held_s": loop.lease.held_s(loop.clock.now()),
         "params": loop.params.values(),
         "missed": loop.missed,
         "overruns": loop.overruns,
@@ -59,9 +61,21 @@ def _unsubscribe(loop, session, message):
     return {}
 
 
+def _identify(loop, session, message):
+    left_s = loop.beacon.begin(person(session.name), loop.clock.now())
+    return {"seconds": left_s, "ways": loop.beacon.ways}
+
+
 def _lease(loop, session, message):
-    loop.take_lease(session.client, session.name)
+    loop.take_lease(session.client, session.name, over=_flag(message, "take_over"))
     return {}
+
+
+def _flag(message, name):
+    flag = message.get(name, False)
+    if not isinstance(flag, bool):
+        raise Refused("usage", "{} cannot be {!r}".format(name, flag), "it is true or false")
+    return flag
 
 
 def _release(loop, session, message):
@@ -70,14 +84,15 @@ def _release(loop, session, message):
 
 
 def _heartbeat(loop, session, message):
-    return {"tick": loop.blackbox.next_tick}
+    by = loop.lease.taken_over_by(session.client)
+    return {"tick": loop.blackbox.next_tick, "taken_over_by": by}
 
 
 def _controlled(run):
     """The command `run`, for the host that holds the lease only."""
 
     def checked(loop, session, message):
-        loop.lease.require(session.client)
+        loop.lease.require(session.client, loop.clock.now())
         return run(loop, session, message)
 
     return checked
@@ -88,7 +103,7 @@ def _start(loop, session, message):
 
 
 def _stop(loop, session, message):
-    return {"tick": loop.stop("'{}' stopped it".format(session.name))}
+    return {"tick": loop.stop(person(session.name) + " stopped it")}
 
 
 def _clear(loop, session, message):
@@ -130,10 +145,23 @@ _ROWS = (
         _subscribe,
     ),
     Command("unsubscribe", False, (), "send no more records", _unsubscribe),
-    Command("lease", True, (), "take control; refused while another host has it", _lease),
+    Command(
+        "identify", False, (), "show which robot this is for 3 s: blink, beep, or say it", _identify
+    ),
+    Command(
+        "lease",
+        True,
+        ("take_over",),
+        "take control; refused while another host has it, unless take_over is true",
+        _lease,
+    ),
     Command("release", True, (), "give control back; the robot goes on as it is", _release),
     Command(
-        "heartbeat", True, (), "show the robot that the host that controls it is alive", _heartbeat
+        "heartbeat",
+        True,
+        (),
+        "show the robot that the host that controls it is alive; says who has taken over from it",
+        _heartbeat,
     ),
     Command("start", True, (), "run, from random membrane potentials", _controlled(_start)),
     Command(

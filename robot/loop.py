@@ -5,18 +5,20 @@ In this order: read the angles, step the neurons under a kick, limit the duties,
 
 import random
 from bisect import bisect_left
-from collections import deque, namedtuple
+from collections import deque
 from math import cos, isfinite, pi, sin
 
+from robot.beacon import Beacon
 from robot.blackbox import BlackBox
 from robot.errors import Refused
 from robot.kick_requests import parse
-from robot.kicks import DIRECTION_TICKS, MODES, WHEELS, direction
+from robot.kicks import DIRECTION_TICKS, MODES, WHEELS
 from robot.motors import MotorFault
 from robot.params import LONGEST_STEP_TICKS, Params
 from robot.power import Power
 from robot.safety import FAULT, HELD, RUNNING, STOPPED, Lease, Safety, limit_duty
-from robot.wheel import Wheel
+from robot.wheel import Side, Wheel
+from robot.words import person
 
 SHORTEST_STEP_TICKS = 0.1
 # Upper edges of the histogram of how late ticks begin, in s; one more bin counts what is beyond.
@@ -38,16 +40,6 @@ def clamp_step(dt_s, tick_s):
     return max(SHORTEST_STEP_TICKS * tick_s, min(LONGEST_STEP_TICKS * tick_s, dt_s))
 
 
-class Side(namedtuple("Side", "wheel motor travel")):
-    """A wheel, its motor, and its latest angles (rad), which show where it goes."""
-
-    __slots__ = ()
-
-    def direction(self):
-        """1 forward, -1 backward, 0 at rest."""
-        return direction(self.travel[-1] - self.travel[0]) if self.travel else 0
-
-
 class Loop(object):
     """A robot of two wheels, one tick at a time.
 
@@ -61,6 +53,7 @@ class Loop(object):
         params: The parameters in force, a robot.params.Params.
         safety: The state: running, stopped, held or in fault.
         lease: Who may drive the robot.
+        beacon: Whether the robot shows which one it is.
         blackbox: The records and events of the last minutes.
         lateness: How many ticks began how late, by LATENESS_EDGES_S.
         missed: How many deadlines passed without a tick.
@@ -77,6 +70,7 @@ class Loop(object):
         self.params = Params()
         self.safety = Safety()
         self.lease = Lease()
+        self.beacon = Beacon()
         self.blackbox = BlackBox(self.params.values())
         self.clock = clock
         self.seed = seed
@@ -348,24 +342,29 @@ class Loop(object):
                 side.travel.clear()  # angles before and after do not make a direction together
         return self.blackbox.note("params", set=dict(checked))
 
-    def take_lease(self, holder, name):
+    def take_lease(self, holder, name, over=False):
         """Give the lease to a client, and resume a held run.
 
         Args:
             holder: The client.
             name: What to call it in words.
+            over: Whether to take it from another client.
 
         Raises:
             Refused: Another client holds the lease.
         """
-        self.lease.take(holder, name, self.clock.now())
+        loser = self.lease.take(holder, name, self.clock.now(), over)
+        if loser is not None:
+            reason = "{} has taken over from {}".format(person(name), person(loser))
+            self.blackbox.note("take_over", reason=reason)
         if self.safety.state == HELD:
-            self.safety.resume("'{}' took control".format(name))
+            self.safety.resume("{} took control".format(person(name)))
             self.blackbox.note("resume")
 
     def _lose_link(self):
         policy = self.params.link_loss
-        reason = "'{}' was silent for {:g} s".format(self.lease.name, self.params.link_loss_s)
+        who = person(self.lease.name)
+        reason = "{} was silent for {:g} s".format(who, self.params.link_loss_s)
         self.blackbox.note("link_loss", policy=policy, reason=reason)
         if self.safety.state != RUNNING:
             return

@@ -106,7 +106,8 @@ def run(options, motors, battery, clock, seed, panels=()):
         clock: A robot.motors.Clock.
         seed: Random seed of the neurons' start values.
         panels: What people see and touch on the robot, and what watches the loop. The time between
-            ticks goes to their serve(loop), which must return at once; close() ends them.
+            ticks goes to their serve(loop), which must return at once; close() ends them. Those
+            that show which robot this is name their `ways`, see robot.beacon.
 
     Returns:
         The exit status: 0 when it was ended, 2 if it could not start.
@@ -114,6 +115,7 @@ def run(options, motors, battery, clock, seed, panels=()):
     try:
         secret, new = token.load_or_make(options.token)
         loop = Loop(motors, battery, clock, seed)
+        loop.beacon.ways = [way for panel in panels for way in getattr(panel, "ways", ())]
         settings = _settings(options)
         if settings:
             loop.set_params(settings)

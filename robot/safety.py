@@ -4,6 +4,7 @@ from math import isnan
 
 from robot.errors import Refused
 from robot.record import STATES
+from robot.words import duration, person
 
 IDLE, RUNNING, HELD, STOPPED, FAULT = range(len(STATES))
 
@@ -103,7 +104,7 @@ class Safety(object):
 
 
 class Lease(object):
-    """Which host may command the robot, and when the robot last heard from it.
+    """Which host may command the robot, since when, and when the robot last heard from it.
 
     Attributes:
         holder: The session that has the lease; None if nobody has it.
@@ -111,40 +112,92 @@ class Lease(object):
     """
 
     def __init__(self):
-        self.holder = self.name = self._heard = None
+        self.holder = self.name = self._since = self._heard = None
+        # Who lost the lease to somebody who took over, and to whom.
+        self._loser = self._winner = None
 
-    def take(self, holder, name, now):
+    def take(self, holder, name, now, over=False):
         """Give the lease to a session, which may have it already.
 
         Args:
             holder: The session.
             name: What its host calls itself.
             now: s of the robot's clock.
+            over: Whether to take it from another session.
+
+        Returns:
+            The name of the host from which it was taken, None if nobody has lost it.
 
         Raises:
             Refused: Another session has it.
         """
+        loser = None
         if self.holder not in (None, holder):
-            raise Refused(
-                "lease",
-                "somebody else controls the robot now: '{}'".format(self.name),
-                "wait until they have finished. Anyone may stop the robot: kickctl stop",
-            )
+            if not over:
+                raise self._refusal(holder, now)
+            loser = self.name
+            self._loser, self._winner = self.holder, name
+        elif self._loser == holder:
+            self._loser = None
+        if self.holder != holder:
+            self._since = now
         self.holder = holder
         self.name = name
         self._heard = now
+        return loser
 
-    def require(self, holder):
+    def held_s(self, now):
+        """For how long the holder has had the lease, s; None if nobody has it.
+
+        Args:
+            now: s of the robot's clock.
+        """
+        return None if self.holder is None else now - self._since
+
+    def taken_over_by(self, holder):
+        """Who took the lease from a session that has not taken it again since; None if nobody did.
+
+        Args:
+            holder: The session.
+        """
+        return self._winner if holder == self._loser else None
+
+    def require(self, holder, now):
         """Check that a session has the lease.
 
         Args:
             holder: The session.
+            now: s of the robot's clock.
 
         Raises:
             Refused: It does not have the lease.
         """
         if self.holder != holder:
-            raise Refused("lease", "you do not control the robot", "take the lease first")
+            raise self._refusal(holder, now)
+
+    def _refusal(self, holder, now):
+        if self.holder is None:
+            winner = self.taken_over_by(holder)
+            if winner is None:
+                return Refused("lease", "you do not control the robot", "take the lease first")
+            return Refused(
+                "lease",
+                "{} has taken over, and has finished".format(person(winner)),
+                "take the lease again",
+            )
+        message = "the robot has been driven by {} for {}".format(
+            person(self.name), duration(self.held_s(now))
+        )
+        if holder == self._loser:
+            message = "{} has taken over, {} ago".format(
+                person(self.name), duration(self.held_s(now))
+            )
+        return Refused(
+            "lease",
+            message,
+            "wait until they have finished, or take over: --take-over, in Python"
+            " robot.take_over(). Anyone may stop the robot: kickctl stop",
+        )
 
     def heard(self, holder, now):
         """Note that the robot heard from a session; this counts if it has the lease.

@@ -11,6 +11,7 @@ from robot import __version__, commands, wire
 from robot.errors import Refused
 from robot.record import STATES, STRUCT
 from robot.sources import of_robot
+from robot.words import person
 
 _BATCH = wire.MAX_SAMPLES // STRUCT.size
 # Computed before the loop runs: reading files would delay a tick.
@@ -31,7 +32,8 @@ def new_id():
 
 def _printable(name):
     """A peer's name, cut to a decent length and without anything that a screen would obey."""
-    return "".join(letter for letter in name[:40] if letter.isprintable())
+    # People are shown names in single quotes, which a name must not seem to end.
+    return "".join(letter for letter in name[:40] if letter.isprintable()).replace("'", "\u2019")
 
 
 def _name_in(payload):
@@ -158,9 +160,7 @@ class Session(object):
         return wire.encode_json(wire.REPLY, {"id": None, "error": error})
 
     def _stop(self, payload):
-        name = self.name or _name_in(payload)
-        who = "'{}'".format(name) if name else "somebody without a name"
-        tick = self._loop.stop(who + " stopped it")
+        tick = self._loop.stop(person(self.name or _name_in(payload)) + " stopped it")
         safety = self._loop.safety
         result = {"tick": tick, "state": STATES[safety.state], "reason": safety.reason}
         return wire.encode_json(wire.REPLY, {"id": None, "result": result})
@@ -212,6 +212,12 @@ class Session(object):
             tick=loop.blackbox.next_tick,
             oldest_tick=loop.blackbox.oldest_tick,
             clock_s=loop.clock.now() - loop.epoch,
+        )
+        lease = loop.lease
+        answer.update(
+            controller=None if lease.holder is None else lease.name,
+            controller_held_s=lease.held_s(loop.clock.now()),
+            taken_over_by=lease.taken_over_by(client),
         )
         answer.update(machine=_MACHINE, motor=loop.motor)
         return wire.encode_json(wire.HELLO, answer)

@@ -1,7 +1,9 @@
 """One wheel's neurons from tick to tick: the controller's equations under a kick, if one acts."""
 
+from collections import namedtuple
+
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import WHEELS, apply_kick, seen_positions
+from robot.kicks import WHEELS, apply_kick, direction, seen_positions
 
 
 class Wheel(object):
@@ -54,3 +56,13 @@ class Wheel(object):
     def rest(self):
         """A tick without control: the potentials stay, no force acts."""
         self.force = self.torque = 0.0
+
+
+class Side(namedtuple("Side", "wheel motor travel")):
+    """A wheel, its motor, and its latest angles (rad), which show where it goes."""
+
+    __slots__ = ()
+
+    def direction(self):
+        """1 forward, -1 backward, 0 at rest."""
+        return direction(self.travel[-1] - self.travel[0]) if self.travel else 0

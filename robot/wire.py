@@ -6,7 +6,7 @@ import json
 import struct
 import zlib
 
-PROTOCOL = (1, 1)
+PROTOCOL = (1, 2)
 
 SYNC = b"\xa5K"
 _HEADER = struct.Struct(">2sBH")

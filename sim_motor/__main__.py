@@ -10,8 +10,9 @@ FOLDER
 
 import sys
 
+from robot.beacon import Announcer
 from robot.motors import MonotonicClock
-from robot.program import choose_seed, parser, run
+from robot.program import choose_seed, parser, run, say
 from sim_motor.brick import SimBrick
 from sim_motor.clock import VirtualClock
 from sim_motor.mount import serve
@@ -45,7 +46,8 @@ def main() -> int:
         arguments.error(str(error))
     if options.sysfs:
         return serve(options.sysfs, brick)
-    return int(run(options, brick.motors, brick.battery, brick.clock, seed))
+    announcer = Announcer(lambda text: say(text, sys.stderr))
+    return int(run(options, brick.motors, brick.battery, brick.clock, seed, (announcer,)))
 
 
 if __name__ == "__main__":

@@ -109,7 +109,7 @@ class Rig:
         return {
             "params": dict(loop.params.values()),
             "safety": (loop.safety.state, loop.safety.reason),
-            "lease": (loop.lease.holder, loop.lease.name, loop.lease._heard),
+            "lease": dict(vars(loop.lease)),
             "wheels": [
                 (wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel, _, _ in loop._sides
             ],

@@ -120,7 +120,7 @@ def test_one_controller_at_a_time(tmp_path, outside):
         first.lease()
         status, _, err = outside("--brick", uri, "kick", "--mode", "membrane", "--now")
         assert status == 4
-        assert "somebody else controls the robot now: 'first'" in err
+        assert "the robot has been driven by 'first' for " in err
         first.release()
         assert outside("--brick", uri, "kick", "--mode", "membrane", "--now")[0] == 0
 

@@ -3,9 +3,11 @@
 import pytest
 
 from robot import commands, wire
+from robot.beacon import LASTS_S
+from robot.record import STATES
 from robot.session import Session
 from tests.link.sessions import refused, reply
-from tests.rig import TOKEN
+from tests.rig import PERIOD, TOKEN
 from tests.talk import Client
 
 SEALED = [row.name for row in commands.TABLE.values() if row.sealed]
@@ -94,3 +96,63 @@ def test_a_heartbeat_keeps_it(rig, client):
         rig.run(10)
         client.tell("heartbeat")
     assert client.ask("status")["controller"] == "tester"
+
+
+def test_a_robot_is_taken_over_as_it_runs_and_the_loser_is_told(rig, client):
+    teacher = Client(rig.loop, name="teacher").greet()
+    assert client.tell("heartbeat") == {"tick": 3, "taken_over_by": None}
+    teacher.tell("lease", take_over=True)
+    assert (STATES[rig.loop.safety.state], rig.loop.safety.reason) == ("running", "started")
+    assert rig.events[-1]["reason"] == "'teacher' has taken over from 'tester'"
+    assert client.tell("heartbeat")["taken_over_by"] == "teacher"
+    for attempt in ("lease", "start", "stop"):
+        assert "'teacher' has taken over" in refused("lease", client.tell, attempt).message
+    for _ in range(20):
+        client.tell("heartbeat")
+        teacher.tell("heartbeat")
+        rig.run(1)
+    assert STATES[rig.last.state] == "running"
+    status = client.ask("status")
+    assert status["controller"] == "teacher"
+    assert status["controller_held_s"] == pytest.approx(20 * PERIOD)
+
+
+def test_a_takeover_does_not_spare_the_new_host_its_heartbeats(rig, client):
+    Client(rig.loop, name="teacher").greet().tell("lease", take_over=True)
+    for _ in range(20):
+        client.tell("heartbeat")
+        rig.run(1)
+    assert (STATES[rig.last.state], rig.loop.safety.reason) == (
+        "stopped",
+        "'teacher' was silent for 0.5 s",
+    )
+
+
+def test_a_held_robot_goes_on_for_who_takes_over(rig, client):
+    client.tell("set", set={"link_loss": "hold"})
+    rig.run(20)
+    assert STATES[rig.last.state] == "held"
+    Client(rig.loop, name="teacher").greet().tell("lease", take_over=True)
+    assert STATES[rig.loop.safety.state] == "running"
+
+
+def test_a_hello_says_who_drives_since_when_and_who_has_taken_over(rig, client):
+    rig.run(2)
+    hello = Client(rig.loop, name="watcher", token=None).greet().talk.hello
+    assert (hello["controller"], hello["taken_over_by"]) == ("tester", None)
+    assert hello["controller_held_s"] == pytest.approx(2 * PERIOD)
+    teacher = Client(rig.loop, name="teacher").greet()
+    teacher.tell("lease", take_over=True)
+    teacher.tell("release")
+    hello = Client(rig.loop, name="tester").greet().talk.hello
+    assert (hello["controller"], hello["controller_held_s"]) == (None, None)
+    assert hello["taken_over_by"] == "teacher"
+
+
+def test_a_robot_shows_itself_to_who_has_no_token_and_goes_on(rig):
+    rig.loop.beacon.ways = ["lights", "beep"]
+    before = rig.fingerprint()
+    observer = Client(rig.loop, token=None, name="anna").greet()
+    assert observer.ask("identify") == {"seconds": LASTS_S, "ways": ["lights", "beep"]}
+    assert (rig.loop.beacon.by, rig.loop.beacon.number) == ("'anna'", 1)
+    assert rig.fingerprint() == before

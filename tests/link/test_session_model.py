@@ -26,7 +26,8 @@ CAPACITY = 60
 class SessionMachine(RuleBasedStateMachine):
     """ann and bob have the token, eve does not.
 
-    What the model expects is in `state`, `holder`, `heard`, `policy`, `kick_end`, `kicks`.
+    What the model expects is in `state`, `holder`, `taken`, `heard`, `policy`, `kick_end`,
+    `kicks`, and in `lost`, by whom somebody has lost the lease.
     """
 
     def __init__(self):
@@ -35,6 +36,8 @@ class SessionMachine(RuleBasedStateMachine):
         self.clients = {}
         self.state = "idle"
         self.holder = None
+        self.taken = 0.0
+        self.lost = {}
         self.heard = 0.0
         self.policy = "stop"
         self.kick_end = 0
@@ -104,12 +107,41 @@ class SessionMachine(RuleBasedStateMachine):
                     self._enter({"stop": "stopped", "hold": "held"}[self.policy])
             self.rig.loop.tick()
 
+    def _gain(self, name):
+        self.heard = self.rig.clock.time
+        if self.holder != name:
+            self.taken = self.rig.clock.time
+        self.holder = name
+        self.lost.pop(name, None)
+        if self.state == "held":
+            self._enter("running")
+
     @rule(name=names)
     def lease(self, name):
         if self._tell(name, "lease", self.holder in (None, name)) is not None:
-            self.holder, self.heard = name, self.rig.clock.time
-            if self.state == "held":
-                self._enter("running")
+            self._gain(name)
+
+    @rule(name=names)
+    def take_over(self, name):
+        events = len(self.rig.events)
+        if self._tell(name, "lease", allowed=True, take_over=True) is not None:
+            loser = self.holder if self.holder != name else None
+            self._gain(name)
+            if loser is not None:
+                self.lost = {loser: name}
+                reason = f"'{name}' has taken over from '{loser}'"
+                assert self.rig.events[events]["reason"] == reason
+
+    @rule(name=names)
+    def a_refusal_says_who_drives(self, name):
+        if self.holder in (None, name) or name not in TRUSTED:
+            return
+        try:
+            self.client(name).tell("lease")
+        except KickctlError as refusal:
+            words = "has taken over" if name in self.lost else "has been driven"
+            assert f"'{self.holder}'" in refusal.message
+            assert words in refusal.message
 
     @rule(name=names)
     def release(self, name):
@@ -119,7 +151,7 @@ class SessionMachine(RuleBasedStateMachine):
     @rule(name=names)
     def heartbeat(self, name):
         answer = self._tell(name, "heartbeat", allowed=True)
-        assert answer in (None, {"tick": self.tick})
+        assert answer in (None, {"tick": self.tick, "taken_over_by": self.lost.get(name)})
 
     @rule(name=names)
     def start(self, name):
@@ -254,8 +286,16 @@ class SessionMachine(RuleBasedStateMachine):
 
     @invariant()
     def everybody_sees_the_same_controller(self):
-        seen = {client.ask("status")["controller"] for client in self.clients.values()}
-        assert seen <= {self.holder}
+        held_s = None if self.holder is None else self.rig.clock.time - self.taken
+        for client in self.clients.values():
+            status = client.ask("status")
+            assert (status["controller"], status["controller_held_s"]) == (self.holder, held_s)
+
+    @invariant()
+    def a_hello_says_who_has_taken_over(self):
+        for name in TRUSTED:
+            hello = Client(self.rig.loop, TOKEN, name).greet().talk.hello
+            assert hello["taken_over_by"] == self.lost.get(name)
 
 
 TestSessions = SessionMachine.TestCase

@@ -19,7 +19,7 @@ def test_another_version_is_refused_with_both_named(rig, protocol):
     hello = {"protocol": protocol, "name": "n", "client": "c", "nonce": "00" * 16}
     error = reply(session.receive(wire.HELLO, wire.dump(hello)))["error"]
     assert error["code"] == "version"
-    assert "1.1" in error["message"]
+    assert "{}.{}".format(*wire.PROTOCOL) in error["message"]
     assert session.closing
     assert not session.greeted
     assert rig.fingerprint() == before
@@ -55,6 +55,11 @@ def test_a_name_cannot_garble_a_screen(rig):
     client = Client(rig.loop, name="a\x1b[2J\n\u202e" + "b" * 100, client="c").greet()
     client.stop()
     assert rig.loop.safety.reason == "'" + ("a[2J" + "b" * 33) + "' stopped it"
+
+
+def test_a_name_cannot_seem_to_end_its_quotes(rig):
+    Client(rig.loop, name="x' stopped it, not 'anna", client="c").greet().stop()
+    assert rig.loop.safety.reason == "'x\u2019 stopped it, not \u2019anna' stopped it"
 
 
 def test_a_wrong_token_ends_the_conversation(rig):

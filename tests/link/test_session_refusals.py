@@ -37,9 +37,7 @@ OPEN = [row.name for row in commands.TABLE.values() if not row.sealed]
         ("kick", {"kick": {"id": "1", "mode": "shove"}}),
         ("kick", {"kick": {"mode": "phase"}}),
         ("jump", {}),
-        (None, {}),
-        (["status"], {}),
-        ({}, {}),
+        *(("lease", {"take_over": flag}) for flag in (None, 1, "yes", [])),
         ("describe", {"table": []}),
         ("describe", {"table": "secrets"}),
         ("describe", {}),
@@ -53,6 +51,15 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(rig, client, do, arg
     assert rig.fingerprint() == before
     assert not client.session.closing
     assert client.ask("status")["controller"] == "tester"
+
+
+@pytest.mark.parametrize("do", [None, 7, ["status"], {}])
+def test_a_command_whose_name_is_no_text_is_refused(rig, client, do):
+    """A host of this release would not send it."""
+    before = rig.fingerprint()
+    error = reply(client.session.receive(wire.ASK, wire.dump({"id": 1, "do": do})))["error"]
+    assert error["code"] == "unknown"
+    assert rig.fingerprint() == before
 
 
 @pytest.mark.parametrize("number", [nan, inf, -inf])

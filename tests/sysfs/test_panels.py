@@ -1,12 +1,14 @@
-"""The lights and the back button."""
+"""The lights, the speaker and the back button."""
 
 import os
 
 import pytest
 
+from robot.beacon import LASTS_S, PERIOD_S, Announcer
 from robot.button import BACK, EVENT, KEY, PRESSED, BackButton
 from robot.lights import LEFT_AND_RIGHT, Lights
 from robot.record import STATES
+from robot.speaker import SOUND, TONE, TONE_HZ, Speaker
 from tests.rig import Rig
 
 LEDS = (
@@ -26,6 +28,7 @@ def rig():
 def sysfs(tmp_path):
     for name in LEDS:
         (tmp_path / "leds" / name).mkdir(parents=True)
+        (tmp_path / "leds" / name / "brightness").write_text("0", encoding="ascii")
     return tmp_path
 
 
@@ -61,7 +64,105 @@ def test_the_lights_are_written_only_when_the_state_changes(rig, sysfs):
 def test_a_brick_without_lights_does_without(rig, tmp_path):
     lights = Lights(str(tmp_path))
     lights.serve(rig.loop)
+    assert lights.ways == ()
     lights.close()
+
+
+def test_lights_blink_while_the_robot_shows_itself_and_then_show_its_state(rig, sysfs):
+    lights = Lights(str(sysfs))
+    assert lights.ways == ("lights",)
+    rig.loop.start()
+    rig.run(1)
+    begin = rig.clock.time
+    assert rig.loop.beacon.begin("'anna'", begin) == LASTS_S
+    green, dark, looks = [0, 255, 0, 255], [0, 0, 0, 0], []
+    while rig.clock.time < begin + LASTS_S + 1.0:
+        lights.serve(rig.loop)
+        if [shown(sysfs)] != looks[-1:]:
+            looks.append(shown(sysfs))
+        rig.run(1)
+    assert looks == [green, dark] * round(LASTS_S / PERIOD_S) + [green]
+    lights.close()
+
+
+def test_no_file_is_opened_while_lights_are_served(rig, sysfs, monkeypatch):
+    lights = Lights(str(sysfs))
+    for name in ("os.open", "builtins.open"):
+        monkeypatch.setattr(name, None)
+    for state in range(len(STATES)):
+        rig.loop.safety.state = state
+        lights.serve(rig.loop)
+    monkeypatch.undo()
+    assert shown(sysfs) == [255, 0, 255, 0]
+
+
+@pytest.fixture
+def hearing(tmp_path):
+    """A speaker, and a function that says which events it has got since, as (type, code, value)."""
+    path = tmp_path / "speaker"
+    os.mkfifo(path)
+    end = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+
+    def heard():
+        try:
+            data = os.read(end, 1000 * EVENT.size)
+        except BlockingIOError:
+            return []
+        return [event[2:] for event in EVENT.iter_unpack(data)]
+
+    speaker = Speaker(str(path))
+    yield speaker, heard
+    speaker.close()
+    os.close(end)
+
+
+def test_the_speaker_beeps_while_the_robot_shows_itself_and_is_silent_then(rig, hearing):
+    speaker, heard = hearing
+    assert speaker.ways == ("beep",)
+    speaker.serve(rig.loop)
+    assert heard() == []
+    rig.loop.beacon.begin("'anna'", rig.clock.time)
+    while rig.clock.time < LASTS_S + 1.0:
+        speaker.serve(rig.loop)
+        rig.run(1)
+    beep = [(SOUND, TONE, TONE_HZ), (SOUND, TONE, 0)]
+    assert heard() == beep * round(LASTS_S / PERIOD_S)
+
+
+def test_a_program_that_ends_or_dies_within_a_beep_leaves_no_tone(rig, hearing):
+    speaker, heard = hearing
+    rig.loop.beacon.begin("'anna'", rig.clock.time)
+    speaker.serve(rig.loop)
+    speaker.silence()  # as the watchdog does in its own process
+    speaker.close()
+    assert heard() == [(SOUND, TONE, TONE_HZ), (SOUND, TONE, 0), (SOUND, TONE, 0)]
+
+
+def test_a_brick_without_a_speaker_does_without(rig, tmp_path):
+    speaker = Speaker(str(tmp_path / "none"))
+    rig.loop.beacon.begin("'anna'", rig.clock.time)
+    speaker.serve(rig.loop)
+    speaker.silence()
+    assert speaker.ways == ()
+    speaker.close()
+
+
+def test_a_robot_without_lights_says_once_that_somebody_looks_for_it(rig):
+    words = []
+    announcer = Announcer(words.append)
+    announcer.serve(rig.loop)
+    rig.loop.beacon.begin("'anna'", rig.clock.time)
+    for _ in range(3):
+        announcer.serve(rig.loop)
+    assert words == ["kickctl identify: 'anna' is looking for this robot"]
+
+
+def test_nobody_can_make_a_robot_beep_without_a_break(rig):
+    beacon = rig.loop.beacon
+    assert beacon.begin("'anna'", 10.0) == LASTS_S
+    assert beacon.begin("'bert'", 12.0) == LASTS_S - 2.0
+    assert (beacon.by, beacon.phase(10.0 + LASTS_S)) == ("'anna'", None)
+    assert beacon.begin("'bert'", 10.0 + LASTS_S) == LASTS_S
 
 
 @pytest.fixture

@@ -110,18 +110,60 @@ def test_the_way_through_the_states():
 def test_only_one_holds_the_lease():
     lease = Lease()
     with pytest.raises(Refused):
-        lease.require("a")
-    lease.take("a", "Ann", 0.0)
-    lease.take("a", "Ann", 1.0)
+        lease.require("a", 0.0)
+    assert lease.take("a", "Ann", 0.0) is None
+    assert lease.take("a", "Ann", 1.0) is None
     with pytest.raises(Refused) as refused:
         lease.take("b", "Bob", 1.0)
     assert "Ann" in refused.value.message
     with pytest.raises(Refused):
-        lease.require("b")
+        lease.require("b", 1.0)
     lease.release("b")
-    lease.require("a")
+    lease.require("a", 1.0)
     lease.release("a")
-    lease.take("b", "Bob", 2.0)
+    assert lease.take("b", "Bob", 2.0) is None
+
+
+def test_who_takes_over_has_the_lease_and_who_lost_it_can_take_it_back():
+    lease = Lease()
+    assert lease.take("a", "Ann", 0.0, over=True) is None
+    assert lease.take("b", "Bob", 1.0, over=True) == "Ann"
+    assert (lease.holder, lease.name) == ("b", "Bob")
+    assert [lease.taken_over_by(holder) for holder in "abc"] == ["Bob", None, None]
+    lease.require("b", 1.0)
+    for attempt in (lambda: lease.take("a", "Ann", 63.0), lambda: lease.require("a", 63.0)):
+        with pytest.raises(Refused, match=r"^'Bob' has taken over, 1 min 2 s ago$"):
+            attempt()
+    assert lease.take("a", "Ann", 64.0, over=True) == "Bob"
+    assert [lease.taken_over_by(holder) for holder in "abc"] == [None, "Ann", None]
+
+
+def test_who_lost_the_lease_hears_so_until_it_takes_it_again():
+    lease = Lease()
+    lease.take("a", "Ann", 0.0)
+    lease.take("b", "Bob", 1.0, over=True)
+    lease.release("b")
+    with pytest.raises(Refused, match=r"^'Bob' has taken over, and has finished$"):
+        lease.require("a", 2.0)
+    lease.take("c", "Cid", 3.0)
+    assert lease.taken_over_by("a") == "Bob"
+    lease.release("c")
+    lease.take("a", "Ann", 4.0)
+    assert lease.taken_over_by("a") is None
+    lease.require("a", 4.0)
+
+
+def test_it_is_known_for_how_long_the_lease_has_been_held():
+    lease = Lease()
+    assert lease.held_s(7.0) is None
+    lease.take("a", "Ann", 1.0)
+    lease.take("a", "Ann", 3.0)
+    lease.heard("a", 4.0)
+    assert lease.held_s(5.0) == 4.0
+    lease.take("b", "Bob", 6.0, over=True)
+    assert lease.held_s(6.5) == 0.5
+    lease.release("b")
+    assert lease.held_s(7.0) is None
 
 
 def test_a_lease_ends_once_after_silence_and_others_words_do_not_prolong_it():
@@ -168,18 +210,33 @@ def test_the_words_of_every_refusal():
         "hint": "mend the cause, then: kickctl clear, kickctl start",
     }
     assert refusal(safety.start) == fault
-    assert refusal(lease.require, "a") == {
+    assert refusal(lease.require, "a", 0.0) == {
         "code": "lease",
         "message": "you do not control the robot",
         "hint": "take the lease first",
     }
     lease.take("a", "Ann", 0.0)
+    wait = (
+        "wait until they have finished, or take over: --take-over, in Python robot.take_over()."
+        " Anyone may stop the robot: kickctl stop"
+    )
     other = {
         "code": "lease",
-        "message": "somebody else controls the robot now: 'Ann'",
-        "hint": "wait until they have finished. Anyone may stop the robot: kickctl stop",
+        "message": "the robot has been driven by 'Ann' for 2 min 10 s",
+        "hint": wait,
     }
-    assert refusal(lease.take, "b", "Bob", 0.0) == other
+    assert refusal(lease.take, "b", "Bob", 130.0) == other
+    assert refusal(lease.require, "b", 130.0) == other
+    lease.take("b", "Bob", 200.0, over=True)
+    taken = {"code": "lease", "message": "'Bob' has taken over, 5 s ago", "hint": wait}
+    assert refusal(lease.require, "a", 205.9) == taken
+    lease.release("b")
+    finished = {
+        "code": "lease",
+        "message": "'Bob' has taken over, and has finished",
+        "hint": "take the lease again",
+    }
+    assert refusal(lease.require, "a", 206.0) == finished
 
 
 def test_the_reason_of_every_state():

@@ -1,0 +1,30 @@
+"""How the robot writes names and times for people."""
+
+
+def person(name):
+    """A host's name in a sentence: quoted, since a host may call itself anything.
+
+    Args:
+        name: What the host calls itself; may be empty.
+
+    Returns:
+        The words.
+    """
+    return "'{}'".format(name) if name.strip() else "somebody without a name"
+
+
+def duration(seconds):
+    """A duration as people say it.
+
+    Args:
+        seconds: The duration, s.
+
+    Returns:
+        Its two largest units, as in '12 s', '2 min 10 s' and '1 h 5 min'.
+    """
+    whole = int(max(0.0, seconds))
+    if whole < 60:
+        return "{} s".format(whole)
+    if whole < 3600:
+        return "{} min {} s".format(whole // 60, whole % 60)
+    return "{} h {} min".format(whole // 3600, whole // 60 % 60)
