@@ -5,6 +5,7 @@ The package has looked for foreign parts by the time this is imported, so that i
 
 from __future__ import annotations
 
+import signal
 import sys
 
 
@@ -13,8 +14,10 @@ def main() -> int:
     try:
         from host.cli import main as run
     except KeyboardInterrupt:  # run() answers later ones
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         if "--json" in sys.argv:
             print('{"error": {"message": "interrupted", "hint": "", "status": 130}}')
+        print("kickctl: interrupted", file=sys.stderr)
         return 130
     return run()
 

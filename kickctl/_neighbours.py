@@ -90,6 +90,6 @@ def _is_installed(place: Path) -> bool:
 
 
 def _is_the_command() -> bool:
-    """Whether this process is `kickctl` or `python -m kickctl`."""
-    module = sys.orig_argv[1:3] == ["-m", "kickctl"]
+    """Whether this process is `kickctl`, `python -m kickctl` or `python -m host`."""
+    module = sys.orig_argv[1:3] in (["-m", "kickctl"], ["-m", "host"])
     return module or Path(sys.argv[0] if sys.argv else "").name == "kickctl"

@@ -52,7 +52,7 @@ class KickOutcome(Outcome, Mapping[str, Any]):
         return len(fields(self))
 
     def __str__(self) -> str:
-        hint = "" if self.reversed else advice(self).removeprefix(": ")
+        hint = "" if self.reversed else advice(self)
         return describe(self) + (f"\n{hint}" if hint else "")
 
 

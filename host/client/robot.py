@@ -11,13 +11,15 @@ robot passes only within them.
 from __future__ import annotations
 
 import uuid
+from collections import Counter
 from pathlib import Path
 from typing import Any, Self
 
 from host.client.access import find_token
 from host.client.watching import Watcher
-from host.errors import LeaseLost
+from host.errors import KickctlError, LeaseLost, NoLink
 from host.link.addresses import chosen, make_link
+from host.link.transport import Link
 from robot.record import STATES
 
 
@@ -26,7 +28,16 @@ class Robot(Watcher):
 
     Every method that talks to the robot raises KickctlError in words when that fails. Leaving the
     `with` block, or `close`, hangs up; the robot goes on as it is.
+
+    Attributes:
+        confirmed: How often the robot has confirmed each command.
+        unanswered: The command that was sent last, if no answer has come; else empty.
     """
+
+    def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
+        self.confirmed: Counter[str] = Counter()
+        self.unanswered = ""
+        super().__init__(link, token, name)
 
     @classmethod
     def connect(
@@ -92,13 +103,23 @@ class Robot(Watcher):
         """
         if not self.drives:
             self.lease()
+        self.unanswered = command
         try:
-            return int(self.request(command, arguments, sealed=True)["tick"])
-        except LeaseLost:
-            # The robot took this host for lost while the link was silent; what was refused has
-            # changed nothing.
-            self.lease()
-            return int(self.request(command, arguments, sealed=True)["tick"])
+            try:
+                answer = self.request(command, arguments, sealed=True)
+            except LeaseLost:
+                # The robot took this host for lost while the link was silent; what was refused has
+                # changed nothing.
+                self.lease()
+                answer = self.request(command, arguments, sealed=True)
+        except NoLink:
+            raise
+        except KickctlError:  # the robot refuses, and that is an answer
+            self.unanswered = ""
+            raise
+        self.confirmed[command] += 1
+        self.unanswered = ""
+        return int(answer["tick"])
 
     def start(self) -> int:
         """Run from random membrane potentials.

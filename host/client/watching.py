@@ -13,7 +13,7 @@ from host.client.connection import Connection
 from host.client.listeners import Backlog, Listener, Records
 from host.client.stream import Feed
 from host.errors import NoLink
-from host.logs.tap import Tap
+from host.logs.tap import Span, Tap
 from host.util.arguments import need_function, need_seconds, need_tap
 from host.util.provenance import origin
 from robot.record import Record
@@ -109,9 +109,14 @@ class Watcher(Connection):
         Returns:
             The log, in memory.
         """
-        seconds = need_seconds("seconds", seconds)
-        with self.recording() as log:
-            self.wait(seconds)
+        from host.logs.log import Log
+
+        span = Span(need_seconds("seconds", seconds), log := Log(self.info()))
+        try:
+            self.add_tap(span)
+            self.wait(inf, until=lambda: span.complete)
+        finally:
+            self.remove_tap(span)
         return log
 
     @contextmanager

@@ -70,5 +70,7 @@ def _failure(error: BaseException) -> KickctlError | None:
 
 def os_words(error: OSError) -> str:
     """What the operating system has refused, and where."""
-    place = error.filename if error.filename is not None else "standard output"
-    return f"{place} cannot be written or read: {error.strerror or error}"
+    reason = error.strerror or str(error)
+    if error.filename is None:
+        return f"the operating system refuses: {reason}"
+    return f"{error.filename} cannot be written or read: {reason}"

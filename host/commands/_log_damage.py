@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from typing import TYPE_CHECKING, Any
 
-from host.commands._terminal import say
+from host.errors import NotDone
 
 if TYPE_CHECKING:
     from host.logs.mcap_reading import LogFile
@@ -17,15 +17,15 @@ def damage_facts(log: LogFile) -> dict[str, Any]:
 
 
 def damage_status(log: LogFile) -> int:
-    """Say what is missing, and what to do.
+    """The exit status of what was done with a log: 0 if it is whole.
 
-    Returns:
-        The exit status: 0 if the log is whole; 1 if it is not, so that not all was done.
+    Raises:
+        NotDone: It is not whole, so that not all was done.
     """
-    if log.whole:
-        return 0
-    say(
-        f"kickctl: {log.damage()}\n  kickctl log recover {shlex.quote(str(log.path))} makes a whole"
-        " log of what can be read"
-    )
-    return 1
+    if not log.whole:
+        raise NotDone(
+            log.damage(),
+            f"kickctl log recover {shlex.quote(str(log.path))} makes a whole log of what can be"
+            " read",
+        )
+    return 0

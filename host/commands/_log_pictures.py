@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from host.commands._log_damage import damage_facts, damage_status
 from host.commands._outputs import add_force, answer_beside, require_place
 from host.errors import NotDone, WrongUse
+from host.util.numbers import Number
 
 if TYPE_CHECKING:
     from host.logs.curves import Curves
@@ -35,17 +36,20 @@ def add_arguments(plot: argparse.ArgumentParser, film: argparse.ArgumentParser) 
     )
     film.add_argument(
         "--begin",
-        type=float,
+        type=Number("s", 0.0, 1e6),
         default=0.0,
         metavar="S",
         help="when the film begins, s since the log began (default %(default)g)",
     )
     film.add_argument(
-        "--seconds", type=float, metavar="S", help="how much to film (default: to the log's end)"
+        "--seconds",
+        type=Number("s", 0.01, 1e6),
+        metavar="S",
+        help="how much to film, s (default: to the log's end)",
     )
     film.add_argument(
         "--slower",
-        type=float,
+        type=Number("times", 0.01, 1e6),
         default=1.0,
         metavar="N",
         help="how many times slower than life (default %(default)g)",
@@ -89,7 +93,6 @@ def film(options: argparse.Namespace) -> int:
     from host.logs.mcap_reading import LogFile
     from host.util.progress import progress
 
-    _check(options)
     out = require_place(options, options.out or _beside(options.log, "-film.mp4"))
     log = LogFile(options.log)
     curves = _read(log)
@@ -108,17 +111,6 @@ def film(options: argparse.Namespace) -> int:
     facts = {"film": str(out), "seconds": len(t_s) / FPS, **damage_facts(log)}
     answer_beside(options, out, facts, f"film {out}, {len(t_s) / FPS:.1f} s")
     return damage_status(log)
-
-
-def _check(options: argparse.Namespace) -> None:
-    """Raise WrongUse for a time or a slowness that no film can have."""
-    for name, value, least in (
-        ("begin", options.begin, 0.0),
-        ("seconds", options.seconds, 0.01),
-        ("slower", options.slower, 0.01),
-    ):
-        if value is not None and not least <= value <= 1e6:
-            raise WrongUse(f"{name} cannot be {value!r}", f"give a number, {least:g} or more")
 
 
 def _read(log: LogFile) -> Curves:

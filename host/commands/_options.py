@@ -3,40 +3,63 @@
 import argparse
 import itertools
 from collections.abc import Sequence
+from typing import Any
+
+from host.errors import WrongUse
+from host.util.numbers import Number
+
+# The options for robots. Verbs that use only some of them say so in USES.
+EVERY = ("brick", "seed", "set", "token")
+_REFUSED = {
+    "brick": ("--brick chooses a robot, and `{}` reaches none", "leave it out"),
+    "seed": ("--seed fixes chances, and `{}` has none", "leave it out"),
+    "set": ("--set gives parameters to a simulated robot, and `{}` has none", "leave it out"),
+    "token": ("--token opens a robot, and `{}` reaches none", "leave it out"),
+}
+_SETS_ITSELF = (
+    "--set gives parameters to a simulated robot, and `{}` sets those of its robots itself",
+    "leave it out; {} --help shows what can be chosen",
+)
 
 
-def _seed(text: str) -> int:
-    if not (text.isascii() and text.isdigit()):
-        raise argparse.ArgumentTypeError(f"'{text}' is no seed; give a whole number, 0 or more")
-    return int(text)
-
-
-def common(*, defaults: bool) -> argparse.ArgumentParser:
+def common(*, defaults: bool, used: Sequence[str] = EVERY) -> argparse.ArgumentParser:
     """A parent parser with the options of every verb.
 
     The options may stand before the verb or after it, so only one of the places may set defaults.
     --set adds up, so that each place has a list of its own, set_before and set_after.
+
+    Args:
+        defaults: Whether this place sets the defaults.
+        used: Those of EVERY that the verb uses. Its help leaves the others out, and `refuse_unused`
+            refuses them.
     """
     parser = argparse.ArgumentParser(
         add_help=False, argument_default=None if defaults else argparse.SUPPRESS
     )
+    parser.set_defaults(used=tuple(used))
     group = parser.add_argument_group("which robot, and how to answer")
-    group.add_argument(
-        "--brick",
-        metavar="URI",
-        help="sim://, tcp://HOST[:PORT], ssh://USER@HOST or serial:///dev/DEVICE",
+
+    def add(name: str, words: str, **more: Any) -> None:
+        shown = words if name in used else argparse.SUPPRESS
+        group.add_argument(f"--{name}", help=shown, **more)
+
+    add(
+        "brick", "sim://, tcp://HOST[:PORT], ssh://USER@HOST or serial:///dev/DEVICE", metavar="URI"
     )
-    group.add_argument(
-        "--seed", type=_seed, metavar="N", help="fixes all chances of the simulated robot"
+    add(
+        "seed",
+        "fixes all chances of the simulation: a whole number, 0 or more",
+        type=Number(least=0, whole=True),
+        metavar="N",
     )
-    group.add_argument(
-        "--set",
+    add(
+        "set",
+        "a parameter of the embedded simulated robot, as in k=2.5; may be repeated",
         action="append",
         dest="set_before" if defaults else "set_after",
         metavar="NAME=VALUE",
-        help="a parameter of the embedded simulated robot, as in k=2.5; may be repeated",
     )
-    group.add_argument("--token", metavar="FILE", help="the robot's token file")
+    add("token", "the robot's token file", metavar="FILE")
     off = False if defaults else argparse.SUPPRESS
     group.add_argument(
         "--json",
@@ -45,6 +68,21 @@ def common(*, defaults: bool) -> argparse.ArgumentParser:
         help="answer with one JSON object on standard output, also after an error",
     )
     return parser
+
+
+def refuse_unused(options: argparse.Namespace) -> None:
+    """Raise WrongUse for an option that was given and that the verb does not use."""
+    given = {
+        "brick": options.brick is not None,
+        "seed": options.seed is not None,
+        "set": options.set_before or hasattr(options, "set_after"),
+        "token": options.token is not None,
+    }
+    for name in EVERY:
+        if given[name] and name not in options.used:
+            itself = name == "set" and "brick" in options.used
+            why, remedy = _SETS_ITSELF if itself else _REFUSED[name]
+            raise WrongUse(why.format(options.command), remedy.format(options.command))
 
 
 def asks_for_json(arguments: Sequence[str]) -> bool:

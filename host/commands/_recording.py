@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.commands._failures import os_words
-from host.commands._terminal import say, show
-from host.errors import KickctlError
+from host.commands._terminal import print_result, say, show
+from host.errors import KickctlError, NotDone
 
 if TYPE_CHECKING:
     from host.client.robot import Robot
@@ -53,6 +53,11 @@ class Recording:
             self._file.close()
         except OSError as error:
             self.failure = self.failure or os_words(error)
+
+    def require_whole(self) -> None:
+        """Raise NotDone if the file is not whole."""
+        if self.failure:
+            raise NotDone(self.failure, f"the log {self.path} ends where that happened")
 
     def _try(self, write: Callable[[], None]) -> None:
         if self.failure:
@@ -103,37 +108,34 @@ def conclude(
 
     Args:
         options: Say whether to answer in JSON. There, `figure` is null if it cannot be drawn, and
-            `figure_error` says why; `log_error` says why a log is not whole.
+            `figure_error` says why; `log_error` says why a log is not whole; `interrupted` whether
+            an interrupt has ended the command.
         result: The answer, without its files.
         sentence: The same for people.
         recording: What was recorded.
         draw: Writes the figure to the path that it gets, and returns that. It may fail in any way.
+
+    Raises:
+        NotDone: The log's file is not whole.
     """
-    files: dict[str, Any] = {"log": str(recording.path)}
+    files: dict[str, Any] = {"log": str(recording.path), "interrupted": False}
     if recording.failure:
         files["log_error"] = recording.failure
-    if not options.json:
-        words = f"{sentence}\nlog {recording.path}"
-        try:
-            print(words, flush=True)
-        except OSError as error:  # nobody reads them there; somebody may on standard error
-            error.add_note(words)
-            raise
+    essentials = f"{sentence}\nlog {recording.path}"
+    if options.json:  # for an interrupt while the figure is drawn
+        show({**result, **files, "figure": None, "figure_error": "interrupted"}, essentials)
+    else:
+        print_result(essentials, essentials)
     try:
         files["figure"] = str(draw(recording.path.with_suffix(".png")))
-    except KeyboardInterrupt:
-        if options.json:
-            show({**result, **files, "figure": None, "figure_error": "interrupted"})
-        raise
     except Exception as error:  # noqa: BLE001 - the result counts, not what befalls a picture
         files |= {"figure": None, "figure_error": figure_words(error)}
+        say(f"kickctl: {files['figure_error']}")
     if options.json:
-        show({**result, **files})
+        show({**result, **files}, essentials)
     elif files["figure"] is not None:
-        print(f"figure {files['figure']}", flush=True)
-    for name in ("figure_error", "log_error"):
-        if name in files:
-            say(f"kickctl: {files[name]}")
+        print_result(f"figure {files['figure']}", f"figure {files['figure']}")
+    recording.require_whole()
 
 
 def figure_words(error: Exception) -> str:

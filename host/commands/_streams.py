@@ -4,17 +4,34 @@ from __future__ import annotations
 
 import io
 import os
+import select
 import sys
 from contextlib import suppress
 from typing import Any
 
+# How errors name standard output, so that nobody takes those of a link or a log for it.
+OUTPUT = "standard output"
 
-class _Lenient(io.FileIO):
+
+class _Output(io.FileIO):
+    """Standard output, which names itself in its errors, and waits where it must not block."""
+
+    def write(self, data: Any) -> int:
+        try:
+            while (count := super().write(data)) is None:
+                select.select([], [self], [])
+        except OSError as error:
+            error.filename = OUTPUT
+            raise
+        return count
+
+
+class _Words(io.FileIO):
     """Drops what cannot be written: words for people are no reason to end what a robot does."""
 
     def write(self, data: Any) -> int:
         try:
-            return super().write(data) or 0
+            return super().write(data) or len(data)
         except OSError:
             return len(data)
 
@@ -31,14 +48,18 @@ def prepare() -> None:
             os.fstat(number)
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # gets the lowest free number, which is this one
-    if sys.stdout is None:
-        sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
-    encoding = sys.stderr.encoding if sys.stderr is not None else "utf-8"
-    words = io.BufferedWriter(_Lenient(2, "w", closefd=False))
-    sys.stderr = io.TextIOWrapper(
-        words, encoding=encoding, errors="backslashreplace", line_buffering=True
+    sys.stdout = _stream(_Output, 1, sys.stdout)
+    sys.stderr = _stream(_Words, 2, sys.stderr)
+
+
+def _stream(kind: type[io.FileIO], number: int, before: Any) -> io.TextIOWrapper:
+    """A text stream with the encoding of the one before it."""
+    file = kind(number, "w", closefd=False)
+    return io.TextIOWrapper(
+        io.BufferedWriter(file),
+        encoding="utf-8" if before is None else before.encoding,
+        errors="backslashreplace",
+        line_buffering=kind is _Words or file.isatty(),
     )
 
 

@@ -10,41 +10,87 @@ import json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.client.robot import Robot, connect
+from host.commands._hints import as_typed, name_robot
+from host.errors import Interrupted, KickctlError, NoLink, NotDone
+from host.util.interrupts import uninterrupted
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-_answers: list[dict[str, Any]] = []
+
+class _Answer(NamedTuple):
+    result: dict[str, Any]
+    essentials: str
+
+
+_answers: list[_Answer] = []
 
 
 def begin() -> None:
-    """A command begins: nothing has been answered yet."""
+    """A command begins: nothing has been answered yet, and no robot has been named."""
     _answers.clear()
-
-
-def answered() -> bool:
-    """Whether the command has answered in JSON, which it does only once."""
-    return bool(_answers)
+    name_robot(None, None)
 
 
 def say(text: str) -> None:
     """Words for people. Bytes of a command line that are no text appear as codes."""
-    print(text.encode(errors="backslashreplace").decode(), file=sys.stderr, flush=True)
+    text = as_typed(text).encode(errors="backslashreplace").decode()
+    print(text, file=sys.stderr, flush=True)
 
 
-def show(result: dict[str, Any]) -> None:
-    """Answer machines: one JSON object, on a line of its own."""
-    line = json.dumps(result, allow_nan=False)
-    _answers.append(result)
-    print(line, flush=True)
+def show(result: dict[str, Any], essentials: str = "") -> None:
+    """Answer machines. The answer is printed when the command ends, with the error that ends it.
+
+    Args:
+        result: The answer. A later one replaces it.
+        essentials: What has been done, in words: they are said if nobody takes the answer.
+    """
+    json.dumps(result, allow_nan=False)  # a number that is none is a mistake here, not at the end
+    _answers[:] = [_Answer(result, essentials)]
+
+
+def print_answer(failure: KickctlError | None) -> None:
+    """Print what was shown as one JSON object, on a line of its own.
+
+    Args:
+        failure: What has ended the command, and stands under `error`; None if it has done its work.
+
+    Raises:
+        OSError: Standard output takes nothing.
+    """
+    result, essentials = _answers.pop() if _answers else _Answer({}, "")
+    if failure is not None:
+        result = {**result, "error": _as_dict(failure)}
+        if isinstance(failure, Interrupted) and len(result) > 1:
+            result["interrupted"] = True
+    if result:
+        print_result(json.dumps(result, allow_nan=False), essentials)
+
+
+def print_result(text: str, essentials: str = "") -> None:
+    """Print a result. If nobody takes it, the error has a note with the essentials."""
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        if essentials:
+            error.add_note(essentials)
+        raise
 
 
 def show_next(item: dict[str, Any]) -> None:
     """Give machines the next object of a stream, on a line of its own. An error may end it."""
     print(json.dumps(item, allow_nan=False), flush=True)
+
+
+def _as_dict(failure: KickctlError) -> dict[str, str | int]:
+    return {
+        "message": as_typed(failure.message),
+        "hint": as_typed(failure.hint),
+        "status": failure.status,
+    }
 
 
 def print_table(table: Table) -> None:
@@ -69,37 +115,81 @@ def _endless(console: Any) -> Any:
 
 @contextmanager
 def robot_of(
-    options: argparse.Namespace, *, moves: bool = False, observe: bool = False
+    options: argparse.Namespace, *, moves: bool = False, observe: bool = False, sends: str = ""
 ) -> Iterator[Robot]:
-    """The robot that the options name. If the verb `moves` it, ^C stops its motors."""
-    with connect(options.brick, options.seed, options.token, observe=observe) as robot:
-        robot.on_trouble = say
-        if robot.link.virtual:
-            say(f"simulated robot, embedded ({robot.link.uri}, seed {robot.hello['seed']})")
-        try:
-            yield robot
-        except KeyboardInterrupt:
-            if moves:
-                say(f"interrupted: {robot.stop_at_once().sentence()}")
-            raise
+    """The robot that the options name.
+
+    Args:
+        options: The options of the command line.
+        moves: Whether the verb moves the robot. Then ^C stops its motors.
+        observe: Whether it only looks on, which takes no token.
+        sends: The command to the robot for which the verb is there. What ends the verb early says
+            whether it was sent.
+
+    Yields:
+        The robot.
+    """
+    robot = None
+    try:
+        with connect(options.brick, options.seed, options.token, observe=observe) as robot:
+            robot.on_trouble = say
+            if robot.link.virtual:
+                say(f"simulated robot, embedded ({robot.link.uri}, seed {robot.hello['seed']})")
+            try:
+                yield robot
+            except KeyboardInterrupt:
+                if moves:
+                    with uninterrupted():
+                        say(f"interrupted: {robot.stop_at_once().sentence()}")
+                raise
+    except (KeyboardInterrupt, NoLink) as error:
+        if sends:
+            error.add_note(_account(robot, sends))
+        raise
+
+
+_SENT = {
+    "kick": "kick",
+    "start": "command to start",
+    "clear": "command to clear the fault",
+    "set": "change of parameters",
+}
+
+
+def _account(robot: Robot | None, command: str) -> str:
+    """What was sent to a robot before the verb ended early; None if it was not reached."""
+    name = _SENT[command]
+    if robot is not None and robot.unanswered == command:
+        return f"the {name} was sent, and no answer came: whether the robot obeyed is not known"
+    if robot is None or not robot.confirmed[command]:
+        return f"no {name} was sent"
+    if command != "kick":
+        return f"the {name} was sent, and the robot has confirmed it"
+    kicks = robot.confirmed[command]
+    return (
+        "the kick was sent, its outcome was not watched"
+        if kicks == 1
+        else f"{kicks} kicks were sent, and the outcome of the last was not watched"
+    )
 
 
 def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -> None:
     """The result as JSON if asked for, else as a sentence."""
+    sentence = as_typed(sentence)
     if options.json:
-        show(result)
+        show(result, sentence)
     else:
-        print(sentence)
+        print_result(sentence, sentence)
 
 
-def tell(summary: dict[str, Any]) -> None:
-    """Print the results of a run: claims in sentences, main numbers, accuracies, and its files."""
+def _lines(summary: dict[str, Any]) -> Iterator[str]:
+    """The results of a run: claims in sentences, main numbers, accuracies, and its files."""
     from host.runs.claims import Claim
 
     for claim in summary["claims"]:
-        print(Claim.from_dict(claim).sentence())
+        yield Claim.from_dict(claim).sentence()
     for name, value in _single_values(summary["numbers"]):
-        print(name, f"{value:.10g}" if isinstance(value, float) else value)
+        yield f"{name} {f'{value:.10g}' if isinstance(value, float) else value}"
     for kind, path in (
         ("table", summary["table"]),
         ("numbers", summary["summary"]),
@@ -107,7 +197,7 @@ def tell(summary: dict[str, Any]) -> None:
         *(("file", path) for path in summary["files"]),
     ):
         if path is not None:
-            print(kind, path)
+            yield f"{kind} {path}"
 
 
 def finish(options: argparse.Namespace, summary: dict[str, Any], result: dict[str, Any]) -> int:
@@ -119,18 +209,27 @@ def finish(options: argparse.Namespace, summary: dict[str, Any], result: dict[st
         result: The same as a JSON object.
 
     Returns:
-        The exit status: 1 if a claim does not hold, or the table or the summary is missing.
+        0.
+
+    Raises:
+        NotDone: A claim does not hold, or the table or the summary is missing.
     """
     from host.runs.claims import exit_status
 
+    essentials = f"the results are in {summary['folder']}"
     if options.json:
-        show(result)
+        show(result, essentials)
     else:
-        tell(summary)
+        print_result("\n".join(_lines(summary)), essentials)
     for words in summary["unwritten"].values():
         say(f"kickctl: {words}")
-    lost = summary["table"] is None or summary["summary"] is None
-    return 1 if lost else exit_status(summary["claims"])
+    missing = [name for name in ("table", "summary") if summary[name] is None]
+    if missing:
+        raise NotDone(f"not written: {' and '.join(missing)}", "the same command tries it again")
+    if exit_status(summary["claims"]):
+        failed = [claim["id"] for claim in summary["claims"] if claim["holds"] is False]
+        raise NotDone(f"the measurement contradicts the paper: {', '.join(failed)} does not hold")
+    return 0
 
 
 def _single_values(numbers: Any) -> Iterator[tuple[str, Any]]:

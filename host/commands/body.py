@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from host.commands._failures import os_words
 from host.commands._outputs import add_force, require_place
 from host.commands._recording import figure_words
-from host.commands._terminal import say, show
-from host.errors import KickctlError
+from host.commands._terminal import print_result, say, show
+from host.errors import KickctlError, NotDone
+from host.util.numbers import Number
 from host.util.whole_files import write_text
 
 if TYPE_CHECKING:
@@ -24,12 +25,18 @@ if TYPE_CHECKING:
     from sim_motor.bodies.measures import Summary
 
 HELP = "simulate a car, or a train of cars, with one rod and one neuron for each wheel, in MuJoCo"
+USES = ("seed",)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The body, where it is, and what to make of it."""
     parser.add_argument("body", choices=("car", "train"), help="one car, or a train")
-    parser.add_argument("--cars", type=int, metavar="N", help="length of the train (default 5)")
+    parser.add_argument(
+        "--cars",
+        type=Number("cars", 1, 1000, whole=True),
+        metavar="N",
+        help="length of the train, in cars (default 5)",
+    )
     parser.add_argument(
         "--scene",
         default="flat",
@@ -41,10 +48,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--time",
-        type=float,
+        type=Number("s", 0.01, 36000.0),
         default=30.0,
         metavar="S",
-        help="how long, in simulated seconds (default %(default)s)",
+        help="how long, in s of simulated time (default %(default)s)",
     )
     parser.add_argument(
         "--preset",
@@ -52,15 +59,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="sizes, masses, drag and controller: paper or snake2019 (default %(default)s)",
     )
-    for name, words in (
-        ("a", "gain of the neurons"),
-        ("k", "spring constant of the rods, N"),
-        ("tau", "time constant of the neurons, s"),
-        ("drag", "viscous drag: of bodies, N s/m (paper), or of wheels, N s/rad (snake2019)"),
-        ("angle", "angle of the scene's slopes, rad"),
-        ("torque", "constant torque of every wheel instead of its controller, N m"),
+    for name, unit, words in (
+        ("a", "", "gain of the neurons, without unit"),
+        ("k", "N", "spring constant of the rods, N"),
+        ("tau", "s", "time constant of the neurons, s"),
+        ("drag", "", "viscous drag: of bodies, N s/m (paper), or of wheels, N s/rad (snake2019)"),
+        ("angle", "rad", "angle of the scene's slopes, rad"),
+        ("torque", "N m", "constant torque of every wheel instead of its controller, N m"),
     ):
-        parser.add_argument("--" + name, type=float, metavar="X", help=words)
+        parser.add_argument("--" + name, type=Number(unit), metavar="X", help=words)
     parser.add_argument(
         "--start",
         choices=("pushed", "random"),
@@ -110,8 +117,6 @@ def run(options: argparse.Namespace) -> int:
 
     if options.body == "car" and options.cars not in (None, 1):
         raise WrongUse(f"a car is one car, not {options.cars}", "kickctl body train --cars N")
-    if not 0.01 <= options.time <= 36000.0:
-        raise WrongUse(f"time cannot be {options.time!r}", "give seconds, from 0.01 to 36000")
     cars = options.cars
     if cars is None:
         cars = 1 if options.body == "car" else CARS_OF_A_TRAIN
@@ -154,13 +159,16 @@ def run(options: argparse.Namespace) -> int:
     }
     result = Result(options.out / f"body-{digest(settings)}", request, settings, body, kicks)
     summary, unwritten = _simulate(options, result)
+    essentials = f"the results are in {result.folder}"
     if options.json:
-        show({**result.as_dict(summary), "unwritten": unwritten})
+        show({**result.as_dict(summary), "unwritten": unwritten}, essentials)
     else:
-        _print_summary(summary, result.folder, unwritten)
+        print_result("\n".join(_lines(summary, result.folder, unwritten)), essentials)
     for words in unwritten.values():
         say(f"kickctl: {words}")
-    return 1 if unwritten.keys() - {"body.png", "body.svg"} else 0
+    if missing := sorted(unwritten.keys() - {"body.png", "body.svg"}):
+        raise NotDone(f"not written: {', '.join(missing)}", "make room, and run it again")
+    return 0
 
 
 def _is_scene(path: Path, scene: str) -> bool:
@@ -258,20 +266,21 @@ def _watchers(
     return watchers
 
 
-def _print_summary(summary: Summary, folder: Path, unwritten: dict[str, str]) -> None:
+def _lines(summary: Summary, folder: Path, unwritten: dict[str, str]) -> Iterator[str]:
+    """What the body did, and its files, for people."""
     times = ", ".join(f"{time_s:.1f}" for time_s in summary["reversals"])
-    print(
+    yield (
         f"{summary['time_s']:g} s: {summary['mean_speed']:.3f} m/s, order parameter"
         f" {summary['order_parameter']:.3f}"
     )
-    print(f"{len(summary['reversals'])} reversals" + (f", at {times} s" if times else ""))
+    yield f"{len(summary['reversals'])} reversals" + (f", at {times} s" if times else "")
     if summary["stuck"]:
-        print(
+        yield (
             "in the end it stays where it is: it rests, turns on the spot, or is held; another"
             " --start, --seed or --kick may move it"
         )
     if summary["flipped"]:
-        print("a car fell over")
+        yield "a car fell over"
     for name in ("body.png", "state.csv", "state.mcap"):
         if name not in unwritten:
-            print(folder / name)
+            yield str(folder / name)

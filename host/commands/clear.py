@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Clear the fault; the robot stays stopped."""
-    with robot_of(options) as robot:
+    with robot_of(options, sends="clear") as robot:
         reason = robot.status()["reason"]
         tick = robot.clear()
         answer(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of, say
+from host.errors import NotDone
 
 HELP = (
     "start, roll, and reverse the robot by a kick, and measure some of the paper's claims on the"
@@ -22,11 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Do it all and write one log.
 
-    Returns 1 if the kick did not reverse the robot or a claim does not hold.
+    Raises NotDone if the kick did not reverse the robot or a claim does not hold.
     """
     from host.kicking import manoeuvres as showing
     from host.kicking import robot_claims as claims
-    from host.kicking.outcome import describe, kick_and_watch, title
+    from host.kicking.outcome import describe, kick_and_watch, require_done, title
     from host.kicking.primitives import drive
     from host.link.addresses import sim_options
     from host.logs.log import Log
@@ -34,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     from host.util.progress import progress
 
     with (
-        robot_of(options, moves=True) as robot,
+        robot_of(options, moves=True, sends="kick") as robot,
         recorded(robot, "demo") as recording,
         progress("demo", 4) as advance,
     ):
@@ -68,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     ]
     foreign = setting.elsewhere(**claims.PAPER)
     report = [claim.doubted(foreign) for claim in measured]
-    failed = not outcome.reversed or any(claim.holds is False for claim in report)
+    failed = [claim.id for claim in report if claim.holds is False]
 
     def draw(path: Path) -> Path:
         from host.figures.robot.kick import KICK_WINDOW_S, draw
@@ -83,4 +84,7 @@ def run(options: argparse.Namespace) -> int:
     }
     sentences = [*(claim.sentence() for claim in report), describe(outcome)]
     conclude(options, result, "\n".join(sentences), recording, draw)
-    return 1 if failed or recording.failure else 0
+    if failed:
+        raise NotDone(f"the measurement contradicts the paper: {', '.join(failed)} does not hold")
+    require_done(outcome)
+    return 0

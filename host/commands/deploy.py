@@ -11,6 +11,7 @@ from host.link.logins import parse_login
 from host.util.installation import DEPLOY_SCRIPT, kickctl_command
 
 HELP = "bring the robot's program to a brick over ssh, and start it there"
+USES = ("brick", "token")
 
 # The options of deploy.sh, which does the work.
 OPTIONS = {

@@ -2,12 +2,15 @@
 
 import argparse
 
-from host.commands._terminal import say, show
+from host.commands._terminal import show
+from host.errors import NoLink
+from host.util.numbers import Number
 
 HELP = "look for robots in the network"
+USES = ()
 
-NOBODY = """\
-no robot has answered. What to try:
+WHAT_TO_TRY = """\
+What to try:
   Is the brick on, and in this network? Its screen shows its address at the top:
     kickctl --brick ssh://robot@ADDRESS status
   With a USB cable: choose "Wired" in the brick's menu Wireless and Networks, then
@@ -20,15 +23,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add how long to listen."""
     parser.add_argument(
         "--seconds",
-        type=float,
+        type=Number("s", 0.1, 3600.0),
         default=4.0,
         metavar="S",
-        help="how long to listen (default %(default)s)",
+        help="how long to listen, s (default %(default)s)",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the robots and bricks that answer, robots first. Returns 3 if none does."""
+    """Print the robots and bricks that answer, robots first. Raises NoLink if none does."""
     from host.link.discovery import look_around
 
     found = look_around(options.seconds)
@@ -38,5 +41,5 @@ def run(options: argparse.Namespace) -> int:
         if not options.json:
             print(f"{robot.uri}  ({robot.name}: {robot.kind})")
     if not found:
-        say(NOBODY)
-    return 0 if found else 3
+        raise NoLink("no robot has answered", WHAT_TO_TRY)
+    return 0

@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from host.client.robot import Robot, connect
+from host.commands._hints import as_typed
 from host.commands._terminal import show
-from host.errors import KickctlError
+from host.errors import KickctlError, NotDone
 from host.util import requirements
 from host.util.installation import deploy_command, install_command
 from robot import __version__
@@ -48,24 +49,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Check everything without moving anything.
 
-    Returns:
-        0 if all is well, 1 if something needs mending, or the exit status of the error that keeps
-        the robot out of reach.
+    Raises:
+        KickctlError: Something needs mending, or the robot is out of reach.
     """
     findings = [*_machine(), *_token(options.token)]
-    status = 0
+    failure: KickctlError | None = None
     try:
         with connect(options.brick, options.seed, options.token) as robot:
             findings += _robot(robot)
     except KickctlError as error:
         findings.append(Finding("robot", error.message, error.hint or "see above"))
-        status = error.status
+        failure = error
     except ImportError as error:
         findings.append(Finding("robot", f"not tried: {error}", "install the libraries first"))
     if options.json:
         show(
             {
-                "findings": [asdict(finding) for finding in findings],
+                "findings": [
+                    {**asdict(finding), "remedy": as_typed(finding.remedy)} for finding in findings
+                ],
                 "well": not any(finding.remedy for finding in findings),
             }
         )
@@ -73,9 +75,14 @@ def run(options: argparse.Namespace) -> int:
         for finding in findings:
             print(
                 f"{'!!' if finding.remedy else 'ok'}  {finding.what}: {finding.found}"
-                + (f"\n      {finding.remedy}" * bool(finding.remedy))
+                + (f"\n      {as_typed(finding.remedy)}" * bool(finding.remedy))
             )
-    return status or int(any(finding.remedy for finding in findings))
+    if failure is not None:
+        raise failure
+    ill = [finding.what for finding in findings if finding.remedy]
+    if ill:
+        raise NotDone(f"not well: {', '.join(ill)}", "the answer says what to do")
+    return 0
 
 
 def _machine() -> Iterator[Finding]:

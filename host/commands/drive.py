@@ -6,6 +6,7 @@ from pathlib import Path
 from host.commands._motor import add_motor
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
+from host.errors import NotDone
 
 HELP = "bring the robot into a motion primitive by kicks, or to rest by the spring constant k"
 
@@ -19,12 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Start the robot if it does not run, and drive there. Returns 1 if it did not get there."""
+    """Start the robot if it does not run, and drive there. Raises NotDone if it gets nowhere."""
     from host.kicking.outcome import require_running
     from host.kicking.primitives import drive
     from host.kicking.robot_motor import motor_of
 
-    with robot_of(options, moves=True) as robot:
+    with robot_of(options, moves=True, sends="kick") as robot:
         # Before anything moves.
         motor = None if options.primitive == "stopped" else motor_of(robot, options.motor)
         if robot.status()["state"] in ("idle", "stopped"):
@@ -51,4 +52,6 @@ def run(options: argparse.Namespace) -> int:
         return draw(recording.log, path, f"Driven to {options.primitive}: {how}")
 
     conclude(options, result, sentence, recording, draw)
-    return 0 if result["reached"] and not recording.failure else 1
+    if not result["reached"]:
+        raise NotDone(f"the robot did not reach {options.primitive}", "try again")
+    return 0

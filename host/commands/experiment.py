@@ -9,6 +9,8 @@ from host.experiments.registry import TABLE
 from host.runs.registry import add_options, options_given
 
 HELP = "run one of the experiments: logs, a table, a figure, and the paper's claims, measured"
+# It sets the parameters of its robots itself.
+USES = ("brick", "seed", "token")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,14 +18,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     names = parser.add_subparsers(metavar="NAME", required=True, dest="experiment")
     for name, entry in TABLE.items():
         own = names.add_parser(
-            name, help=entry.help, description=entry.help, parents=[common(defaults=False)]
+            name,
+            help=entry.help,
+            description=entry.help,
+            parents=[common(defaults=False, used=USES)],
         )
         add_options(own, entry)
         add_effort(own, name, entry)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it or resume it. Returns 1 if a claim does not hold."""
+    """Run it or resume it. Raises NotDone if a claim does not hold."""
     from host.perform.run import perform
 
     name = options.experiment

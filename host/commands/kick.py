@@ -4,12 +4,22 @@ import argparse
 from pathlib import Path
 
 from host.commands._recording import conclude, recorded
-from host.commands._terminal import robot_of, say
+from host.commands._terminal import robot_of
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
+from host.util.numbers import Number
 from robot.errors import Refused
 from robot.kick_requests import parse
-from robot.kicks import DEFAULT_TICKS, MODES, PULSED, RECTANGULAR, SMOOTH, WHEELS
+from robot.kicks import (
+    DEFAULT_TICKS,
+    MAX_JUMP,
+    MAX_TICKS,
+    MODES,
+    PULSED,
+    RECTANGULAR,
+    SMOOTH,
+    WHEELS,
+)
 from robot.params import Params
 
 HELP = "kick the robot, and say whether it reversed"
@@ -20,7 +30,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     lengths = ", ".join(f"{mode} {ticks}" for mode, ticks in DEFAULT_TICKS.items())
     parser.add_argument("--mode", choices=MODES, required=True, help="which kick")
     parser.add_argument(
-        "--ticks", type=int, metavar="N", help=f"how long, in control periods (default: {lengths})"
+        "--ticks",
+        type=Number("control periods", 1, MAX_TICKS, whole=True),
+        metavar="N",
+        help=f"how long, in control periods (default: {lengths})",
     )
     parser.add_argument(
         "--wheel",
@@ -32,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--shift",
         type=parse_angle,
         metavar="RAD",
-        help="phase: the shift, such as -3pi/4 (default: 3pi/4, with the sign that reverses)",
+        help="phase: the shift, rad, such as -3pi/4 (default: 3pi/4, with the sign that reverses)",
     )
     parser.add_argument(
         "--shape", choices=(RECTANGULAR, SMOOTH), help="shape of a pulse (default rectangular)"
@@ -41,10 +54,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--param", choices=sorted(PULSED), help="pulse: the parameter that it changes"
     )
     parser.add_argument(
-        "--value", type=float, help="pulse: the value of the parameter at the height of the pulse"
+        "--value",
+        type=Number(),
+        help=(
+            "pulse: the value of the parameter at the height of the pulse, in the unit that"
+            " `kickctl params list` shows"
+        ),
     )
     parser.add_argument("--variable", choices=("x1", "x2"), help="jump: the membrane potential")
-    parser.add_argument("--delta", type=float, help="jump: how far it jumps")
+    parser.add_argument(
+        "--delta",
+        type=Number("", -MAX_JUMP, MAX_JUMP),
+        help="jump: how far the potential jumps; potentials have no unit",
+    )
     parser.add_argument(
         "--now",
         action="store_true",
@@ -53,11 +75,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Kick, and write a log and a figure. Returns 1 if a kicked wheel did not reverse."""
+    """Kick, and write a log and a figure. Raises NotDone if a kicked wheel did not reverse."""
     from host.kicking.outcome import (
-        advice,
         describe,
         kick_and_watch,
+        require_done,
         require_running,
         title,
         wait_settled,
@@ -68,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
         for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")
     }
     _check(options.mode, options.wheel, details)
-    with robot_of(options, moves=True) as robot:
+    with robot_of(options, moves=True, sends="kick") as robot:
         require_running(robot)
         with recorded(robot, _in_name(options)) as recording:
             if not options.now and not wait_settled(robot):
@@ -89,9 +111,8 @@ def run(options: argparse.Namespace) -> int:
 
     result = {**outcome.as_dict(), "brick": brick, "seed": seed}
     conclude(options, result, describe(outcome), recording, draw)
-    if not outcome.reversed:
-        say("the robot did not reverse" + advice(outcome))
-    return 0 if outcome.reversed and not recording.failure else 1
+    require_done(outcome)
+    return 0
 
 
 def _in_name(options: argparse.Namespace) -> str:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from host.commands import _log_pictures
 from host.commands._log_damage import damage_facts, damage_status
-from host.commands._options import common
+from host.commands._options import EVERY, common
 from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._terminal import answer, robot_of, say, show
-from host.errors import WrongUse
+from host.errors import NotDone, WrongUse
 from host.util.whole_files import descriptor_of
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the actions, each with its own arguments."""
     actions: Any = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
 
-    def action(name: str, words: str) -> argparse.ArgumentParser:
-        parents = [common(defaults=False)]
+    def action(name: str, words: str, used: tuple[str, ...] = ()) -> argparse.ArgumentParser:
+        parents = [common(defaults=False, used=used)]
         own: argparse.ArgumentParser = actions.add_parser(
             name, parents=parents, help=words, description=words
         )
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     listing = action("list", "list the logs in a folder")
     listing.add_argument("folder", nargs="?", type=Path, help="the folder (default: logs/ here)")
-    pull = action("pull", "fetch the last minutes from the robot's black box")
+    pull = action("pull", "fetch the last minutes from the robot's black box", EVERY)
     pull.add_argument(
         "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
     )
@@ -86,7 +86,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the action. `replay` returns 1 if the controller computes something else."""
+    """Run the action. `replay` raises NotDone if the controller computes something else."""
     actions = {
         "list": _list,
         "pull": _pull,
@@ -209,7 +209,10 @@ def _replay(options: argparse.Namespace) -> int:
         f" comparable, {result.missing} missing)"
     )
     answer(options, facts, sentence)
-    return damage_status(log) or (0 if result.reproduced else 1)
+    damage_status(log)
+    if not result.reproduced:
+        raise NotDone(f"the controller does not compute what {log.path} says", _verdict(result))
+    return 0
 
 
 def _recover(options: argparse.Namespace) -> int:

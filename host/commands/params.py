@@ -5,7 +5,7 @@ from typing import Any
 
 from host.client.robot import Robot
 from host.commands._rest import explain_rest
-from host.commands._terminal import print_table, robot_of, say, show
+from host.commands._terminal import print_result, print_table, robot_of, say, show
 from host.errors import WrongUse
 from host.link.settings import parse_setting
 
@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
             "see kickctl params --help",
         )
     changes = dict(map(parse_setting, options.names)) if options.action == "set" else {}
-    with robot_of(options) as robot:
+    with robot_of(options, sends="set" if options.action in ("set", "reset") else "") as robot:
         rows = {row["name"]: row for row in robot.describe("params")}
         names = list(changes) or options.names or list(rows)
         for name in names:
@@ -50,11 +50,13 @@ def run(options: argparse.Namespace) -> int:
             show({"params": table})
         else:
             _print_table(table)
-    elif options.json:
-        show({name: values[name] for name in names})
+        return 0
+    lines = [f"{name} = {values[name]} {_shown_unit(rows[name])}".rstrip() for name in names]
+    essentials = f"the robot has set {', '.join(lines)}" if changes else ""
+    if options.json:
+        show({name: values[name] for name in names}, essentials)
     else:
-        for name in names:
-            print(f"{name} = {values[name]} {_shown_unit(rows[name])}".rstrip())
+        print_result("\n".join(lines), essentials)
     return 0
 
 

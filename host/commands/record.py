@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.commands._terminal import answer, robot_of, say
-from host.errors import Interrupted, KickctlError, RobotFault, WrongUse, printable
+from host.commands._terminal import answer, robot_of
+from host.errors import Interrupted, KickctlError, RobotFault, printable
+from host.logs.tap import Span
+from host.util.numbers import Number
 from robot.record import Record
 
 if TYPE_CHECKING:
@@ -19,7 +22,9 @@ HELP = "record every tick of the robot into a log"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """How long, and where to."""
-    parser.add_argument("seconds", type=float, help="how long, in the robot's time")
+    parser.add_argument(
+        "seconds", type=Number("s", 0.001, 1e6), help="how long, in s of the robot's time"
+    )
     parser.add_argument(
         "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
     )
@@ -51,20 +56,19 @@ class Tally:
 def run(options: argparse.Namespace) -> int:
     """Record. An interrupt ends it early, and what was recorded is kept.
 
-    Returns:
-        The exit status: 130 after an interrupt, 5 if the robot fell into a fault meanwhile.
+    Raises:
+        Interrupted: The recording was interrupted.
+        RobotFault: The robot fell into a fault meanwhile.
     """
-    if not 0.0 < options.seconds < 1e6:
-        raise WrongUse(f"cannot record {options.seconds:g} s", "give a number of seconds above 0")
     tally = Tally()
     path: Path | None = None
     interrupted = False
     try:
         with robot_of(options) as robot, _new_log(options.out, robot.info()) as tap:
             path = tap.path
-            robot.add_tap(tap)
-            robot.add_tap(tally)
-            _wait(robot, options.seconds)
+            span = Span(options.seconds, tap, tally)
+            robot.add_tap(span)
+            _wait(robot, options.seconds, span)
     except KeyboardInterrupt:
         if path is None:  # there is no log yet
             raise
@@ -75,8 +79,13 @@ def run(options: argparse.Namespace) -> int:
         raise
     _answer(options, path, tally, interrupted=interrupted)
     if interrupted:
-        return Interrupted.status
-    return RobotFault.status if tally.fault else 0
+        raise Interrupted("interrupted", "the log holds what was recorded until then")
+    if tally.fault:
+        raise RobotFault(
+            f"fault on the robot meanwhile: {printable(tally.fault)}",
+            "mend the cause, then: kickctl clear, kickctl start",
+        )
+    return 0
 
 
 def _new_log(out: Path | None, info: dict[str, Any]) -> McapTap:
@@ -88,7 +97,7 @@ def _new_log(out: Path | None, info: dict[str, Any]) -> McapTap:
     return in_folder("record", info, lambda path: McapTap(path, info))
 
 
-def _wait(robot: Robot, seconds: float) -> None:
+def _wait(robot: Robot, seconds: float, span: Span) -> None:
     """Wait while the robot is recorded, and show how much is left."""
     from host.util.progress import progress
 
@@ -99,10 +108,10 @@ def _wait(robot: Robot, seconds: float) -> None:
             nonlocal began
             began = began or robot.newest
             if began is not None and robot.newest is not None:
-                advance(robot.newest.t_s - began.t_s)
-            return False
+                advance(min(seconds, robot.newest.t_s - began.t_s))
+            return span.complete
 
-        robot.wait(seconds, until=report)
+        robot.wait(inf, until=report)
 
 
 def _answer(
@@ -123,7 +132,4 @@ def _answer(
     )
     if tally.fault:
         facts["fault"] = tally.fault
-        more += f"\nfault on the robot meanwhile: {printable(tally.fault)}"
-    if interrupted:
-        say("kickctl: interrupted; the log holds what was recorded until then")
     answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{more}")

@@ -4,6 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from host.commands._terminal import print_table, say, show
+from host.errors import NotDone
 
 if TYPE_CHECKING:
     from host.runs.claims import Claim
@@ -12,6 +13,8 @@ HELP = (
     "measure all of the paper's claims about the robot and its model, and write a report with"
     " figures"
 )
+# It sets the parameters of its robots itself.
+USES = ("brick", "seed", "token")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,12 +39,17 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         claims = [claim.as_dict() for claim in done.claims]
         page = done.page and str(done.page)
-        show({"claims": claims, "skipped": done.skipped, "report": page})
+        show(
+            {"claims": claims, "skipped": done.skipped, "report": page},
+            f"report {page}" if page else "",
+        )
     else:
         _print(done.claims, done.skipped)
         if done.page is not None:
             print(f"report {done.page}")
-    return 0 if done.page is not None else 1
+    if done.page is None:
+        raise NotDone("the report is not written", "make room, and run the same command again")
+    return 0
 
 
 def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._recording import recorded
-from host.commands._terminal import robot_of, say
+from host.commands._terminal import robot_of
 
 HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverses it"
 
@@ -25,20 +25,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Kick the robot, keep the log, and draw the left wheel around the kick.
 
-    Returns:
-        The exit status: 1 if the robot did not reverse.
+    Raises:
+        NotDone: The robot did not reverse.
     """
     from host.errors import NotDone
     from host.figures.robot.rods import SIZE, pictures
     from host.films.movie import FPS, Movie
     from host.films.rod_course import SLOWER, WINDOW_S, course
-    from host.kicking.outcome import describe, kick_and_watch, require_running, wait_settled
+    from host.kicking.outcome import (
+        describe,
+        kick_and_watch,
+        require_done,
+        require_running,
+        wait_settled,
+    )
     from host.util.progress import progress
     from robot.kicks import PHASE
 
     require_place(options, options.out)
     with Movie(options.out, SIZE, new=not options.force) as movie:
-        with robot_of(options, moves=True) as robot:
+        with robot_of(options, moves=True, sends="kick") as robot:
             require_running(robot)
             with recorded(robot, "rods") as recording:
                 log = recording.log
@@ -58,6 +64,6 @@ def run(options: argparse.Namespace) -> int:
     result = {**outcome.as_dict(), "log": str(recording.path), "film": str(options.out)}
     words = f"{describe(outcome)}\nlog {recording.path}\nfilm {options.out}"
     answer_beside(options, options.out, result, words)
-    if recording.failure:
-        say(f"kickctl: {recording.failure}")
-    return 0 if outcome.reversed and not recording.failure else 1
+    recording.require_whole()
+    require_done(outcome)
+    return 0

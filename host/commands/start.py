@@ -13,7 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Start the robot. A robot elsewhere keeps running when this program has ended."""
-    with robot_of(options, moves=True) as robot:
+    with robot_of(options, moves=True, sends="start") as robot:
         if robot.link.virtual and robot.status()["state"] == "running":
             robot.stop()
         tick = robot.start()

@@ -13,7 +13,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the status. Returns 5 if the robot is in fault."""
+    """Print the status. Raises RobotFault if the robot is in fault."""
+    from host.kicking.outcome import require_no_fault
+
     with robot_of(options) as robot:
         status = dict(
             robot.status(),
@@ -42,4 +44,5 @@ def run(options: argparse.Namespace) -> int:
             if count:
                 late = f"over {1000 * least:g}" if edge is None else f"at most {1000 * edge:g}"
                 print(f"  began {late} ms late: {count}")
-    return 5 if status["state"] == "fault" else 0
+    require_no_fault(status)
+    return 0

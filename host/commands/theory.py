@@ -11,6 +11,7 @@ HELP = (
     "study the paper's model of a wheel: fixpoints, bifurcations, portraits, phase diagram, chaos,"
     " basins"
 )
+USES = ("seed",)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,14 +20,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for name, entry in TABLE.items():
         add_options(
             names.add_parser(
-                name, help=entry.help, description=entry.help, parents=[common(defaults=False)]
+                name,
+                help=entry.help,
+                description=entry.help,
+                parents=[common(defaults=False, used=USES)],
             ),
             entry,
         )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run it or resume it. Returns 1 if a claim does not hold.
+    """Run it or resume it. Raises NotDone if a claim does not hold.
 
     With --json the numbers stand beside the fields of the summary; a list of them has the study's
     name.

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import time
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING, Any
 
 from host.client.robot import Robot
 from host.commands._terminal import robot_of
-from host.errors import WrongUse
+from host.util.numbers import Number
 from robot.kicks import WHEELS
 from robot.record import KICK_NAMES, STATES, Record
 
@@ -29,10 +29,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add how long to watch."""
     parser.add_argument(
         "--seconds",
-        type=float,
-        default=float("inf"),
+        type=Number("s", 0.001, 1e9),
+        default=inf,
         metavar="S",
-        help="how long to watch, in the robot's time (default: until ^C)",
+        help="how long to watch, in s of the robot's time (default: until ^C)",
     )
 
 
@@ -42,10 +42,6 @@ def run(options: argparse.Namespace) -> int:
 
     from host.commands._terminal import show_next
 
-    if not options.seconds > 0.0:
-        raise WrongUse(
-            f"cannot watch for {options.seconds:g} s", "give a number of seconds above 0"
-        )
     with robot_of(options) as robot:
         robot.wait(REFRESH_S)
         start_s = robot.recent()[0].t_s

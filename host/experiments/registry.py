@@ -13,8 +13,8 @@ BODIES = {
         "trains of five cars from random wheel phases: order parameter against time, and which way"
         " each goes",
         (
-            Option("seeds", 20, 1, 10000, "trains of each preset"),
-            Option("seconds", 15.0, 2.0, 600.0, "how long each runs"),
+            Option("seeds", 20, 1, 10000, "number of trains of each preset"),
+            Option("seconds", 15.0, 2.0, 600.0, "how long each runs, s"),
         ),
         ("B2",),
     ),
@@ -22,8 +22,8 @@ BODIES = {
         "a train between two walls, dead and bouncy: reversals and leg times, beside a train with"
         " constant torque",
         (
-            Option("seeds", 3, 1, 1000, "trains of each kind"),
-            Option("seconds", 60.0, 10.0, 3600.0, "how long each runs"),
+            Option("seeds", 3, 1, 1000, "number of trains of each kind"),
+            Option("seconds", 60.0, 10.0, 3600.0, "how long each runs, s"),
         ),
         ("B3",),
     ),
@@ -31,32 +31,32 @@ BODIES = {
         "a train between four slopes, over their angle and k: reversals, coherence, whether it"
         " stays inside",
         (
-            Option("seeds", 2, 1, 1000, "trains of each kind"),
-            Option("seconds", 30.0, 10.0, 3600.0, "how long each runs"),
+            Option("seeds", 2, 1, 1000, "number of trains of each kind"),
+            Option("seconds", 30.0, 10.0, 3600.0, "how long each runs, s"),
         ),
     ),
     "train-wiggle": Entry(
         "the travelling wave along a fast train's joints: amplitude, frequency, lag, beside the"
         " authors' program",
-        (Option("seconds", 60.0, 10.0, 3600.0, "how long each train runs"),),
+        (Option("seconds", 60.0, 10.0, 3600.0, "how long each train runs, s"),),
     ),
     "train-kick": Entry(
         "how many wheels of a running train must be kicked, and for how long, to reverse all of it",
         (
-            Option("trials", 4, 1, 10000, "tries of each kick"),
+            Option("trials", 4, 1, 10000, "number of tries of each kick"),
             Option("preset", "paper", 0, 0, "which train", ("paper", "snake2019")),
         ),
     ),
     "train-goal": Entry(
         "drive a train to goals by kicks that it has learned, beside random kicks and none",
-        (Option("goals", 10, 1, 1000, "goals, each from a start of its own"),),
+        (Option("goals", 10, 1, 1000, "number of goals, each from a start of its own"),),
     ),
     "train-fault": Entry(
         "a train with one wheel weaker or dead, or with wheels of different size: order, speed,"
         " turning",
         (
-            Option("seeds", 2, 1, 1000, "trains of each kind"),
-            Option("seconds", 30.0, 5.0, 3600.0, "how long each runs"),
+            Option("seeds", 2, 1, 1000, "number of trains of each kind"),
+            Option("seconds", 30.0, 5.0, 3600.0, "how long each runs, s"),
             Option("preset", "snake2019", 0, 0, "which train", ("paper", "snake2019")),
         ),
     ),
@@ -64,16 +64,16 @@ BODIES = {
         "the car between four slopes for ten minutes: its way, and whether it stays inside and on"
         " its wheels",
         (
-            Option("seeds", 3, 1, 1000, "cars on slopes of each angle"),
-            Option("seconds", 600.0, 10.0, 36000.0, "how long each drives"),
+            Option("seeds", 3, 1, 1000, "number of cars on slopes of each angle"),
+            Option("seconds", 600.0, 10.0, 36000.0, "how long each drives, s"),
         ),
         ("B1",),
     ),
     "car-route": Entry(
         "rest, forth-and-back and rolling of the car over k, and its speed beside the formula",
         (
-            Option("seeds", 6, 1, 1000, "starts for each k"),
-            Option("seconds", 15.0, 6.0, 600.0, "how long each drives"),
+            Option("seeds", 6, 1, 1000, "number of starts for each k"),
+            Option("seconds", 15.0, 6.0, 600.0, "how long each drives, s"),
         ),
     ),
 }
@@ -82,19 +82,19 @@ ROBOT = {
     "primitives": Entry(
         "all motion primitives from each other by kicks, stopped and back: success rates and times,"
         " speed, duty, torque",
-        (Option("trials", 10, 1, 1000, "tries of each transition"),),
+        (Option("trials", 10, 1, 1000, "number of tries of each transition"),),
         ("R1", "R2", "R3", "R4", "R7"),
     ),
     "timeline": Entry(
         "the three kicks one after the other: potentials, torque, settling times, and the phase"
         " slip between the wheels",
-        (Option("trials", 25, 1, 10000, "rounds of the three kicks, there and back"),),
+        (Option("trials", 25, 1, 10000, "number of rounds of the three kicks, there and back"),),
         ("R11", "R12"),
     ),
     "reliability": Entry(
         "how reliably kicks of 1 to 10 ticks reverse a wheel: position, phase of both signs, and"
         " membrane",
-        (Option("trials", 50, 1, 100000, "kicks at each point"),),
+        (Option("trials", 50, 1, 100000, "number of kicks at each point"),),
         ("R8", "R9", "R10"),
     ),
     "kick-map": Entry(
@@ -105,19 +105,19 @@ ROBOT = {
     "bifurcation": Entry(
         "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable"
         " branch between",
-        (Option("points", 33, 5, 1000, "values of k in each sweep"),),
+        (Option("points", 33, 5, 1000, "number of values of k in each sweep"),),
         ("R5", "R6"),
     ),
     "wall": Entry(
         "a robot with k = 2 between two walls, which reverses by itself; grip, wall stiffness and k"
         " vary",
-        (Option("bounces", 50, 1, 10000, "bounces to count"),),
+        (Option("bounces", 50, 1, 10000, "number of bounces to count"),),
         ("R13",),
     ),
     "chaos": Entry(
         "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and where motor"
         " latency and inertia make it chaotic",
-        (Option("minutes", 10.0, 1.0, 600.0, "length of the series"),),
+        (Option("minutes", 10.0, 1.0, 600.0, "length of the series, minutes"),),
         ("R14",),
     ),
     "starts": Entry(
@@ -127,7 +127,7 @@ ROBOT = {
     ),
     "calibrate": Entry(
         "identify this robot's motor from a drive, and write it as a file for sim://?motor=mine",
-        (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about"),),
+        (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about, s"),),
     ),
 }
 

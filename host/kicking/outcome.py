@@ -79,14 +79,19 @@ def wait_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> bool:
     return robot.wait(patience_s, until=lambda: all_settled(robot))
 
 
-def require_running(robot: Robot) -> None:
-    """Raise NotDone if the robot does not run, and RobotFault if it is in fault."""
-    status = robot.status()
+def require_no_fault(status: dict[str, Any]) -> None:
+    """Raise RobotFault if a robot with this status is in fault."""
     if status["state"] == "fault":
         raise RobotFault(
             f"the robot is in fault: {status['reason']}",
             "mend the cause, then: kickctl clear, kickctl start",
         )
+
+
+def require_running(robot: Robot) -> None:
+    """Raise NotDone if the robot does not run, and RobotFault if it is in fault."""
+    status = robot.status()
+    require_no_fault(status)
     if status["state"] != "running":
         raise NotDone(
             f"the robot does not run: it is {status['state']} ({status['reason']})",
@@ -157,17 +162,23 @@ def title(outcome: Outcome) -> str:
     )
 
 
+def require_done(outcome: Outcome) -> None:
+    """Raise NotDone if the kick did not reverse the robot."""
+    if not outcome.reversed:
+        raise NotDone("the robot did not reverse", advice(outcome))
+
+
 def advice(outcome: Outcome) -> str:
     """What may help after a kick that did not reverse the robot; empty if that is not clear."""
     kicked = WHEELS if outcome.wheel == "both" else (outcome.wheel,)
     resting = [side for side in kicked if outcome.before[side] == STOPPED]
     if resting:
         return (
-            f": the {' and '.join(resting)} wheel rested before the kick, so there was nothing to"
+            f"the {' and '.join(resting)} wheel rested before the kick, so there was nothing to"
             " reverse; `kickctl drive forward` makes it roll"
         )
     if outcome.mode in (PHASE, POSITION) and not 3 <= outcome.ticks <= 5:
-        return f": {outcome.mode} kicks work best at 3 to 5 ticks"
+        return f"{outcome.mode} kicks work best at 3 to 5 ticks"
     return ""
 
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.util.arguments import shown
+from host.util.numbers import Number
 
 
 class Option(NamedTuple):
@@ -64,6 +65,10 @@ def _type(option: Option) -> type:
     return float if option.default is None else type(option.default)
 
 
+def _number(option: Option) -> Number:
+    return Number("", option.least, option.most, whole=isinstance(option.default, int))
+
+
 def _value(option: Option, value: Any) -> Any:
     if value is None and option.default is None:
         return None
@@ -93,7 +98,7 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
         own: dict[str, Any] = (
             {"choices": option.choices}
             if option.choices
-            else {"type": _type(option), "metavar": "N"}
+            else {"type": _number(option), "metavar": "N"}
         )
         words = option.doc + ("" if option.default is None else f" (default {option.default})")
         parser.add_argument(

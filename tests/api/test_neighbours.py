@@ -107,15 +107,23 @@ def test_a_part_that_is_missing(tmp_path):
 @pytest.mark.parametrize("arguments", [("--version",), ("status", "--json"), ()])
 def test_the_command_says_it_without_a_traceback(tmp_path, entry, arguments):
     other = robot_framework(tmp_path / "site-packages")
-    for command in ((str(entry),), ("-m", "kickctl")):
+    for command in ((str(entry),), ("-m", "kickctl"), ("-m", "host")):
         out, err = run(*command, *arguments, cwd=tmp_path, path=[other, ROOT], status=2)
         assert err.startswith("kickctl: Python takes another 'robot'")
         assert "Traceback" not in err
         assert out == ""
 
 
+def test_a_foreign_file_beside_python_m_host_is_said_without_a_traceback(tmp_path):
+    (tmp_path / "robot.py").write_text("raise RuntimeError('imported')\n")
+    out, err = run("-m", "host", "status", cwd=tmp_path, path=[ROOT], status=2)
+    assert err.startswith("kickctl: Python takes another 'robot'")
+    assert "Traceback" not in err
+    assert out == ""
+
+
 def test_the_command_works_where_nothing_is_foreign(tmp_path, entry):
-    for command in ((str(entry),), ("-m", "kickctl")):
+    for command in ((str(entry),), ("-m", "kickctl"), ("-m", "host")):
         out, _ = run(*command, "--version", cwd=tmp_path, path=[ROOT], status=0)
         assert out.startswith("kickctl ")
 

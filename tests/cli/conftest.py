@@ -1,8 +1,13 @@
-"""kickctl run in this process, in an empty folder."""
+"""kickctl run in this process or as one of its own, in an empty folder."""
+
+import os
+import subprocess
+import sys
 
 import pytest
 
 from host.cli import main
+from tests.lint.sources import ROOT
 
 
 @pytest.fixture
@@ -21,4 +26,27 @@ def kickctl(capsys, tmp_path, monkeypatch):
         return status, captured.out, captured.err
 
     run.folder = tmp_path
+    return run
+
+
+KICKCTL = f"{sys.executable} -m host"
+
+
+@pytest.fixture
+def shell(tmp_path):
+    """Run a line of shell with kickctl in it: (exit status, standard output, standard error)."""
+
+    def run(line, **environment):
+        done = subprocess.run(
+            ["sh", "-c", line.replace("kickctl", KICKCTL)],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+            capture_output=True,
+            text=True,
+            timeout=100,
+            check=False,
+        )
+        assert "Traceback" not in done.stdout + done.stderr
+        return done.returncode, done.stdout, done.stderr
+
     return run

@@ -165,7 +165,7 @@ def test_reliability_ends_with_its_claims_and_files(kickctl):
     ("arguments", "status", "words"),
     [
         (("experiment", "reliability", "--trials", "0"), 2, "trials cannot be 0"),
-        (("experiment", "reliability", "--trials", "many"), 2, "invalid int"),
+        (("experiment", "reliability", "--trials", "many"), 2, "trials cannot be 'many'"),
         (("experiment", "reliabilty"), 2, "invalid choice"),
         (("experiment", "reliability", "--brick", "ftp://x"), 2, "no address of a robot"),
         (("experiment", "reliability", "--brick", "sim://?motor=none"), 2, "none"),

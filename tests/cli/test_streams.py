@@ -15,28 +15,6 @@ from mcap.reader import make_reader
 from host.logs.log import Log
 from tests.lint.sources import ROOT
 
-KICKCTL = f"{sys.executable} -m host"
-
-
-@pytest.fixture
-def shell(tmp_path):
-    """Run a line of shell with kickctl in it: (exit status, standard output, standard error)."""
-
-    def run(line, **environment):
-        done = subprocess.run(
-            ["sh", "-c", line.replace("kickctl", KICKCTL)],
-            cwd=tmp_path,
-            env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-            capture_output=True,
-            text=True,
-            timeout=100,
-            check=False,
-        )
-        assert "Traceback" not in done.stdout + done.stderr
-        return done.returncode, done.stdout, done.stderr
-
-    return run
-
 
 def test_words_for_a_closed_standard_error_are_not_mixed_with_the_answer(shell):
     status, out, _ = shell("kickctl kick --mode phase --seed 1 --json 2>&-")

@@ -219,7 +219,7 @@ def test_the_embedded_robot_begins_with_the_parameters_that_it_is_given(kickctl,
         (("status", "--set", "=2"), "'=2' sets nothing"),
         (("status", "--set", "mass=2"), "no option 'mass'"),
         (("status", "--set", "k=2", "--brick", "tcp://127.0.0.1:1"), "params set k=2"),
-        (("experiment", "timeline", "--set", "k=2"), "says k"),
+        (("experiment", "timeline", "--set", "k=2"), "sets those of its robots itself"),
         (("discover", "--set", "k=2"), "`kickctl discover` has none"),
     ],
 )

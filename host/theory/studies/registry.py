@@ -8,11 +8,11 @@ from __future__ import annotations
 from host.runs.registry import Entry, Option
 
 # The constants of a wheel, by the paper's letters.
-A = Option("a", 4.0, 0.0, 100.0, "gain of the neurons")
+A = Option("a", 4.0, 0.0, 100.0, "gain of the neurons, without unit")
 TAU = Option("tau", 0.25, 1e-6, 1e3, "time constant of the membrane potentials, s")
-K = Option("k", 1.85, 0.0, 1e4, "spring constant of the rods")
-F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel")
-I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel")  # noqa: E741
+K = Option("k", 1.85, 0.0, 1e4, "spring constant of the rods, without unit")
+F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel, s (its torque has no unit)")
+I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel, s^2 (its torque has no unit)")  # noqa: E741
 # The paper's constants, for which its claims are made.
 PAPER = {option.name: option.default for option in (A, TAU, F, I)}
 
@@ -36,7 +36,10 @@ TABLE = {
             TAU,
             K._replace(
                 default=None,
-                doc="spring constant of the rods, if another constant is followed (default 1.85)",
+                doc=(
+                    "spring constant of the rods, without unit, if another constant is followed"
+                    " (default 1.85)"
+                ),
             ),
             F,
             I,
@@ -48,7 +51,10 @@ TABLE = {
                 None,
                 1e-6,
                 1e4,
-                "where to end (default: 20 for k, twelve times its value for others)",
+                (
+                    "where to end, in the unit of the constant (default: 20 for k, twelve times its"
+                    " value for others)"
+                ),
             ),
             Option(
                 "dry",
@@ -68,7 +74,10 @@ TABLE = {
             TAU,
             K._replace(
                 default=None,
-                doc="spring constant of the rods (default: the paper's 1.4, 1.65 and 1.85)",
+                doc=(
+                    "spring constant of the rods, without unit (default: the paper's 1.4, 1.65 and"
+                    " 1.85)"
+                ),
             ),
             F,
             I,
@@ -82,8 +91,8 @@ TABLE = {
             A,
             F,
             I,
-            Option("points", 200, 2, 4000, "points on each axis"),
-            Option("k_to", 20.0, 1e-3, 1e4, "greatest k; the least is 0"),
+            Option("points", 200, 2, 4000, "number of points on each axis"),
+            Option("k_to", 20.0, 1e-3, 1e4, "greatest k, without unit; the least is 0"),
             Option("tau_to", 1.5, 1e-3, 1e3, "greatest tau, s; the least is 0"),
             Option(
                 "start",
@@ -127,7 +136,7 @@ TABLE = {
             K._replace(default=8.0),
             F,
             I,
-            Option("points", 240, 16, 4000, "points on each axis"),
+            Option("points", 240, 16, 4000, "number of points on each axis"),
         ),
     ),
     "tick": Entry(
