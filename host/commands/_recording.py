@@ -108,8 +108,7 @@ def conclude(
 
     Args:
         options: Say whether to answer in JSON. There, `figure` is null if it cannot be drawn, and
-            `figure_error` says why; `log_error` says why a log is not whole; `interrupted` whether
-            an interrupt has ended the command.
+            `figure_error` says why; `log_error` says why a log is not whole.
         result: The answer, without its files.
         sentence: The same for people.
         recording: What was recorded.
@@ -118,7 +117,7 @@ def conclude(
     Raises:
         NotDone: The log's file is not whole.
     """
-    files: dict[str, Any] = {"log": str(recording.path), "interrupted": False}
+    files: dict[str, Any] = {"log": str(recording.path)}
     if recording.failure:
         files["log_error"] = recording.failure
     essentials = f"{sentence}\nlog {recording.path}"

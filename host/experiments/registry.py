@@ -123,7 +123,7 @@ ROBOT = {
     "starts": Entry(
         "start the robot from rest many times: which way each wheel goes, and whether both ways"
         " are equally likely",
-        (Option("starts", 100, 1, 100000, "how often to start it"),),
+        (Option("starts", 100, 1, 100000, "number of starts"),),
     ),
     "calibrate": Entry(
         "identify this robot's motor from a drive, and write it as a file for sim://?motor=mine",

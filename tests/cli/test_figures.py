@@ -1,6 +1,9 @@
 """Figures are the project's own, and one that fails swallows no result."""
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -10,6 +13,7 @@ from matplotlib.figure import Figure
 from host.figures.robot import kick as figures
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
+from tests.lint.sources import ROOT
 
 # What a matplotlibrc may say.
 FOREIGN = {
@@ -119,3 +123,44 @@ def test_a_body_is_answered_without_its_figure(kickctl, monkeypatch):
     assert set(answer["unwritten"]) == {"body.png", "body.svg"}
     assert "latex could not be found" in err
     assert (Path(answer["folder"]) / "state.csv").exists()
+
+
+@pytest.mark.parametrize(
+    "spoiled",
+    [
+        {"MPLBACKEND": "nosuch"},
+        {"MPLBACKEND": "module://nosuch"},
+        {"MATPLOTLIBRC": "nowhere/matplotlibrc"},
+        {"MATPLOTLIBRC": "spoiled"},
+        {},
+    ],
+    ids=str,
+)
+def test_damaged_settings_of_matplotlib_cost_no_figure(shell, tmp_path, spoiled):
+    (tmp_path / "spoiled").write_bytes(b"\xff\xfe font.size")
+    if not spoiled:  # the first place where matplotlib looks
+        (tmp_path / "spoiled").rename(tmp_path / "matplotlibrc")
+    status, out, err = shell("kickctl kick --mode phase --seed 1 --json", **spoiled)
+    answer = json.loads(out)
+    assert status == 0
+    assert (tmp_path / answer["figure"]).read_bytes().startswith(b"\x89PNG")
+    assert "figure_error" not in answer
+    assert len(err.splitlines()) == 1
+
+
+def test_a_notebook_keeps_its_own_settings_of_matplotlib(tmp_path):
+    (tmp_path / "matplotlibrc").write_text("font.size: 33\n")
+    code = (
+        "import host.figures, matplotlib, os;"
+        "print(matplotlib.rcParams['backend'], matplotlib.rcParams['font.size'],"
+        " os.environ['MPLBACKEND'], 'MATPLOTLIBRC' in os.environ)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "MPLBACKEND": "svg"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == ["svg", "33.0", "svg", "False"]

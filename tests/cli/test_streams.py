@@ -79,7 +79,7 @@ def is_indexed(log):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_recording_that_is_ended_by_a_signal_leaves_an_indexed_log(tmp_path, number):
     process, log = begin_recording(tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    for _ in range(3 if number == signal.SIGHUP else 1):
+    for _ in range(5):
         process.send_signal(number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -96,7 +96,18 @@ def test_a_terminal_that_closes_leaves_an_indexed_log(tmp_path):
     os.close(inside)
     process.send_signal(signal.SIGHUP)  # as a shell does whose terminal closes
     os.close(terminal)
-    process.wait(60)
+    assert process.wait(60) == 130
+    assert is_indexed(log)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_says_130_also_where_nobody_takes_the_answer(tmp_path, number):
+    with Path("/dev/full").open("w") as full:
+        process, log = begin_recording(tmp_path, stdout=full, stderr=subprocess.PIPE)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert b"ticks in log.mcap" in err
     assert is_indexed(log)
 
 
