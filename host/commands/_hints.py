@@ -5,13 +5,18 @@ from __future__ import annotations
 import re
 import shlex
 
-# Verbs that reach a robot, as hints name them.
-_VERBS = (
-    "demo|kick|plan|drive|start|stop|clear|status|params|record|watch|doctor|rods|log pull"
-    "|experiment|reproduce"
+from robot.params import TABLE
+
+# Commands that reach a robot, as hints name them. The robot's name goes behind them.
+_SETTING = f"(?:{'|'.join(TABLE)})(?:=[-+.\\w]*\\w)?"
+_COMMAND = re.compile(
+    r"\bkickctl (?:"
+    rf"params(?: (?:list|get|set|reset)\b(?: {_SETTING}\b)*)?"
+    r"|drive(?: (?:forward|backward|spin-left|spin-right|stopped))?"
+    r"|experiment [-\w]+|kick(?: --mode \w+)?|record(?: [0-9]+)?|log pull"
+    r"|demo|plan|start|stop|clear|status|watch|doctor|rods|reproduce"
+    r")\b(?![^`'\"\n,;]*--help)"  # which needs no robot
 )
-# Not before a --help, which needs no robot.
-_COMMAND = re.compile(rf"\bkickctl (?:{_VERBS})\b(?![^`'\"\n,;]*--help)")
 _named: list[str] = []
 
 

@@ -61,13 +61,14 @@ def print_answer(failure: KickctlError | None) -> None:
     Raises:
         OSError: Standard output takes nothing.
     """
+    if failure is None and not _answers:
+        return
     result, essentials = _answers.pop() if _answers else _Answer({}, "")
     if failure is not None:
         result = {**result, "error": _as_dict(failure)}
         if isinstance(failure, Interrupted) and len(result) > 1:
             result["interrupted"] = True
-    if result:
-        print_result(json.dumps(result, allow_nan=False), essentials)
+    print_result(json.dumps(result, allow_nan=False), essentials)
 
 
 def print_result(text: str, essentials: str = "") -> None:

@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     essentials = f"the robot has set {', '.join(lines)}" if changes else ""
     if options.json:
         show({name: values[name] for name in names}, essentials)
-    else:
+    elif lines:
         print_result("\n".join(lines), essentials)
     return 0
 

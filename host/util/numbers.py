@@ -6,6 +6,8 @@ import argparse
 import re
 from math import inf
 
+# Numbers that Python knows, and that nobody can use here.
+UNUSABLE = ("nan", "inf", "-inf")
 _WHOLE = re.compile(r"[+-]?[0-9]{1,20}")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
@@ -43,7 +45,8 @@ class Number:
         """The number. Raises argparse.ArgumentTypeError."""
         value = parse_number(text)
         if value is None or (self.whole and not isinstance(value, int)):
-            raise argparse.ArgumentTypeError(f"cannot be '{_short(text)}'; {self.advice()}")
+            shown = text if text in UNUSABLE else f"'{_short(text)}'"
+            raise argparse.ArgumentTypeError(f"cannot be {shown}; {self.advice()}")
         if not self.least <= value <= self.most:
             raise argparse.ArgumentTypeError(f"cannot be {_short(text)}; {self.advice()}")
         return value if self.whole else float(value)

@@ -35,6 +35,8 @@ NEEDS = {
     ("log", "export"): ("a.mcap",),
     ("log", "replay"): ("a.mcap",),
     ("log", "recover"): ("a.mcap",),
+    ("log", "plot"): ("a.mcap",),
+    ("log", "film"): ("a.mcap",),
 }
 UNUSED = [
     (words, option)
@@ -133,7 +135,7 @@ def test_every_number_has_its_unit_in_the_help(words):
 def _says_what_it_counts(text):
     units = (
         "s|rad|N|N m|minutes|control periods|cars|without unit|no unit|the unit (that|of)"
-        "|whole number|number of \\w+"
+        "|whole number|number of \\w+|how many times"
     )
     return re.search(rf"\b({units})\b|N s/m|in units of", text)
 
@@ -173,7 +175,9 @@ def test_two_dashes_are_no_value(kickctl, option):
 
 def test_a_setting_is_a_number_by_the_same_rules(kickctl):
     for value in ("1_0", "\u0662", "nan", "2\u00b2"):
-        refused(kickctl, "params", "set", f"k={value}")
+        status, out, err = kickctl("params", "set", f"k={value}", "--json")
+        assert status == json.loads(out)["error"]["status"] == 2
+        assert re.search("k cannot be|no value", err)
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -236,7 +240,12 @@ def test_a_fault_is_an_error_of_the_status(kickctl, monkeypatch):
         ("`kickctl start`", "`kickctl start --brick 'tcp://h?x' --token t`"),
         ("kickctl clear, kickctl start", None),
         ("kickctl log pull", "kickctl log pull --brick 'tcp://h?x' --token t"),
-        ("kickctl drive forward", "kickctl drive --brick 'tcp://h?x' --token t forward"),
+        ("kickctl drive forward", "kickctl drive forward --brick 'tcp://h?x' --token t"),
+        (
+            "kickctl params set k=8.5, then look",
+            "kickctl params set k=8.5 --brick 'tcp://h?x' --token t, then look",
+        ),
+        ("kickctl record 10.", "kickctl record 10 --brick 'tcp://h?x' --token t."),
         ("kickctl discover, kickctl log list", "kickctl discover, kickctl log list"),
         ("see kickctl params --help", "see kickctl params --help"),
         ("kickctl started", "kickctl started"),

@@ -28,7 +28,7 @@ def end_of(kickctl, *arguments, status=130):
 @pytest.mark.parametrize("verb", [KICK, ("drive", "forward", "--seed", "1", "--json")])
 def test_while_the_figure_is_drawn_the_answer_says_so(kickctl, monkeypatch, verb):
     whole = json.loads(kickctl(*verb)[1])
-    assert whole["interrupted"] is False
+    assert "interrupted" not in whole
     monkeypatch.setattr(Figure, "savefig", interrupted)
     status, out, err = kickctl(*verb)
     answer = json.loads(out)
