@@ -8,7 +8,7 @@ from math import inf
 
 # Numbers that Python knows, and that nobody can use here.
 UNUSABLE = ("nan", "inf", "-inf")
-_WHOLE = re.compile(r"[+-]?[0-9]{1,20}")
+_WHOLE = re.compile(r"[+-]?[0-9]{1,40}")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 

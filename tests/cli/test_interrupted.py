@@ -61,7 +61,7 @@ def test_while_the_kick_is_answered_nobody_knows(kickctl, monkeypatch):
     monkeypatch.setattr(Robot, "request", cut)
     hint = end_of(kickctl, *KICK)
     assert "the kick was sent, and no answer came" in hint
-    assert "logs/kick-" in hint
+    assert "logs/" in hint
 
 
 @pytest.mark.parametrize("verb", [KICK, ("rods", "--seed", "1", "--json")])

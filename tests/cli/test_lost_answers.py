@@ -10,13 +10,13 @@ import pytest
 from host.commands._streams import OUTPUT
 
 DONE = {
-    "kick --mode phase --seed 1": ("reversed the robot", "logs/kick-"),
-    "drive forward --seed 1": ("reached forward", "logs/drive-"),
-    "record 0.5 --seed 1": ("17 ticks in logs/record-",),
+    "kick --mode phase --seed 1": ("reversed the robot", "logs/"),
+    "drive forward --seed 1": ("reached forward", "logs/"),
+    "record 0.5 --seed 1": ("17 ticks in logs/",),
     "start --seed 1": ("the robot runs from tick",),
     "stop": ("motors stopped",),
     "params set k=2": ("the robot has set k = 2",),
-    "log pull --seed 1": ("ticks", "logs/pull-"),
+    "log pull --seed 1": ("ticks", "logs/"),
     "theory hopf": ("results/theory/hopf-",),
     "body car --time 0.1": ("results/body-",),
 }
@@ -69,7 +69,7 @@ def test_a_kick_that_did_not_reverse_says_both(kickctl, monkeypatch):
         patch.setattr(sys, "stdout", Unwritable(errno.ENOSPC))
         status, _, err = kickctl("kick", "--mode", "phase", "--ticks", "1", "--seed", "5", "--json")
     assert status == 1
-    assert "logs/kick-" in err
+    assert "logs/" in err
     assert "the robot did not reverse" in err
 
 
@@ -94,6 +94,6 @@ def test_a_process_says_it_too(shell, json_too, target):
     )
     if target == "| true" and "status 0" in err:
         return  # the reader was there until the end
-    assert "log logs/kick-" in err
+    assert "log logs/" in err
     assert "reversed the robot" in err
     assert "status 1" in err
