@@ -14,7 +14,6 @@ DONE = {
     "drive forward --seed 1": ("reached forward", "logs/"),
     "record 0.5 --seed 1": ("17 ticks in logs/",),
     "start --seed 1": ("the robot runs from tick",),
-    "stop": ("motors stopped",),
     "params set k=2": ("the robot has set k = 2",),
     "log pull --seed 1": ("ticks", "logs/"),
     "theory hopf": ("results/theory/hopf-",),
