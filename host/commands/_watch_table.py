@@ -1,0 +1,154 @@
+"""The table of `kickctl watch`, from the lines that say what happens."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from host.commands._watched import event_words
+from robot.kicks import WHEELS
+
+if TYPE_CHECKING:
+    from rich.console import Group
+    from rich.live import Live
+    from rich.table import Table
+
+_ROWS = {
+    "turns_per_s": "speed (turns/s)",
+    "torque": "torque M",
+    "duty_pct": "duty (%)",
+    "x1": "x1",
+    "x2": "x2",
+    "phi_rad": "phi (rad)",
+}
+_HAPPENINGS = 5
+_DRAW_S = 0.1
+
+
+class Screen:
+    """What a person sees of a watched robot.
+
+    A thread draws it, so that neither the robot's link nor a stop ever waits for a terminal, and so
+    that words about a stop appear while a link is broken.
+
+    Args:
+        uri: The robot's address.
+        foot: The lines below all others, which say what keys do.
+    """
+
+    def __init__(self, uri: str, foot: list[str]) -> None:
+        self._uri = uri
+        self._foot = foot
+        self._line: dict[str, Any] | None = None
+        self._happened: deque[str] = deque(maxlen=_HAPPENINGS)
+        self._lock = threading.Lock()
+        self._live: Live | None = None
+        self._ended = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def take(self, line: dict[str, Any]) -> None:
+        """Show the next line."""
+        with self._lock:
+            self._line = line
+            self._happened.extend(map(event_words, line["events"]))
+
+    def add(self, words: str) -> None:
+        """Show words among what has happened."""
+        with self._lock:
+            self._happened.append(words)
+
+    def change_foot(self, foot: list[str]) -> None:
+        """Show other lines below all others."""
+        with self._lock:
+            self._foot = foot
+
+    def render(self) -> Group:
+        """All of it, for rich."""
+        from rich.console import Group
+        from rich.text import Text
+
+        with self._lock:
+            line, happened, foot = self._line, list(self._happened), self._foot
+        if line is None:
+            return Group(Text(f"{self._uri}: no record yet"), *map(Text, foot))
+        words = [*_facts(line), *happened, *foot]
+        return Group(_title(self._uri, line), _wheels(line), *map(Text, words))
+
+    def open(self) -> None:
+        """Draw on the terminal from now on, below what is there."""
+        from rich.live import Live
+
+        self._live = Live(self.render(), auto_refresh=False)
+        self._live.start()
+        self._ended.clear()
+        self._thread = threading.Thread(target=self._draw, name="kickctl table", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Draw for the last time, and leave the table where it is."""
+        live, self._live = self._live, None
+        if live is not None:
+            self._ended.set()
+            if self._thread is not None:
+                self._thread.join()
+            live.update(self.render())
+            live.stop()
+
+    @contextmanager
+    def shown(self) -> Iterator[None]:
+        """Draw until the end of the block."""
+        try:
+            self.open()
+            yield
+        finally:
+            self.close()
+
+    def _draw(self) -> None:
+        live = self._live
+        try:
+            while live is not None and not self._ended.wait(_DRAW_S):
+                live.update(self.render(), refresh=True)
+        except OSError:
+            pass  # the terminal is gone; `close` says so
+
+
+def _title(uri: str, line: dict[str, Any]) -> Any:
+    from rich.text import Text
+
+    title = Text(f"{uri}  tick {line['tick']}  {line['state']}  ")
+    if line["recent_kick"]:
+        title.append(f" kick: {line['recent_kick']} ", style="reverse")
+    return title
+
+
+def _wheels(line: dict[str, Any]) -> Table:
+    from rich.table import Table
+
+    table = Table()
+    table.add_column("")
+    for side in WHEELS:
+        table.add_column(side, justify="right", min_width=9)
+    for name, title in _ROWS.items():
+        table.add_row(title, *(f"{line[side][name]:.2f}" for side in WHEELS))
+    return table
+
+
+def _facts(line: dict[str, Any]) -> list[str]:
+    """Why it is in its state, who drives it, and how punctual it is."""
+    held_s = line["controller_held_s"]
+    since = "" if line["controller"] is None or held_s is None else f", for {_time(held_s)}"
+    restarts = line["restarts"]
+    again = f"; its program has started again {restarts} times" if restarts else ""
+    punctual = (
+        f"{line['missed']} deadlines missed and {line['overruns']} ticks overrun so far;"
+        f" {line['lost']} records lost here; now at most {1000 * line['late_s']:.1f} ms late{again}"
+    )
+    driver = line["controller"] or "nobody"
+    return [f"{line['state']}: {line['reason']}", f"driven by {driver}{since}", punctual]
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120.0 else f"{seconds / 60:.0f} min"
