@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from host.client.robot import Robot
 from host.experiments.robot import chaos_pieces as pieces
-from host.experiments.robot.chaos_numbers import explain, reasons, series_numbers, tally
+from host.experiments.robot.chaos_numbers import Numbers, explain, reasons, series_numbers, tally
 from host.experiments.robot.chaos_pieces import SEEN, TAU_S, UNSEEN, K
 from host.experiments.robot.chaos_rows import (
     CellRows,
@@ -133,12 +133,12 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
     )
     exponents = f"Lyapunov exponent of the time series {rates_text}; of noise {of_noise():.2f}/s"
     notes = [switching, exponents]
-    numbers: dict[str, object] = {
+    numbers: Numbers = {
         "series": {f"{condition}, {side}": found for (condition, side), found in series.items()}
     }
     if lives_rows(rows, ORDINARY):
         explanations = explain(rows)
-        numbers |= explanations
+        numbers = {**numbers, **explanations}
         delayed = next(found for (condition, _), found in series.items() if condition == DELAYED)
         notes += reasons(explanations, delayed["exponent"])
     claim = Claim(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import log
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 
 import numpy as np
 
@@ -119,6 +119,16 @@ class Explanations(TypedDict):
     twins: list[TwinsNumbers]
     map: list[MapNumbers]
     model: list[ModelNumbers]
+
+
+class Numbers(TypedDict):
+    """How the wheels of each series switched, and the explanations, if they were simulated."""
+
+    series: dict[str, SeriesNumbers]
+    conditions: NotRequired[dict[str, ConditionNumbers]]
+    twins: NotRequired[list[TwinsNumbers]]
+    map: NotRequired[list[MapNumbers]]
+    model: NotRequired[list[ModelNumbers]]
 
 
 def series_numbers(series: list[SeriesRow]) -> SeriesNumbers:

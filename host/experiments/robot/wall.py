@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections import Counter
 from math import ceil, pi
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -210,7 +210,33 @@ def _note(rows: list[WallRow], hits: list[HitRow]) -> str:
     return "; ".join(notes)
 
 
-def _numbers(rows: list[WallRow], hits: list[HitRow]) -> dict[str, Any]:
+class Maps(TypedDict):
+    """[condition, bounces, hits] at each condition of the three maps."""
+
+    grip_and_k: list[list[Any]]
+    stiffness_and_bumper: list[list[Any]]
+    apart: list[list[Any]]
+
+
+class Numbers(TypedDict):
+    """What the hits of the claim came to, and the maps.
+
+    Attributes:
+        torque_before: median torque M before a bounce (1).
+        torque_after: median torque M after it (1).
+        took_s: median time that a bounce takes (s).
+        ended: how many hits ended in each way.
+        bounces_of_hits: the maps.
+    """
+
+    torque_before: float | None
+    torque_after: float | None
+    took_s: float | None
+    ended: dict[str, int]
+    bounces_of_hits: Maps
+
+
+def _numbers(rows: list[WallRow], hits: list[HitRow]) -> Numbers:
     """Medians over the bounces (None without one), and [condition, bounces, hits] of the maps."""
     bounced = [row for row in hits if row["reversed"]]
 

@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from host.figures.style import COLOURS, styled
 from host.runs.contract import Findings
 from host.theory.analysis.outcomes import BACK, BACKWARD, FORWARD, OTHER, REST, Outcome
-from host.theory.studies.basins_report import reversals
+from host.theory.studies.basins_report import Numbers, reversals
 from host.theory.studies.basins_rows import (
     CONTINUOUS,
     LENGTHS_S,
@@ -49,9 +49,10 @@ _MAP = ListedColormap(_SHADES)
 
 def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
     """The figure of the study's rows; without the kicks, if no wheel rolls."""
+    numbers: Numbers = findings.numbers
     with styled():
         figure = Figure(figsize=(12.0, 9.0), dpi=1600 / 12, layout="constrained")
-        if len(findings.numbers["no_wheel_rolls"]) == len(MODEL_NAMES):
+        if len(numbers["no_wheel_rolls"]) == len(MODEL_NAMES):
             panels: Any = figure.subplots(1, 2, sharey=True)
             used = _draw_basins(panels, rows, findings)
             figure.legend(handles=_patches(used), loc="outside lower center", ncols=4)

@@ -18,6 +18,7 @@ from host.figures.style import COLOURS, share_legend, styled
 from host.figures.theory.branch_panels import DASHED, draw_line, draw_turning
 from host.runs.contract import Findings
 from host.theory.studies import branch_tables as tables
+from host.theory.studies.branch_report import Numbers
 from host.theory.studies.branch_rows import WAYS, CyclePart, Part
 from host.theory.studies.branch_tables import BranchRow, CycleRow, SpecialRow
 
@@ -55,7 +56,8 @@ _SIZE: Any = {"figsize": (10.0, 7.4), "dpi": 160, "layout": "constrained"}
 
 def draw(rows: list[BranchRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    along = findings.numbers["along"]
+    numbers: Numbers = findings.numbers
+    along = numbers["along"]
     with styled():
         figure = Figure(**_SIZE)
         wide, near, swing, period, line, turning = figure.subplots(2, 3).flat
@@ -96,7 +98,7 @@ def draw(rows: list[BranchRow], findings: Findings) -> Figure:
             fontsize=11,
             columnspacing=1.4,
         )
-        figure.suptitle(_headline(along, findings.numbers["mergings"]), fontsize=15)
+        figure.suptitle(_headline(along, numbers["mergings"]), fontsize=15)
     return figure
 
 

@@ -14,6 +14,7 @@ from host.figures.style import COLOURS, SIZE, styled
 from host.figures.theory.lyapunov_transients import draw_lives, draw_survival
 from host.runs.contract import Findings
 from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL, Kind
+from host.theory.studies.lyapunov_numbers import Constants, Numbers
 from host.theory.studies.lyapunov_rows import (
     ANY,
     ROLLS,
@@ -40,7 +41,7 @@ _SMALL = 11
 
 def draw(rows: list[LyapunovRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    numbers = findings.numbers
+    numbers: Numbers = findings.numbers
     constants = numbers["constants"]
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 14.5)})
@@ -55,7 +56,7 @@ def draw(rows: list[LyapunovRow], findings: Findings) -> Figure:
     return figure
 
 
-def _title(numbers: dict[str, Any]) -> str:
+def _title(numbers: Numbers) -> str:
     constants, point = numbers["constants"], numbers["point"]
     rate, error = numbers["exponents"][0], numbers["standard_errors"][0]
     where = f"$k$ = {constants['k']:g}, $\\tau$ = {constants['tau']:g} s"
@@ -70,7 +71,7 @@ def _rounded(value: float) -> str:
     return f"{round(value, 3) + 0.0:.3f}"
 
 
-def _draw_series(axes: Axes, series: list[SeriesRow], numbers: dict[str, Any]) -> None:
+def _draw_series(axes: Axes, series: list[SeriesRow], numbers: Numbers) -> None:
     shown = [row for row in series if row["t_s"] <= SHOWN_S]
     axes.plot(
         [row["t_s"] for row in shown], [row["force"] for row in shown], color="black", linewidth=1.3
@@ -86,7 +87,7 @@ def _draw_series(axes: Axes, series: list[SeriesRow], numbers: dict[str, Any]) -
     axes.set_title(f"spectrum: {spectrum} /s", fontsize=12, loc="left")
 
 
-def _draw_line(axes: Axes, rows: list[GridRow], numbers: dict[str, Any]) -> None:
+def _draw_line(axes: Axes, rows: list[GridRow], numbers: Numbers) -> None:
     """Each wheel's largest exponent."""
     for kind in KINDS:
         own = [row for row in rows if row["kind"] == kind]
@@ -146,7 +147,7 @@ def _draw_line(axes: Axes, rows: list[GridRow], numbers: dict[str, Any]) -> None
 
 
 def _draw_planes(
-    figure: Figure, panels: list[Axes], rows: list[GridRow], constants: dict[str, Any]
+    figure: Figure, panels: list[Axes], rows: list[GridRow], constants: Constants
 ) -> None:
     """The largest exponent over the plane, of either start."""
     titles: dict[StartKind, str] = {

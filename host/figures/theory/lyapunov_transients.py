@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from host.figures.style import COLOURS
 from host.theory.analysis.transients import ENTRY_S, FEWEST
+from host.theory.studies.lyapunov_numbers import Lives, Numbers
 from host.theory.studies.lyapunov_rows import LifeRow
 
 _SMALL = 11
@@ -23,15 +24,15 @@ _ABOVE: Any = {
 }
 
 
-def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: dict[str, Any]) -> None:
+def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: Numbers) -> None:
     """The share of wheels that still switch, with the exponential of the same mean."""
-    shown = [entry for entry in numbers["lives"] if entry["ended"] >= FEWEST][-4:]
+    shown = _well_known(numbers)[-4:]
     if not shown:
         axes.set_title("chaotic transients", fontsize=13, loc="left")
         _say_none(axes)
         return
     longest = 0.0
-    for entry, colour in zip(shown, COLOURS, strict=False):
+    for (entry, mean_s), colour in zip(shown, COLOURS, strict=False):
         own = [row for row in lives[entry["k"]] if row["life_s"] > ENTRY_S]
         ended = np.sort([row["life_s"] - ENTRY_S for row in own if row["ended"]])
         axes.step(
@@ -43,9 +44,7 @@ def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: dict[s
         )
         longest = max(longest, float(ended[-1]))
         times = np.linspace(0.0, longest, 100)
-        axes.plot(
-            times, np.exp(-times / entry["mean_s"]), color=colour, linestyle=":", linewidth=1.4
-        )
+        axes.plot(times, np.exp(-times / mean_s), color=colour, linestyle=":", linewidth=1.4)
     axes.set_yscale("log")
     axes.set_ylim(4e-3, 1.15)
     axes.set_xlim(0, longest)
@@ -56,26 +55,26 @@ def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: dict[s
     axes.xaxis.set_major_locator(MaxNLocator(5))
 
 
-def draw_lives(axes: Axes, numbers: dict[str, Any]) -> None:
+def draw_lives(axes: Axes, numbers: Numbers) -> None:
     """Mean lives against k, with the law of a crisis."""
-    own = [entry for entry in numbers["lives"] if entry["ended"] >= FEWEST]
+    own = _well_known(numbers)
     axes.set_title("their mean life", fontsize=13, loc="left")
     if not own:
         _say_none(axes)
         return
     axes.set_yscale("log")
-    errors = [entry["mean_s"] / np.sqrt(entry["ended"]) for entry in own]
+    means_s = [mean_s for _, mean_s in own]
     axes.errorbar(
-        [entry["k"] for entry in own],
-        [entry["mean_s"] for entry in own],
-        errors,
+        [entry["k"] for entry, _ in own],
+        means_s,
+        [mean_s / np.sqrt(entry["ended"]) for entry, mean_s in own],
         fmt="o",
         color="black",
         markersize=5,
     )
     found = numbers["crisis"]
     if found:
-        begin, end = min(entry["k"] for entry in own), found["k"]
+        begin, end = min(entry["k"] for entry, _ in own), found["k"]
         ks = end - (end - begin) * np.logspace(0, -2.5, 200)
         axes.plot(
             ks,
@@ -89,7 +88,7 @@ def draw_lives(axes: Axes, numbers: dict[str, Any]) -> None:
         lasting = [
             entry["k"] for entry in numbers["lives"] if entry["k"] > end and not entry["ended"]
         ]
-        top = 3 * max(entry["mean_s"] for entry in own)
+        top = 3 * max(means_s)
         axes.plot(
             lasting,
             [top] * len(lasting),
@@ -99,10 +98,19 @@ def draw_lives(axes: Axes, numbers: dict[str, Any]) -> None:
             markersize=8,
             label="none ended",
         )
-        axes.set_ylim(0.5 * min(entry["mean_s"] for entry in own), 1.8 * top)
+        axes.set_ylim(0.5 * min(means_s), 1.8 * top)
         axes.legend(fontsize=_SMALL, loc="upper left")
     axes.set_xlabel("spring constant $k$")
     axes.set_ylabel("mean life (s)")
+
+
+def _well_known(numbers: Numbers) -> list[tuple[Lives, float]]:
+    """The lives at each k where enough of them ended, and their mean (s)."""
+    return [
+        (entry, entry["mean_s"])
+        for entry in numbers["lives"]
+        if entry["mean_s"] is not None and entry["ended"] >= FEWEST
+    ]
 
 
 def _say_none(axes: Axes) -> None:

@@ -16,6 +16,7 @@ from host.runs.contract import Findings
 from host.theory.analysis.hopf import critical_k, estimate
 from host.theory.analysis.phases import Phase
 from host.theory.model.wheel import Array, Wheel
+from host.theory.studies.phase_diagram_report import Numbers
 from host.theory.studies.phase_diagram_rows import (
     Panel,
     PhaseDiagramRow,
@@ -38,7 +39,8 @@ _INSET = (0.5, 0.48, 0.47, 0.45)
 def draw(rows: list[PhaseDiagramRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     diagram = points(rows)
-    constants = findings.numbers["constants"]
+    numbers: Numbers = findings.numbers
+    constants = numbers["constants"]
     wheel = Wheel(a=constants["a"], friction=constants["f"], inertia=constants["I"])
     with styled():
         figure = Figure(**{**SIZE, "figsize": (12.5, 6.4)})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 from host.theory.studies.tick import RUNNING_K
+from host.theory.studies.tick_report import Numbers
 from host.theory.studies.tick_rows import (
     CONTINUOUS,
     NEW,
@@ -47,15 +48,15 @@ _NAME: dict[Order | Continuous, str] = {
 
 def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
-    numbers = findings.numbers
+    numbers: Numbers = findings.numbers
     tick_ms, latency_ms = 1000 * numbers["tick_s"], 1000 * numbers["latency_s"]
     with styled():
         figure = Figure(**{**SIZE, "figsize": (10.0, 7.4)})
         (lines, growth), (speed, latency) = figure.subplots(2, 2)
         _draw_against(lines, rows, "tick", _names(rows), tick_ms)
         lines.plot(0, numbers["k_hopf"], "ko", markersize=5, clip_on=False)
-        if numbers[CONTINUOUS]["k_rolls"]:
-            lines.plot(0, numbers[CONTINUOUS]["k_rolls"], "ko", markersize=5, clip_on=False)
+        if numbers["continuous"]["k_rolls"]:
+            lines.plot(0, numbers["continuous"]["k_rolls"], "ko", markersize=5, clip_on=False)
         lines.axhline(
             numbers["k_estimate"], color="grey", linestyle=":", label=r"paper's $2f/(a\tau)$"
         )
@@ -71,8 +72,8 @@ def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
             title=f"at a tick of {tick_ms:g} ms",
         )
         _draw_against(speed, rows, "tick", ("hz",), tick_ms)
-        if numbers[CONTINUOUS]["hz"]:
-            speed.axhline(numbers[CONTINUOUS]["hz"], color="black")
+        if numbers["continuous"]["hz"]:
+            speed.axhline(numbers["continuous"]["hz"], color="black")
         speed.set(
             xlabel="length of the tick (ms)",
             ylabel=r"$\omega/2\pi$ (Hz)",
@@ -100,7 +101,7 @@ def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
     return figure
 
 
-def _headline(numbers: dict[str, Any]) -> str:
+def _headline(numbers: Numbers) -> str:
     shifts = [numbers[order]["shift_pct"] for order in ORDERS]
     if None in shifts:
         return f"A tick of {1000 * numbers['tick_s']:g} ms is too long for these neurons"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from itertools import groupby
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
 from host.runs.contract import Findings, Setting
-from host.theory.analysis.outcomes import BACKWARD, FORWARD, OUTCOMES
+from host.theory.analysis.outcomes import BACKWARD, FORWARD, OUTCOMES, Outcome
 from host.theory.engine.kicked import KICKS
 from host.theory.studies.basins_rows import (
     CLOCK,
@@ -28,6 +28,76 @@ from host.theory.studies.basins_rows import (
 )
 
 
+class Basins(TypedDict):
+    """Shares of starts by outcome and by well; of rolling wheels, those against their start."""
+
+    shares: dict[Outcome, float]
+    wells: dict[str, float]
+    turned_around: float | None
+
+
+class LengthShare(TypedDict):
+    """The share of phases at which a kick of one length reverses the wheel."""
+
+    length_s: float
+    share: float
+
+
+class Reversals(TypedDict):
+    """Reversals by the kick's length, and the ranges of lengths that are sure (s)."""
+
+    reversed: list[LengthShare]
+    sure_s: list[list[float]]
+
+
+class KickNumbers(Reversals):
+    """The reversals of one kick in one model."""
+
+    model: ModelName
+    mode: str
+    sign: int
+
+
+class Difference(TypedDict):
+    """The share of a kick's phases and lengths that end otherwise if the wheel is sampled."""
+
+    mode: str
+    sign: int
+    share: float
+
+
+class SameOutcome(TypedDict):
+    """The share of starts with the same outcome if turned, mirrored, or with finer steps.
+
+    None where there are no finer steps.
+    """
+
+    turned: float
+    mirrored: float
+    finer: float | None
+
+
+class Accuracy(TypedDict):
+    """How well the models keep their symmetries, and the grid of kicks."""
+
+    same_outcome: dict[ModelName, SameOutcome]
+    angle_off_rad: dict[ModelName, float]
+    kick_length_s: float
+    phases: int
+
+
+class Numbers(TypedDict):
+    """All numbers of the study."""
+
+    tick_s: float
+    basins: dict[ModelName, Basins]
+    starts_that_end_otherwise_if_sampled: float
+    kicks: list[KickNumbers]
+    kicks_that_end_otherwise_if_sampled: list[Difference]
+    no_wheel_rolls: list[ModelName]
+    accuracy: Accuracy
+
+
 def report(rows: list[BasinsRow], setting: Setting) -> Findings:
     """Basins of starts and of kicks. The paper claims nothing about them."""
     starts = {model: starts_of(rows, model) for model in MODEL_NAMES}
@@ -40,7 +110,7 @@ def report(rows: list[BasinsRow], setting: Setting) -> Findings:
         for one, other in zip(*starts.values(), strict=True)
     ]
     checks = {model: check_of(rows, model) for model in MODEL_NAMES}
-    numbers = {
+    numbers: Numbers = {
         "tick_s": CLOCK.tick_s,
         "basins": {model: _basins(own) for model, own in starts.items()},
         "starts_that_end_otherwise_if_sampled": float(np.mean(differ)),
@@ -86,7 +156,7 @@ def _by_length(kicks: list[KickRow]) -> dict[float, list[KickRow]]:
     return {length_s: list(line) for length_s, line in lines}
 
 
-def _basins(starts: list[StartRow]) -> dict[str, Any]:
+def _basins(starts: list[StartRow]) -> Basins:
     """Shares of outcomes and of wells, and how many wheels roll against their start.
 
     Wells are counted for wheels that end in one; turned_around is a share of the wheels that roll.
@@ -105,7 +175,7 @@ def _basins(starts: list[StartRow]) -> dict[str, Any]:
     }
 
 
-def _reversals(kicks: list[KickRow]) -> dict[str, Any]:
+def _reversals(kicks: list[KickRow]) -> Reversals:
     """Reversals by length; sure_s: ranges of lengths that reverse the wheel at every phase."""
     shares = reversals(kicks)
     sure_s = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -28,6 +28,26 @@ _LAST, _CLOSE = 25, 1e-2
 _SAME = 1e-6
 # Where the paper's portraits find a wheel forth and back, and rolling.
 _SWINGS_K, _ROLLS_K = 1.65, 1.85
+
+
+# `from` is a word of the language.
+Coexistence = TypedDict("Coexistence", {"from": float, "to": float})
+
+
+class FoldNumbers(TypedDict):
+    """A fold of rotations: where it is, and their mean speed there (rad/s)."""
+
+    value: float
+    omega_mean: float
+
+
+class DryNumbers(TypedDict):
+    """The branch of rotations with dry friction."""
+
+    folds: list[FoldNumbers]
+    merging: float | None
+    merging_by_extrapolation: float | None
+    least_omega_while_rolling: float
 
 
 def extrapolated(rows: list[BranchRow], part: CyclePart, merging: MergingRow) -> float | None:
@@ -64,7 +84,7 @@ def _last_cycles(rows: list[BranchRow], part: CyclePart, value: float) -> list[C
 
 def coexistence(
     rows: list[BranchRow], first_hopf: HopfRow | None, merging: MergingRow | None
-) -> dict[str, float] | None:
+) -> Coexistence | None:
     """The range of k where stable rotations coexist with stable rest or forth-and-back cycles."""
     if not merging or not first_hopf or not cycles_of(rows, "LLM"):
         return None
@@ -74,7 +94,7 @@ def coexistence(
     return {"from": least, "to": most} if most > least else None
 
 
-def dry_branch(rows: list[BranchRow]) -> dict[str, Any] | None:
+def dry_branch(rows: list[BranchRow]) -> DryNumbers | None:
     """The rotations with dry friction; None if there are none."""
     cycles = cycles_of(rows, "dry")
     if not cycles:
@@ -95,7 +115,7 @@ def claim_m5(
     merging: MergingRow | None,
     first_hopf: HopfRow | None,
     second: dict[CyclePart, float | None],
-    both: dict[str, float] | None,
+    both: Coexistence | None,
     along: str,
 ) -> Claim:
     """M5: cycles are born stable, and both branches reach the merging.

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypedDict
 
 from host.runs.contract import Findings, Setting
 from host.theory.model.wheel import Wheel, wheel_of
 from host.theory.studies import branch_tables as tables
 from host.theory.studies.branch_formula import (
+    Turning,
     claim_m6,
     claim_m9,
     deviations_of,
     near_ranges,
     turning,
 )
-from host.theory.studies.branch_merging import claim_m5, coexistence, dry_branch, extrapolated
+from host.theory.studies.branch_merging import (
+    Coexistence,
+    DryNumbers,
+    claim_m5,
+    coexistence,
+    dry_branch,
+    extrapolated,
+)
 from host.theory.studies.branch_rows import CyclePart, Part
 from host.theory.studies.branch_tables import BranchRow, MergingRow, SpecialRow
 from host.theory.studies.registry import PAPER
@@ -28,6 +36,40 @@ _NAMES: dict[Part, str] = {
     "merging": "saddles",
     "dry": "rotation with dry friction",
 }
+
+
+class Accuracy(TypedDict):
+    """The greatest differences between methods; None where nothing was compared."""
+
+    hopf_closed_form_against_eigenvalues: float | None
+    merging_with_other_begin_and_shorter_steps: float | None
+    merging_against_extrapolated_branches: dict[CyclePart, float]
+    bifurcations_of_cycles_with_shorter_steps: float | None
+    cycles_against_time_stepping_rad_per_s: float | None
+    product_of_multipliers: float | None
+
+
+class Numbers(TypedDict):
+    """All numbers of the study.
+
+    Special points, ends and errors of the formula name the constant that is followed by itself.
+    """
+
+    k_merge: float | None
+    special_points: list[dict[str, object]]
+    along: str
+    mergings: list[float]
+    merging_by_extrapolation: dict[CyclePart, float | None]
+    saddle_quantity: float | None
+    saddle_quantity_vanishes_at_tau: list[float | None]
+    coexistence_with_rotations: Coexistence | None
+    period_doublings: str
+    formula_within_5_percent: list[list[float]]
+    formula_off_by: list[dict[str, float]]
+    dry: DryNumbers | None
+    turning: list[Turning]
+    ends: list[dict[str, object]]
+    accuracy: Accuracy
 
 
 def report(rows: list[BranchRow], setting: Setting) -> Findings:
@@ -45,7 +87,7 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
         }
     both = coexistence(rows, first_hopf, merging) if along == "k" else None
     near = near_ranges(deviations)
-    numbers = {
+    numbers: Numbers = {
         "k_merge": merging["value"] if merging and along == "k" else None,
         "special_points": [
             _special_point(row, along, wheel) for row in tables.special_points(rows)
@@ -84,9 +126,9 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
     return Findings([claim.doubted(foreign) for claim in claims], numbers)
 
 
-def _special_point(row: SpecialRow, along: str, wheel: Wheel) -> dict[str, Any]:
+def _special_point(row: SpecialRow, along: str, wheel: Wheel) -> dict[str, object]:
     """A bifurcation as plain data, without what is unknown."""
-    found: dict[str, Any] = {
+    found: dict[str, object] = {
         "type": row["type"],
         "k": row["value"] if along == "k" else wheel.k,
         along: row["value"],
@@ -105,9 +147,9 @@ def _special_point(row: SpecialRow, along: str, wheel: Wheel) -> dict[str, Any]:
     return found if row["amplitude"] is None else found | {"amplitude": row["amplitude"]}
 
 
-def _ends(rows: list[BranchRow], along: str) -> list[dict[str, Any]]:
+def _ends(rows: list[BranchRow], along: str) -> list[dict[str, object]]:
     """Where branches end, or why there is none."""
-    found: list[dict[str, Any]] = []
+    found: list[dict[str, object]] = []
     for row in tables.ends(rows):
         if row["type"] == "none":
             found.append({"branch": row["part"], "way": None, "end": row["why"], along: None})
@@ -120,7 +162,7 @@ def _ends(rows: list[BranchRow], along: str) -> list[dict[str, Any]]:
 
 def _accuracy(
     rows: list[BranchRow], merging: MergingRow | None, second: dict[CyclePart, float | None]
-) -> dict[str, Any]:
+) -> Accuracy:
     """The greatest differences between methods; None where nothing was compared."""
     again = [row["off_by"] for row in tables.mergings(rows, "merging")]
     bifurcations = [row["off_by"] for row in tables.cycle_points(rows)]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
-from host.theory.analysis.fixpoints import Fixpoint, fixpoints, growth_by_time_course
+from host.theory.analysis.fixpoints import Fixpoint, Kind, fixpoints, growth_by_time_course
 from host.theory.model.symbolic import jacobian_at, jacobian_by_differences
 from host.theory.model.wheel import Wheel, wheel_of
 from host.theory.studies.fixpoints_rows import (
@@ -70,11 +70,29 @@ def _pair(left: Fixpoint, right: Fixpoint) -> PairOfRests:
     return {"phi": left.phi, "right_phi": right.phi, "stable": left.stable and right.stable}
 
 
+class Accuracy(TypedDict):
+    """The greatest differences between two ways to the same number."""
+
+    jacobian_against_differences: float
+    growth_against_time_course: float
+
+
+class Numbers(TypedDict):
+    """One of the eight fixpoints."""
+
+    n: int
+    phi: float
+    kind: Kind
+    stable: bool
+    eigenvalues: list[list[float]]
+    accuracy: Accuracy
+
+
 def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     """M1 and M2."""
     one, two = of_one_wheel(rows), of_two_wheels(rows)
     wheel = wheel_of(setting.options)
-    numbers = [
+    numbers: list[Numbers] = [
         {
             "n": row["n"],
             "phi": row["phi"],

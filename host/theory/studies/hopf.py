@@ -6,7 +6,7 @@ The paper's estimate stands beside it.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -67,6 +67,25 @@ def _checked_bifurcation(wheel: Wheel) -> CheckedBifurcation:
     return {**_bifurcation(wheel), "k_by_eigenvalues": by_eigenvalues(wheel)}
 
 
+class Accuracy(TypedDict):
+    """The relative difference between two ways to k_hopf."""
+
+    closed_form_against_eigenvalues: float
+
+
+class Numbers(TypedDict):
+    """The bifurcation of the wheel itself, and where along tau cycles are born unstable."""
+
+    k_hopf: float
+    omega_hopf: float
+    l1: float
+    k_estimate: float
+    supercritical: bool
+    l1_changes_sign_at_tau: list[float]
+    gamma_at_hopf: dict[str, float]
+    accuracy: Accuracy
+
+
 def report(rows: list[HopfRow], setting: Setting) -> Findings:
     """M3."""
     wheel = wheel_of(setting.options)
@@ -77,7 +96,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
         row["tau"] for row, after in pairwise(through) if (row["l1"] < 0) != (after["l1"] < 0)
     ]
     off = abs(point["k_by_eigenvalues"] / point["k_hopf"] - 1)
-    numbers = {
+    numbers: Numbers = {
         "k_hopf": point["k_hopf"],
         "omega_hopf": point["omega_hopf"],
         "l1": point["l1"],

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from host.errors import NotDone
@@ -14,6 +12,7 @@ from host.theory.analysis.series_exponents import from_series, of_noise
 from host.theory.analysis.tangent import divergence, kaplan_yorke
 from host.theory.analysis.transients import crisis, sample
 from host.theory.model.wheel import Array, Wheel, wheel_of
+from host.theory.studies.lyapunov_numbers import Numbers, Point, Series, Spectrum, StepAccuracy
 from host.theory.studies.lyapunov_pieces import LIVES_S, SAMPLE_S
 from host.theory.studies.lyapunov_rows import (
     BlockRow,
@@ -32,7 +31,9 @@ from host.theory.studies.registry import PAPER
 from host.theory.studies.route_to_chaos import (
     NEAR_ZERO,
     along,
+    crisis_numbers,
     disagreement,
+    lives_numbers,
     rolling_end,
     route,
     tally,
@@ -61,19 +62,26 @@ def report(rows: list[LyapunovRow], setting: Setting) -> Findings:
     ]
     found = crisis(samples)
     through_a_crisis, words = route(found, samples, rolls, LIVES_S)
-    numbers: dict[str, Any] = {
+    options = setting.options
+    numbers: Numbers = {
         "exponents": point["exponents"],
         "standard_errors": point["standard_errors"],
         "dimension": point["dimension"],
-        "constants": {name: setting.options[name] for name in ("a", "tau", "k", "f", "I")},
+        "constants": {
+            "a": options["a"],
+            "tau": options["tau"],
+            "k": options["k"],
+            "f": options["f"],
+            "I": options["I"],
+        },
         "point": point,
         "series": series,
         "line": along(line_of(rows)),
         "plane": tally(plane_of(rows)),
         "rolling_ends": rolls,
-        "crisis": None if found is None else found._asdict(),
+        "crisis": None if found is None else crisis_numbers(found),
         "through_a_crisis": through_a_crisis,
-        "lives": [one._asdict() for one in samples],
+        "lives": [lives_numbers(one) for one in samples],
         "accuracy": {**point["accuracy"], **halved_steps(step_checks(rows))},
     }
     claim = spectrum_claim(point, series, words)
@@ -83,7 +91,7 @@ def report(rows: list[LyapunovRow], setting: Setting) -> Findings:
     return Findings([claim.doubted(foreign, short)], numbers)
 
 
-def spectrum(rows: list[BlockRow], wheel: Wheel) -> dict[str, Any]:
+def spectrum(rows: list[BlockRow], wheel: Wheel) -> Point:
     """Exponents (1/s) with standard errors, of each kind of attractor that wheels stayed on.
 
     The attractor that most wheels are on stands at the top.
@@ -123,7 +131,7 @@ def spectrum(rows: list[BlockRow], wheel: Wheel) -> dict[str, Any]:
     }
 
 
-def _of_kind(rows: list[BlockRow], kind: Kind) -> dict[str, Any]:
+def _of_kind(rows: list[BlockRow], kind: Kind) -> Spectrum:
     """Means over blocks, with standard errors from blocks and from whole wheels.
 
     Wheels are independent of each other.
@@ -172,7 +180,7 @@ def _error(values: Array) -> Array:
     return np.asarray(values.std(axis=1, ddof=1) / np.sqrt(count))
 
 
-def of_series(rows: list[SeriesRow]) -> dict[str, Any] | None:
+def of_series(rows: list[SeriesRow]) -> Series | None:
     """The largest exponent from the force alone, by neighbours in delay coordinates.
 
     None for a wheel that does not move enough.
@@ -191,7 +199,7 @@ def of_series(rows: list[SeriesRow]) -> dict[str, Any] | None:
     }
 
 
-def halved_steps(rows: list[StepCheckRow]) -> dict[str, Any]:
+def halved_steps(rows: list[StepCheckRow]) -> StepAccuracy:
     """What changes with half the step. Chaotic wheels are compared by their kind only."""
     regular = [row for row in rows if row["kind"] == row["kind_finer"] != KINDS[CHAOS]]
     changes = [abs(row["exponent"] - row["exponent_finer"]) for row in regular]
@@ -207,15 +215,14 @@ def halved_steps(rows: list[StepCheckRow]) -> dict[str, Any]:
     }
 
 
-def spectrum_claim(point: dict[str, Any], series: dict[str, Any] | None, route: str) -> Claim:
+def spectrum_claim(point: Point, series: Series | None, route: str) -> Claim:
     """M8: the largest exponent is positive by two algorithms, which have to agree."""
     rate, error = point["exponents"][0], point["standard_errors"][0]
-    off, most_off = (
-        point["accuracy"][name]
-        for name in ("two_algorithms_differ_by", "two_algorithms_standard_error")
-    )
+    off = point["accuracy"]["two_algorithms_differ_by"]
+    most_off = point["accuracy"]["two_algorithms_standard_error"]
     positive = rate > VERY_SURE * error and point["kind"] == KINDS[CHAOS]
-    chaotic = point["attractors"].get(KINDS[CHAOS], {"wheels": 0})["wheels"]
+    attractors = point["attractors"]
+    chaotic = attractors[KINDS[CHAOS]]["wheels"] if KINDS[CHAOS] in attractors else 0
     low, high = wilson(chaotic, point["of_wheels"])
     from_force = "none"
     if series is not None:

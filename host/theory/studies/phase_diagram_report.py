@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
+from typing import NotRequired, TypedDict
 
 import numpy as np
 
@@ -28,14 +28,49 @@ from host.theory.studies.registry import PAPER
 MISJUDGED = 0.01
 
 
+class Constants(TypedDict):
+    """The constants of all wheels, by the paper's letters."""
+
+    a: float
+    f: float
+    I: float  # noqa: E741
+
+
+class Accuracy(TypedDict):
+    """By how much averages change with finer steps (rad/s), at points that are not chaotic."""
+
+    points: int
+    median_rad_s: float | None
+    p90_rad_s: float | None
+    share_not_reproduced: float | None
+
+
+class Numbers(TypedDict):
+    """All numbers of the study.
+
+    Attributes:
+        constants: of all wheels.
+        shares: shares of the phases, by panel and way, as in "plane, up".
+        rest_misjudged: the share of points at which each line misjudges rest, by panel and way.
+        accuracy: of the averages.
+        hysteresis: the shares of points that are in other phases up than down, by panel.
+    """
+
+    constants: Constants
+    shares: dict[str, dict[str, float]]
+    rest_misjudged: dict[str, dict[str, float]]
+    accuracy: Accuracy
+    hysteresis: NotRequired[dict[str, dict[str, float]]]
+
+
 def report(rows: list[PhaseDiagramRow], setting: Setting) -> Findings:
     """M7."""
     options = setting.options
     wheel = wheel_of(options)
     diagram = points(rows)
     ways: tuple[Way, ...] = ("up", "down") if options["start"] == "sweep" else (options["start"],)
-    numbers: dict[str, Any] = {
-        "constants": {name: options[name] for name in ("a", "f", "I")},
+    numbers: Numbers = {
+        "constants": {"a": options["a"], "f": options["f"], "I": options["I"]},
         "shares": {},
         "rest_misjudged": {},
         "accuracy": _accuracy(step_checks(rows), wheel),
@@ -70,7 +105,7 @@ def _misjudged(rows: list[PointRow], wheel: Wheel) -> dict[str, float]:
     }
 
 
-def _accuracy(sample: list[StepCheckRow], wheel: Wheel) -> dict[str, Any]:
+def _accuracy(sample: list[StepCheckRow], wheel: Wheel) -> Accuracy:
     """By how much averages change with finer steps.
 
     Chaotic wheels are left out: they never repeat.
@@ -112,7 +147,7 @@ def _hysteresis(rows: list[PointRow]) -> dict[str, float]:
     return {name: count / len(phases) for name, count in sorted(changes.items())}
 
 
-def _claim(numbers: dict[str, Any], way: Way) -> Claim:
+def _claim(numbers: Numbers, way: Way) -> Claim:
     shares, misjudged = numbers["shares"], numbers["rest_misjudged"][f"inset, {way}"]
     expected = {"plane": PHASES, "inset": ("S", "FB", "LLM")}
     missing = [

@@ -9,7 +9,7 @@ host.theory.analysis.manifolds): on either side of that line a wheel ends on ano
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -100,11 +100,33 @@ def _points(part: LinePart, line: int, points: Array) -> list[Point]:
     ]
 
 
+class Portrait(TypedDict):
+    """One portrait: its phase, and what the saddle's unstable manifold does."""
+
+    k: float
+    phase: Phase
+    k_hopf: float
+    unstable_manifold_passes_the_next_saddle: bool
+
+
+class Accuracy(TypedDict):
+    """How much the manifold moves with half the step."""
+
+    unstable_manifold_halved_step_rad: float
+
+
+class Numbers(TypedDict):
+    """All numbers of the study."""
+
+    portraits: list[Portrait]
+    accuracy: Accuracy
+
+
 def report(rows: list[PortraitRow], setting: Setting) -> Findings:
     """M4."""
     found = summaries(rows)
     k_hopf = critical_k(wheel_of(setting.options))
-    numbers = {
+    numbers: Numbers = {
         "portraits": [
             {
                 "k": row["k"],

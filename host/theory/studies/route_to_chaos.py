@@ -7,12 +7,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from host.theory.analysis.attractors import BACK, CHAOS, KINDS, ROLL, Kind
 from host.theory.analysis.transients import Crisis, Sample
+from host.theory.studies.lyapunov_numbers import (
+    AtK,
+    CrisisNumbers,
+    Disagreement,
+    Line,
+    Lives,
+    Plane,
+    RollingEnd,
+)
 from host.theory.studies.lyapunov_rows import Attractor, DampingRow, GridRow, StartKind
 
 # Exponents closer to 0 than this (1/s) count as 0 where the kind of an attractor is compared with
@@ -27,7 +35,7 @@ NEAREST = 12
 LIKELY = 0.01
 
 
-def along(rows: list[GridRow]) -> dict[str, Any]:
+def along(rows: list[GridRow]) -> Line:
     """At each k, on which attractors wheels of either start ended, and the exponent of chaos.
 
     The exponent is the mean over the chaotic wheels, 1/s.
@@ -54,7 +62,7 @@ def along(rows: list[GridRow]) -> dict[str, Any]:
     }
 
 
-def _at_k(k: float, rows: list[GridRow]) -> dict[str, Any]:
+def _at_k(k: float, rows: list[GridRow]) -> AtK:
     own = [row for row in rows if row["k"] == k]
     chaotic = [row["exponent"] for row in own if row["kind"] == KINDS[CHAOS]]
     counts: dict[StartKind, dict[Kind, int]] = {}
@@ -68,7 +76,7 @@ def _at_k(k: float, rows: list[GridRow]) -> dict[str, Any]:
     }
 
 
-def tally(rows: list[GridRow]) -> dict[str, Any]:
+def tally(rows: list[GridRow]) -> Plane:
     """Shares of the plane, by start and kind of attractor.
 
     start_decides: the share of points at which the two starts end on different kinds.
@@ -87,7 +95,7 @@ def tally(rows: list[GridRow]) -> dict[str, Any]:
     }
 
 
-def disagreement(rows: Sequence[Attractor]) -> dict[str, int]:
+def disagreement(rows: Sequence[Attractor]) -> Disagreement:
     """How often an attractor's kind, from averages, and its exponent disagree about chaos."""
     chaotic = np.array([row["kind"] == KINDS[CHAOS] for row in rows])
     exponents = np.array([row["exponent"] for row in rows])
@@ -98,7 +106,7 @@ def disagreement(rows: Sequence[Attractor]) -> dict[str, int]:
     }
 
 
-def rolling_end(rows: list[DampingRow]) -> dict[str, Any] | None:
+def rolling_end(rows: list[DampingRow]) -> RollingEnd | None:
     """The k at which the cycle of a rolling wheel loses its stability.
 
     There the damping of disturbances, extrapolated from below, is 0. leaves_by: the least k above
@@ -131,8 +139,31 @@ def rolling_end(rows: list[DampingRow]) -> dict[str, Any] | None:
     }
 
 
+def crisis_numbers(found: Crisis) -> CrisisNumbers:
+    """A crisis as plain data."""
+    return {
+        "k": found.k,
+        "k_interval": found.k_interval,
+        "power": found.power,
+        "power_interval": found.power_interval,
+        "factor": found.factor,
+        "misfit": found.misfit,
+    }
+
+
+def lives_numbers(one: Sample) -> Lives:
+    """The lives at one k as plain data."""
+    return {
+        "k": one.k,
+        "wheels": one.wheels,
+        "ended": one.ended,
+        "mean_s": one.mean_s,
+        "likeness": one.likeness,
+    }
+
+
 def route(
-    found: Crisis | None, samples: list[Sample], rolls: dict[str, Any] | None, most_s: float
+    found: Crisis | None, samples: list[Sample], rolls: RollingEnd | None, most_s: float
 ) -> tuple[bool, str]:
     """Whether chaos begins through a crisis, as the phase diagram's caption says, and why.
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import log2
-from typing import Any
+from typing import TypedDict
 
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.hopf import estimate
 from host.theory.model.wheel import wheel_of
 from host.theory.studies.tick_rows import (
-    CONTINUOUS,
+    NEW,
+    OLD,
     ORDERS,
     LimitRow,
     Order,
@@ -27,23 +28,78 @@ from host.theory.studies.tick_rows import (
 SHOWN_S = (0.03, 0.04)
 
 
+class ContinuousNumbers(TypedDict):
+    """The thresholds of the model without ticks, and its speed (Hz), if it rolls."""
+
+    k_c: float
+    k_rolls: float | None
+    k_stops: float | None
+    hz: float | None
+    note: str | None
+
+
+class Multiplier(TypedDict):
+    """The leading multiplier of rest at k_c."""
+
+    modulus: float | None
+    angle_rad: float | None
+
+
+class OrderNumbers(TypedDict):
+    """The thresholds with one order within the tick, and how they move with the tick."""
+
+    k_c: float | None
+    shift_pct: float | None
+    multiplier: Multiplier
+    k_rolls: float | None
+    k_stops: float | None
+    hz: float | None
+    shift_pct_at_tick_s: dict[str, float | None]
+    k_c_rises_per_s_of_tick: float
+
+
+class Accuracy(TypedDict):
+    """Relative differences between methods."""
+
+    jacobian_against_differences: float | None
+    k_c_against_time_course: float | None
+    k_rolls_and_stops_followed_twice_as_long: float | None
+    k_c_without_tick_against_hopf: float
+    order_of_convergence: float
+    k_rolls_without_tick_against_continuous: float | None
+
+
+class Numbers(TypedDict):
+    """All numbers of the study."""
+
+    tick_s: float
+    latency_s: float
+    k_hopf: float
+    k_estimate: float
+    continuous: ContinuousNumbers
+    new: OrderNumbers
+    old: OrderNumbers
+    accuracy: dict[Order, Accuracy]
+
+
 def report(rows: list[TickStudyRow], setting: Setting) -> Findings:
     """The thresholds and how they move with the tick. The paper, without ticks, claims nothing."""
     options = setting.options
     limit = limit_of(rows)
-    numbers: dict[str, Any] = {
+    numbers: Numbers = {
         "tick_s": options["tick"],
         "latency_s": options["latency"],
         "k_hopf": limit["k_c"],
         "k_estimate": estimate(wheel_of(options)),
-        CONTINUOUS: {
+        "continuous": {
             "k_c": limit["k_c"],
             "k_rolls": limit["k_rolls"],
             "k_stops": limit["k_stops"],
             "hz": limit["hz"],
             "note": limit["note"],
         },
-        **{order: _numbers(rows, order, limit["k_c"]) for order in ORDERS},
+        "new": _numbers(rows, NEW, limit["k_c"]),
+        "old": _numbers(rows, OLD, limit["k_c"]),
         "accuracy": {
             order: _accuracy(rows, order, limit, late=options["latency"] > 0.0) for order in ORDERS
         },
@@ -56,7 +112,7 @@ def shift_pct(k_c: float | None, k_hopf: float) -> float | None:
     return None if k_c is None else 100 * (k_c / k_hopf - 1)
 
 
-def _numbers(rows: list[TickStudyRow], order: Order, k_hopf: float) -> dict[str, Any]:
+def _numbers(rows: list[TickStudyRow], order: Order, k_hopf: float) -> OrderNumbers:
     point = point_of(rows, order)
     k_c_at = {row["tick_s"]: row["k_c"] for row in over_ticks(rows, order)}
     slopes = [(k_c - k_hopf) / tick_s for tick_s, k_c in _short(rows, order)]
@@ -74,9 +130,7 @@ def _numbers(rows: list[TickStudyRow], order: Order, k_hopf: float) -> dict[str,
     }
 
 
-def _accuracy(
-    rows: list[TickStudyRow], order: Order, limit: LimitRow, *, late: bool
-) -> dict[str, Any]:
+def _accuracy(rows: list[TickStudyRow], order: Order, limit: LimitRow, *, late: bool) -> Accuracy:
     """Relative differences between methods. late: whether there is a latency."""
     check = check_of(rows, order)
     k_cs = [k_c for _, k_c in _short(rows, order)]
