@@ -31,26 +31,71 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Tally:
-    """A tap that counts ticks, lost ticks and restarts, and remembers a fault."""
+    """A tap that counts what there is of the ticks that were due, and remembers a fault.
 
-    def __init__(self) -> None:
+    Args:
+        seconds: How long the robot is recorded (s of its time).
+
+    Attributes:
+        ticks: How many records came.
+        missing: How many records were lost on the way.
+        missed: How many deadlines passed without a tick, as the robot counts them. Those among lost
+            records are not known.
+        restarts: How often the robot's program has started again.
+        fault: Why the robot fell into a fault; empty if it did not.
+    """
+
+    def __init__(self, seconds: float) -> None:
         self.ticks = 0
         self.missing = 0
+        self.missed = 0
         self.restarts = 0
         self.fault = ""
+        self._seconds = seconds
+        self._end_s = inf
+        self._tick_s = inf
+        self._latest: Record | None = None
+
+    @property
+    def due(self) -> int:
+        """How many ticks were due."""
+        return self.ticks + self.missing + self.missed
 
     def take_records(self, records: list[Record]) -> None:
-        """Count records."""
+        """Count records, and the deadlines that were missed between them."""
         self.ticks += len(records)
+        self.missed += sum(record.missed for record in records)
+        if self._latest is None and records:
+            self._end_s = records[0].t_s + self._seconds
+            self.missed -= records[0].missed  # they were due before
+        self._latest = records[-1] if records else self._latest
 
     def take_event(self, event: dict[str, Any]) -> None:
-        """Count lost ticks and restarts; remember the fault."""
+        """Count lost records and restarts; remember the fault and the control period."""
+        self._tick_s = event.get("params", event.get("set", {})).get("tick_s", self._tick_s)
         if event["event"] == "lost":
             self.missing += event["tick"] - event["from"]
         elif event["event"] == "restart":
             self.restarts += 1
+            self._latest = None
         elif event["event"] == "fault":
             self.fault = str(event["reason"])
+
+    def end(self, recent: list[Record]) -> None:
+        """Count the deadlines that were missed between the last record and the end of the time.
+
+        Args:
+            recent: The robot's latest records. The first one behind the end says how many deadlines
+                passed before it.
+        """
+        if self._latest is None:
+            return
+        for record in reversed(recent):
+            if record.tick == self._latest.tick + 1:
+                due_s = record.t_s - record.late_s
+                missed_s = (due_s - back * self._tick_s for back in range(1, record.missed + 1))
+                self.missed += sum(time_s < self._end_s for time_s in missed_s)
+                return
 
 
 def run(options: argparse.Namespace) -> int:
@@ -60,7 +105,7 @@ def run(options: argparse.Namespace) -> int:
         Interrupted: The recording was interrupted.
         RobotFault: The robot fell into a fault meanwhile.
     """
-    tally = Tally()
+    tally = Tally(options.seconds)
     path: Path | None = None
     interrupted = False
     try:
@@ -69,6 +114,7 @@ def run(options: argparse.Namespace) -> int:
             span = Span(options.seconds, tap, tally)
             robot.add_tap(span)
             _wait(robot, options.seconds, span)
+            tally.end(robot.recent())
     except KeyboardInterrupt:
         if path is None:  # there is no log yet
             raise
@@ -120,7 +166,9 @@ def _answer(
     facts: dict[str, Any] = {
         "log": str(path),
         "ticks": tally.ticks,
+        "due": tally.due,
         "missing": tally.missing,
+        "missed": tally.missed,
         "restarts": tally.restarts,
         "interrupted": interrupted,
     }
@@ -132,4 +180,9 @@ def _answer(
     )
     if tally.fault:
         facts["fault"] = tally.fault
-    answer(options, facts, f"{tally.ticks} ticks in {path}, {tally.missing} missing{more}")
+    deadlines = "1 deadline" if tally.missed == 1 else f"{tally.missed:,} deadlines"
+    words = (
+        f"{tally.ticks:,} of {tally.due:,} due ticks in {path}: the robot missed {deadlines},"
+        f" {tally.missing:,} records missing{more}"
+    )
+    answer(options, facts, words)
