@@ -16,6 +16,7 @@ from host.commands._parser import Parser, join_negative
 from host.commands._signals import Interrupts, interruptible
 from host.commands._streams import OUTPUT, drop_output, prepare
 from host.errors import Interrupted
+from host.util.own_name import choose
 from robot import __version__
 
 VERBS = (
@@ -27,6 +28,7 @@ VERBS = (
     "stop",
     "clear",
     "status",
+    "identify",
     "params",
     "record",
     "watch",
@@ -117,6 +119,7 @@ def _run(arguments: list[str]) -> int:
         return 0
     refuse_unused(options)
     name_robot(options.brick, options.token)
+    choose(options.own_name)
     _give_params(options)
     status = int(options.run(options))
     print_answer(None)

@@ -13,6 +13,7 @@ from host.kicking.outcome import (
     advice,
     describe,
     kick_and_watch,
+    require_control,
     require_running,
     wait_settled,
 )
@@ -101,6 +102,7 @@ class Robot(client.Robot):
             KickctlError: The robot refuses the kick, or cannot be reached.
         """
         require_running(self)
+        require_control(self)
         with self.recording() as log:
             if not now and not wait_settled(self):
                 raise NotDone(

@@ -43,6 +43,7 @@ REAL_TIME = (
     "tests/link/test_robots_line.py",
     "tests/link/test_serial.py",
     "tests/link/test_stop.py",
+    "tests/link/test_who_drives.py",
     "tests/sysfs/",
     "tests/unit/robot/test_watchdog.py",
 )

@@ -66,9 +66,34 @@ class Connection(LastingLink):
             LeaseLost: Another host controls the robot.
             RefusedByRobot: This machine does not have the robot's token.
         """
-        self.request("lease", sealed=True)
+        self._take_lease({})
+
+    def take_over(self) -> None:
+        """Take control, also from another host. The robot goes on as it is.
+
+        The other host hears who has taken over. It can take over in turn, but only on purpose.
+
+        Raises:
+            RefusedByRobot: This machine does not have the robot's token, or the robot's program is
+                too old.
+        """
+        self._need_minor(2, "a take-over")
+        self._take_lease({"take_over": True})
+
+    def _take_lease(self, arguments: dict[str, Any]) -> None:
+        self.request("lease", arguments, sealed=True)
         self.gain_control()
         neighbours.take_control(self)
+
+    def _need_minor(self, minor: int, what: str) -> None:
+        """Raise RefusedByRobot if the robot's program is older than protocol 1.`minor`."""
+        protocol = self.hello["protocol"]
+        if protocol < [1, minor]:
+            raise RefusedByRobot(
+                f"the robot's program is too old for {what}: it has protocol"
+                f" {'.'.join(map(str, protocol))}",
+                f"bring this release to the robot: {deploy_command()}",
+            )
 
     def release(self) -> None:
         """Give control back; the robot goes on as it is."""

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import isfinite
 from typing import Any, NamedTuple
 
 from host.client.stop import Stopped, answered
-from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot
+from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot, printable
 from host.util.arguments import plain, shown, wrong
 from robot import wire
 from robot.record import Record, unpack
 
 _MAX_UNCLAIMED = 64
-_HELLO_FIELDS = {
+_HELLO_FIELDS: dict[str, Callable[[Any], Any]] = {
+    "protocol": lambda protocol: [int(number) for number in protocol],
     "boot": str,
     "software": str,
     "machine": str,
@@ -37,7 +38,8 @@ class Conversation:
     """One robot's answers, in order.
 
     session: how often the conversation has begun; an answer belongs to the session it came in.
-    stopped: the robot's latest answer to a STOP.
+    stopped: the robot's latest answer to a STOP. taken_over_by: who has taken control from this
+    program, as the robot has said last.
     """
 
     def __init__(self, token: bytes | None, name: str, client: str) -> None:
@@ -46,6 +48,7 @@ class Conversation:
         self.trusted = False
         self.session = 0
         self.stopped: Stopped | None = None
+        self.taken_over_by: str | None = None
         self._name = name
         self._client = client
         self._nonce = b""
@@ -164,6 +167,7 @@ class Conversation:
         if kind == wire.HELLO:
             if message["host_nonce"] == self._nonce.hex():
                 bytes.fromhex(message["nonce"])
+                self._hear_of_takeover(message)
                 self.hello = {
                     **message,
                     **{name: of_type(message[name]) for name, of_type in _HELLO_FIELDS.items()},
@@ -183,9 +187,15 @@ class Conversation:
             elif number is None:
                 self._refusal = reply["error"]
             elif self.hello:  # before it, answers to an earlier user of the line may come
+                self._hear_of_takeover(reply.get("result", {}))
                 self._answers[number] = reply
                 while len(self._answers) > _MAX_UNCLAIMED:
                     del self._answers[next(iter(self._answers))]
+
+    def _hear_of_takeover(self, message: dict[str, Any]) -> None:
+        if "taken_over_by" in message:
+            name = message["taken_over_by"]
+            self.taken_over_by = None if name is None else printable(str(name))
 
 
 def _body(number: int, command: str, arguments: dict[str, Any]) -> bytes:

@@ -17,15 +17,15 @@ from host.client.silence import Silence
 from host.client.stream import Stream
 from host.errors import KickctlError, NoLink, RefusedByRobot, WrongUse
 from host.link.transport import Link, LinkLost
-from host.util.arguments import need_seconds, need_text, shown, wrong
+from host.util.arguments import need_seconds, shown, wrong
 from host.util.callbacks import failure_of
 from host.util.interrupts import uninterrupted
+from host.util.own_name import need_name, own_name
 from robot.wire import TOKEN_BYTES
+from robot.words import person
 
 # The robot counts a silent host as lost after half a second by default.
 HEARTBEAT_S = 0.1
-# The robot shows so much of a name.
-NAME_LETTERS = 40
 # A link that breaks sooner was no good one: the pause before the next attempt grows.
 GOOD_S = 5.0
 FIRST_PAUSE_S, GROWTH, LONGEST_PAUSE_S = 0.1, 3.0, 10.0
@@ -40,7 +40,8 @@ class LastingLink:
     Args:
         link: The way to the robot, not opened yet.
         token: The robot's token; None observes.
-        name: Who this is, for the robot and for other people, in at most 40 letters.
+        name: Who this is, for the robot and for other people, in at most 40 letters; by default
+            the user and the machine, as in 'anna@lab-3'.
 
     Attributes:
         link: The way to the robot.
@@ -56,8 +57,9 @@ class LastingLink:
     silence_s = 2.0
     reconnect_s = 10.0
 
-    def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
-        _check(link, token, name)
+    def __init__(self, link: Link, token: bytes | None, name: str | None = None) -> None:
+        name = own_name() if name is None else need_name(name)
+        _check(link, token)
         self.link = link
         self.name = name
         self.stream = Stream()
@@ -138,12 +140,25 @@ class LastingLink:
     def gain_control(self) -> None:
         """This connection drives the robot now, instead of another one of this program."""
         self._heartbeat_due = 0.0
+        self._talk.taken_over_by = self._control.taken_over_by = None
         self._control.boot = self._talk.hello["boot"]
         self._control.held = True
 
     def lose_control(self) -> None:
         """Another connection of this program drives the robot now."""
         self._control.held = False
+
+    def _hear_of_takeover(self) -> None:
+        """Give up control if somebody has taken over; only a person takes it back."""
+        if not self._control.held or self._talk.taken_over_by is None:
+            return
+        self._control.held = False
+        self._control.taken_over_by = self._talk.taken_over_by
+        logging.getLogger("kickctl").warning(
+            "%s has taken over the robot at %s; this program no longer drives it",
+            person(self._talk.taken_over_by),
+            self.link.uri,
+        )
 
     def pump(self, timeout_s: float) -> bool:
         """Take in what the robot has sent.
@@ -193,6 +208,7 @@ class LastingLink:
                 self._give_up_at = None
                 self._silence.hear(self.link.now(), more=self.stream.wanted)
                 self.stream.take(list(self._talk.feed(data)), self.link.now())
+                self._hear_of_takeover()
         self.stream.call_after()
         return bool(data)
 
@@ -215,6 +231,7 @@ class LastingLink:
         self.link.open()
         try:
             greet(self.link, self._talk, self._send, self.answer_s)
+            self._hear_of_takeover()
             if self._control.held:
                 self._retake_lease()
             self._silence.begin()
@@ -328,7 +345,7 @@ class LastingLink:
         return True
 
 
-def _check(link: object, token: object, name: object) -> None:
+def _check(link: object, token: object) -> None:
     """Raise WrongUse for what a connection cannot be made of."""
     if not hasattr(link, "another"):
         raise WrongUse(
@@ -336,8 +353,6 @@ def _check(link: object, token: object, name: object) -> None:
         )
     if token is not None and not isinstance(token, bytes):
         raise wrong("token", token, f"its {TOKEN_BYTES} bytes, or None to look on")
-    if len(need_text("name", name, "text")) > NAME_LETTERS:
-        raise wrong("name", name, f"at most {NAME_LETTERS} letters")
 
 
 def _keep_alive(connection: ref[LastingLink], closed: threading.Event) -> None:

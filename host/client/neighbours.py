@@ -21,13 +21,17 @@ _PROGRAM = uuid.uuid4().hex
 
 
 class Control:
-    """Whether a connection drives its robot. It outlives the connection, so as to be inherited."""
+    """Whether a connection drives its robot. It outlives the connection, so as to be inherited.
+
+    taken_over_by: who has taken control from it; None if nobody has, or it has control again.
+    """
 
     def __init__(self, name: str, link: Link) -> None:
         self.name = name
         self.uri = link.uri
         self.embedded = link.virtual
         self.held = False
+        self.taken_over_by: str | None = None
         self.boot: object = None
 
 

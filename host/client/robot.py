@@ -17,10 +17,11 @@ from typing import Any, Self
 
 from host.client.access import find_token
 from host.client.watching import Watcher
-from host.errors import KickctlError, LeaseLost, NoLink
+from host.errors import KickctlError, LeaseLost, NoLink, WrongUse
 from host.link.addresses import chosen, make_link
 from host.link.transport import Link
 from robot.record import STATES
+from robot.words import person
 
 
 class Robot(Watcher):
@@ -34,7 +35,7 @@ class Robot(Watcher):
         unanswered: The command that was sent last, if no answer has come; else empty.
     """
 
-    def __init__(self, link: Link, token: bytes | None, name: str = "kickctl") -> None:
+    def __init__(self, link: Link, token: bytes | None, name: str | None = None) -> None:
         self.confirmed: Counter[str] = Counter()
         self.unanswered = ""
         super().__init__(link, token, name)
@@ -45,9 +46,10 @@ class Robot(Watcher):
         uri: str | None = None,
         seed: int | None = None,
         token: str | Path | None = None,
-        name: str = "kickctl",
+        name: str | None = None,
         *,
         observe: bool = False,
+        take_over: bool = False,
     ) -> Self:
         """Connect to a robot, real or simulated; to be used as a `with` block.
 
@@ -56,8 +58,10 @@ class Robot(Watcher):
                 simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.
             seed: Fixes all chances of the simulated robot.
             token: The path of the token file, by default the usual place.
-            name: Who this is, for the robot and for other people, in at most 40 letters.
+            name: Who this is, for the robot and for other people, in at most 40 letters; by
+                default the user and the machine, as in 'anna@lab-3'.
             observe: Only look on, and stop the robot if need be, which takes no token.
+            take_over: Take control at once, also from another host, which hears of it.
 
         Returns:
             The robot, to be used in a `with` block or closed.
@@ -65,8 +69,17 @@ class Robot(Watcher):
         Raises:
             KickctlError: The robot cannot be reached, or refuses.
         """
+        if observe and take_over:
+            raise WrongUse("who only looks on cannot take over", "leave observe or take_over out")
         link = make_link(chosen(uri), seed)
-        return cls(link, None if observe else find_token(link, token), name)
+        robot = cls(link, None if observe else find_token(link, token), name)
+        if take_over:
+            try:
+                robot.take_over()
+            except BaseException:
+                robot.close()
+                raise
+        return robot
 
     def __repr__(self) -> str:
         facts = [f"simulated, seed {self.hello['seed']}"] if self.link.virtual else []
@@ -101,16 +114,19 @@ class Robot(Watcher):
         Raises:
             KickctlError: The robot refuses, does not answer, or cannot be reached.
         """
-        if not self.drives:
-            self.lease()
+        self.require_control()
         self.unanswered = command
         try:
             try:
                 answer = self.request(command, arguments, sealed=True)
             except LeaseLost:
-                # The robot took this host for lost while the link was silent; what was refused has
-                # changed nothing.
-                self.lease()
+                # Either somebody has taken over, as the answer to a heartbeat says, or the robot
+                # took this host for lost while the link was silent. What was refused has changed
+                # nothing.
+                self.request("heartbeat", sealed=True)
+                if self.drives:
+                    self.lease()
+                self.require_control()
                 answer = self.request(command, arguments, sealed=True)
         except NoLink:
             raise
@@ -120,6 +136,25 @@ class Robot(Watcher):
         self.confirmed[command] += 1
         self.unanswered = ""
         return int(answer["tick"])
+
+    def require_control(self) -> None:
+        """Take control unless this connection has it, or somebody has taken over from it.
+
+        Raises:
+            LeaseLost: Another host controls the robot, or somebody has taken over: then only
+                `lease` and `take_over` take control again.
+            RefusedByRobot: This machine does not have the robot's token.
+        """
+        if self.drives:
+            return
+        winner = self._control.taken_over_by
+        if winner is not None:
+            raise LeaseLost(
+                f"{person(winner)} has taken over, so this program no longer drives the robot",
+                "robot.lease() takes control again once they have finished, robot.take_over() at"
+                " once. Anyone may stop the robot",
+            )
+        self.lease()
 
     def start(self) -> int:
         """Run from random membrane potentials.

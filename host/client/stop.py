@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from host.errors import NoLink, printable
 from host.link.transport import Link, LinkLost
+from host.util.own_name import own_name
 from robot import wire
 from robot.record import STATES, unpack
 
@@ -78,14 +79,14 @@ def answered(result: dict[str, Any]) -> Stopped:
     return Stopped(int(said["tick"]), str(said["state"]), printable(str(said["reason"])))
 
 
-def stop_robot(link: Link, name: str = "kickctl", patience_s: float | None = None) -> Stopped:
+def stop_robot(link: Link, name: str | None = None, patience_s: float | None = None) -> Stopped:
     """Open another link, send the STOP frame first and alone, and wait until it is confirmed.
 
     The other link is closed in the end.
 
     Args:
         link: A way to the robot, which stays as it is.
-        name: Who stops the robot, for people.
+        name: Who stops the robot, for people; by default this program's own name.
         patience_s: How long the robot may take, by default as long as it may for a hello.
 
     Returns:
@@ -94,7 +95,7 @@ def stop_robot(link: Link, name: str = "kickctl", patience_s: float | None = Non
     Raises:
         NoLink: Nobody has confirmed the stop, so the motors may be running.
     """
-    frame, decoder = stop_frame(name), wire.Decoder()
+    frame, decoder = stop_frame(name or own_name()), wire.Decoder()
     link = link.another()
     try:
         link.open()

@@ -32,10 +32,22 @@ class Watcher(Connection):
         """What the robot does now.
 
         Returns:
-            state, reason, tick, parameters in force, battery (V), who controls it, and how punctual
-            its ticks are.
+            state, reason, tick, parameters in force, battery (V), who controls it and for how long
+            (s), and how punctual its ticks are.
         """
         return self.request("status")
+
+    def identify(self) -> dict[str, Any]:
+        """Have the robot show for 3 s which one it is: by its lights, a beep, or in words.
+
+        It needs no token. The call does not wait until the robot is done.
+
+        Returns:
+            seconds: for how long it will still show itself. ways: how, of 'lights', 'beep' and
+            'words' (on its program's standard error); empty for an embedded robot.
+        """
+        self._need_minor(2, "identify")
+        return self.request("identify")
 
     def describe(self, table: str) -> list[dict[str, Any]]:
         """One of the robot's own tables.

@@ -9,12 +9,13 @@ from host.errors import WrongUse
 from host.util.numbers import Number
 
 # The options for robots. Verbs that use only some of them say so in USES.
-EVERY = ("brick", "seed", "set", "token")
+EVERY = ("brick", "seed", "set", "token", "name")
 _REFUSED = {
     "brick": ("--brick chooses a robot, and `{}` reaches none", "leave it out"),
     "seed": ("--seed fixes chances, and `{}` has none", "leave it out"),
     "set": ("--set gives parameters to a simulated robot, and `{}` has none", "leave it out"),
     "token": ("--token opens a robot, and `{}` reaches none", "leave it out"),
+    "name": ("--name says who drives a robot, and `{}` drives none", "leave it out"),
 }
 _SETS_ITSELF = (
     "--set gives parameters to a simulated robot, and `{}` sets those of its robots itself",
@@ -60,6 +61,12 @@ def common(*, defaults: bool, used: Sequence[str] = EVERY) -> argparse.ArgumentP
         metavar="NAME=VALUE",
     )
     add("token", "the robot's token file", metavar="FILE")
+    add(
+        "name",
+        "who you are, for the robot and for other people (default: user@machine)",
+        dest="own_name",
+        metavar="TEXT",
+    )
     off = False if defaults else argparse.SUPPRESS
     group.add_argument(
         "--json",
@@ -77,12 +84,22 @@ def refuse_unused(options: argparse.Namespace) -> None:
         "seed": options.seed is not None,
         "set": options.set_before or hasattr(options, "set_after"),
         "token": options.token is not None,
+        "name": options.own_name is not None,
     }
     for name in EVERY:
         if given[name] and name not in options.used:
             itself = name == "set" and "brick" in options.used
             why, remedy = _SETS_ITSELF if itself else _REFUSED[name]
             raise WrongUse(why.format(options.command), remedy.format(options.command))
+
+
+def add_take_over(parser: argparse.ArgumentParser) -> None:
+    """Add --take-over, for verbs that drive the robot."""
+    parser.add_argument(
+        "--take-over",
+        action="store_true",
+        help="take control from who drives the robot now; they hear that you did",
+    )
 
 
 def asks_for_json(arguments: Sequence[str]) -> bool:

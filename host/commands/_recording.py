@@ -47,6 +47,12 @@ class Recording:
         self.log.take_event(event)
         self._try(lambda: self._file.take_event(event))
 
+    def rename(self, what: str, instead: str) -> None:
+        """Say something else in the file's name; it keeps its name where that is not possible."""
+        from host.logs.log_folder import rename_log
+
+        self.path = rename_log(self.path, instead.join(self.path.name.rsplit(what, 1)))
+
     def close(self) -> None:
         """Close the file."""
         try:
@@ -70,12 +76,13 @@ class Recording:
 
 
 @contextmanager
-def recorded(robot: Robot, what: str) -> Iterator[Recording]:
+def recorded(robot: Robot, what: str, *, of_kick: bool = False) -> Iterator[Recording]:
     """Record all that the robot does meanwhile, in memory and in a new file under logs/.
 
     Args:
         robot: The robot.
         what: What is done, for the file's name.
+        of_kick: Whether that is a kick. If it comes to none, the file is named no-kick-... instead.
 
     Yields:
         The recording.
@@ -90,6 +97,8 @@ def recorded(robot: Robot, what: str) -> Iterator[Recording]:
         robot.add_tap(recording)
         yield recording
     except (KickctlError, KeyboardInterrupt) as error:
+        if of_kick and not recording.log.kicks():
+            recording.rename(what, f"no-{what}")
         error.add_note(f"what was recorded until then is in {recording.path}")
         raise
     finally:

@@ -132,7 +132,13 @@ def robot_of(
     """
     robot = None
     try:
-        with connect(options.brick, options.seed, options.token, observe=observe) as robot:
+        with connect(
+            options.brick,
+            options.seed,
+            options.token,
+            observe=observe,
+            take_over=getattr(options, "take_over", False),
+        ) as robot:
             robot.on_trouble = say
             if robot.link.virtual:
                 say(f"simulated robot, embedded ({robot.link.uri}, seed {robot.hello['seed']})")

@@ -1,11 +1,19 @@
 """kickctl demo."""
 
+from __future__ import annotations
+
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of, say
 from host.errors import NotDone
+
+if TYPE_CHECKING:
+    from host.client.robot import Robot
 
 HELP = (
     "start, roll, and reverse the robot by a kick, and measure some of the paper's claims on the"
@@ -18,6 +26,16 @@ INVERSIONS = 50
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The demo has no arguments of its own."""
+
+
+@contextmanager
+def _driven(options: argparse.Namespace) -> Iterator[Robot]:
+    """The robot, driven from here: who may not drive it gets no log of a demo."""
+    from host.kicking.outcome import require_control
+
+    with robot_of(options, moves=True, sends="kick") as robot:
+        require_control(robot)
+        yield robot
 
 
 def run(options: argparse.Namespace) -> int:
@@ -35,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     from host.util.progress import progress
 
     with (
-        robot_of(options, moves=True, sends="kick") as robot,
+        _driven(options) as robot,
         recorded(robot, "demo") as recording,
         progress("demo", 4) as advance,
     ):

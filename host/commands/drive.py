@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from host.commands._motor import add_motor
+from host.commands._options import add_take_over
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
 from host.errors import NotDone
@@ -17,17 +18,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "primitive", choices=("forward", "backward", "spin-left", "spin-right", "stopped")
     )
     add_motor(parser)
+    add_take_over(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Start the robot if it does not run, and drive there. Raises NotDone if it gets nowhere."""
-    from host.kicking.outcome import require_running
+    from host.kicking.outcome import require_control, require_running
     from host.kicking.primitives import drive
     from host.kicking.robot_motor import motor_of
 
     with robot_of(options, moves=True, sends="kick") as robot:
         # Before anything moves.
         motor = None if options.primitive == "stopped" else motor_of(robot, options.motor)
+        require_control(robot)
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)

@@ -10,7 +10,7 @@ from host.runs.registry import add_options, options_given
 
 HELP = "run one of the experiments: logs, a table, a figure, and the paper's claims, measured"
 # It sets the parameters of its robots itself.
-USES = ("brick", "seed", "token")
+USES = ("brick", "seed", "token", "name")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from host.commands._options import add_take_over
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
 from host.errors import NotDone, WrongUse
@@ -72,6 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="kick at once, without waiting until the wheels have settled",
     )
+    add_take_over(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -79,6 +81,7 @@ def run(options: argparse.Namespace) -> int:
     from host.kicking.outcome import (
         describe,
         kick_and_watch,
+        require_control,
         require_done,
         require_running,
         title,
@@ -92,7 +95,8 @@ def run(options: argparse.Namespace) -> int:
     _check(options.mode, options.wheel, details)
     with robot_of(options, moves=True, sends="kick") as robot:
         require_running(robot)
-        with recorded(robot, _in_name(options)) as recording:
+        require_control(robot)
+        with recorded(robot, _in_name(options), of_kick=True) as recording:
             if not options.now and not wait_settled(robot):
                 raise NotDone(
                     "the wheels did not settle",

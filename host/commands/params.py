@@ -4,6 +4,7 @@ import argparse
 from typing import Any
 
 from host.client.robot import Robot
+from host.commands._options import add_take_over
 from host.commands._rest import explain_rest
 from host.commands._terminal import print_result, print_table, robot_of, say, show
 from host.errors import WrongUse
@@ -18,6 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The action and its names."""
     parser.add_argument("action", choices=("list", "get", "set", "reset"))
     parser.add_argument("names", nargs="*", metavar="NAME[=VALUE]")
+    add_take_over(parser)
 
 
 def run(options: argparse.Namespace) -> int:

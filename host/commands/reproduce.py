@@ -14,7 +14,7 @@ HELP = (
     " figures"
 )
 # It sets the parameters of its robots itself.
-USES = ("brick", "seed", "token")
+USES = ("brick", "seed", "token", "name")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

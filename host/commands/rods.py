@@ -35,6 +35,7 @@ def run(options: argparse.Namespace) -> int:
     from host.kicking.outcome import (
         describe,
         kick_and_watch,
+        require_control,
         require_done,
         require_running,
         wait_settled,
@@ -46,6 +47,7 @@ def run(options: argparse.Namespace) -> int:
     with Movie(options.out, SIZE, new=not options.force) as movie:
         with robot_of(options, moves=True, sends="kick") as robot:
             require_running(robot)
+            require_control(robot)
             with recorded(robot, "rods") as recording:
                 log = recording.log
                 if not wait_settled(robot):

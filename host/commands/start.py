@@ -2,13 +2,15 @@
 
 import argparse
 
+from host.commands._options import add_take_over
 from host.commands._terminal import answer, robot_of
 
 HELP = "start the robot from random membrane potentials"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add nothing: it has no arguments of its own."""
+    """Add whether to take control from another host."""
+    add_take_over(parser)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,9 +1,12 @@
 """kickctl status."""
 
 import argparse
+from typing import Any
 
 from host.commands._rest import explain_rest
 from host.commands._terminal import robot_of, show
+from host.errors import printable
+from robot.words import duration, person
 
 HELP = "show what the robot does, who controls it, and how punctual its ticks are"
 
@@ -31,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         battery = "unknown" if status["battery_v"] is None else f"{status['battery_v']:.2f} V"
         print(f"{status['brick']}: {status['state']} ({status['reason']}), tick {status['tick']}")
-        print(f"battery {battery}; controlled by {status['controller'] or 'nobody'}")
+        print(f"battery {battery}; {_driver(status)}")
         for line in rest:
             print(line)
         edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
@@ -46,3 +49,12 @@ def run(options: argparse.Namespace) -> int:
                 print(f"  began {late} ms late: {count}")
     require_no_fault(status)
     return 0
+
+
+def _driver(status: dict[str, Any]) -> str:
+    """Who drives the robot, and for how long. Robots before protocol 1.2 do not say how long."""
+    if status["controller"] is None:
+        return "driven by nobody"
+    driver = f"driven by {person(printable(str(status['controller'])))}"
+    held_s = status.get("controller_held_s")
+    return driver if held_s is None else f"{driver} for {duration(float(held_s))}"

@@ -99,6 +99,18 @@ def require_running(robot: Robot) -> None:
         )
 
 
+def require_control(robot: Robot) -> None:
+    """Take control before a wait, so that a refusal comes before it.
+
+    Nobody else controls an embedded robot, and to ask it would cost a tick of its time.
+
+    Raises:
+        RefusedByRobot: Another host controls the robot, or this machine does not have its token.
+    """
+    if not robot.link.virtual:
+        robot.require_control()
+
+
 def kick_and_watch(
     robot: Robot, log: Log, mode: str, *, wheel: str = "both", **details: Any
 ) -> Outcome:

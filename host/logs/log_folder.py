@@ -91,6 +91,30 @@ def under_free_name(path: Path, write: Callable[[Path], T]) -> T:
     raise AssertionError("numbers do not end")
 
 
+def rename_log(path: Path, name: str) -> Path:
+    """Give a log another name in its folder, or the next free one after it; replace nothing.
+
+    Args:
+        path: The log, which may still be written.
+        name: The new name, as in NAME.mcap.
+
+    Returns:
+        The log's path from now on: the old one if the system does not let it be renamed.
+    """
+
+    def move(target: Path) -> Path:
+        try:
+            target.touch(exist_ok=False)
+        except FileExistsError:
+            raise NameTaken(target) from None
+        return path.replace(target)
+
+    try:
+        return under_free_name(path.with_name(name), move)
+    except OSError:
+        return path
+
+
 class Summary(NamedTuple):
     """One line of a list of logs.
 

@@ -13,7 +13,8 @@ from typing import Any
 from urllib.parse import urlencode
 
 from host.client.robot import Robot, connect
-from host.errors import NoLink, NotDone, RobotFault
+from host.errors import LeaseLost, NoLink, NotDone, RobotFault
+from host.kicking.outcome import require_control
 from host.kicking.robot_claims import PAPER
 from host.link.addresses import SIM, sim_options
 from host.logs.log import Log
@@ -49,6 +50,7 @@ def robots(
         with connect(uri, token=token) as robot:
             robot.on_trouble = say
             _require_same_sources(robot)
+            require_control(robot)
             own = {name: robot.status()["params"][name] for name in PAPER}
             try:
                 yield lambda cell: _try_often(experiment, cell, robot, setting, logs, say)
@@ -57,6 +59,8 @@ def robots(
                 with suppress(NoLink):
                     robot.stop()
                 raise
+            except LeaseLost:
+                raise  # who drives it now decides what it does
             except BaseException:
                 _leave(robot, own)
                 raise

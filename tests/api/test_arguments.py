@@ -29,6 +29,7 @@ NO_SECONDS = ("1", None, -1, float("nan"), -float("inf"), True, b"1", [], Odd(),
 NO_FUNCTION = (3, "print", b"", [], Odd())
 NO_PATH = (5, 1.5, b"path", True, [], Odd(), "", "a\0b")
 NO_SEED = ("1", 1.5, -1, True, b"1", [], Odd(), 10**40, 10**5000)
+NO_NAME = ("", " ", "x" * 41, "x" * 100_000, "a\x1b[2J", "a\n")
 NO_ADDRESS = (5, b"sim://", True, [], {}, Odd(), "", "sim", "sim://?k=2&k=3", "sim://?seed=1e3")
 NO_VALUE = (b"1", [Odd()], {5: 1}, Odd(), 1j, 10**5000, ROUND, float("nan"), "x" * 100_000)
 
@@ -41,7 +42,7 @@ TABLE = [
             "uri": NO_ADDRESS,
             "seed": NO_SEED,
             "token": NO_PATH,
-            "name": (*NO_TEXT, "", "x" * 41, "x" * 100_000),
+            "name": (*(value for value in NO_TEXT if value is not None), *NO_NAME),
         }.items()
     ),
     *(

@@ -41,7 +41,7 @@ NEEDS = {
 UNUSED = [
     (words, option)
     for words, parser in LEAVES.items()
-    for option in ("--brick", "--token", "--set", "--seed")
+    for option in ("--brick", "--token", "--set", "--seed", "--name")
     if option[2:] not in parser.get_default("used")
 ]
 

@@ -13,6 +13,7 @@ from host.client.robot import Robot, connect
 from host.errors import NoLink, RefusedByRobot, WrongUse
 from host.link.transport import TcpLink
 from host.logs.log import Log
+from host.util.own_name import own_name
 from tests.link.machines import RigLink, TcpRobot, open_files
 from tests.rig import TOKEN, packed
 from tests.talk import Client
@@ -102,7 +103,7 @@ def test_a_host_whose_place_was_taken_is_told_so(robot, link):
     with pytest.raises(RefusedByRobot, match="other"):
         robot.kick("membrane")
     robot.stop()
-    assert link.loop.safety.reason == "'kickctl' stopped it"
+    assert link.loop.safety.reason == f"'{own_name()}' stopped it"
 
 
 def test_a_host_that_was_away_too_long_is_told_exactly_what_it_lost():

@@ -13,6 +13,7 @@ from host.client.stop import Stopped, confirmation, stop_frame, stop_robot
 from host.errors import KickctlError, NoLink
 from host.link.addresses import make_link
 from host.link.transport import TcpLink
+from host.util.own_name import own_name
 from robot import wire
 from robot.record import STATES
 from robot.session import Session
@@ -85,7 +86,7 @@ def test_motors_are_off_before_the_next_tick_while_another_thread_has_the_lock(l
             done.set()
             holder.join()
     (stop,) = [event for event in link.events() if event["event"] == "stop"]
-    assert (stop["tick"], stop["reason"]) == (due, "'kickctl' stopped it")
+    assert (stop["tick"], stop["reason"]) == (due, f"'{own_name()}' stopped it")
     assert [motor.duty for motor in link.brick.motors] == [0, 0]
 
 
