@@ -1,4 +1,7 @@
-"""What many hosts cost the robot: one drives and kicks, all others watch."""
+"""What many hosts cost the robot: one drives and kicks, all others watch.
+
+`python -m tests.bench_storm 26` measures a class of 26 instead of a full robot.
+"""
 
 import re
 import statistics
@@ -19,16 +22,16 @@ LATE_S = 0.01
 CONNECTS_AT_MOST = 2.0
 
 
-def many_hosts() -> None:
+def many_hosts(many: int = MANY) -> None:
     """Print the robot's CPU time with many hosts against that with few, and what the driver saw."""
     few_s, before, *_ = _crowd(FEW, driver=False)
-    many_s, lateness, kicks, connects = _crowd(MANY, driver=True)
-    edges_s, per_minute = lateness["edges_s"], connects / MANY * 60.0 / SECONDS
+    many_s, lateness, kicks, connects = _crowd(many, driver=True)
+    edges_s, per_minute = lateness["edges_s"], connects / many * 60.0 / SECONDS
     late, late_before = (
         sum(seen["counts"][edges_s.index(LATE_S) + 1 :]) for seen in (lateness, before)
     )
     print(
-        f"{MANY} hosts, one of them driving, for {SECONDS:g} s: the robot's CPU time is"
+        f"{many} hosts, one of them driving, for {SECONDS:g} s: the robot's CPU time is"
         f" {_verdict(many_s / few_s, CPU_AT_MOST)} times that with {FEW} watchers"
         f" ({100 * many_s / SECONDS:.1f} % and {100 * few_s / SECONDS:.1f} % of a core);"
         f" {_verdict(per_minute, CONNECTS_AT_MOST)} connects per host and minute;"
@@ -112,4 +115,4 @@ def _cpu_s(pid):
 
 
 if __name__ == "__main__":
-    many_hosts()
+    many_hosts(*map(int, sys.argv[1:2]))
