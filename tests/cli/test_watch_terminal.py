@@ -14,6 +14,7 @@ import pytest
 
 from host.client.robot import connect
 from host.commands._keys import keys
+from host.commands._watch_keys import KeyActions
 from tests.cli.test_desk import desk_robot
 from tests.lint.sources import ROOT
 
@@ -167,6 +168,18 @@ def test_who_may_not_kick_reads_why_and_goes_on_watching(desk):
             screen.type(b"q")
             assert screen.wait() == 0
         assert teacher.status()["state"] == "stopped"
+
+
+def test_a_stop_waits_for_no_thread_that_looks_for_the_robot(desk):
+    """Whoever reconnects holds the connection's lock for up to ten seconds."""
+    folder, uri = desk
+    words = []
+    with restarted(folder, uri) as robot:
+        actions = KeyActions(robot, words.append, words.append)
+        with robot._lock:
+            actions.press(" ")
+            actions.close()
+        assert words[-1].startswith("stop: motors stopped before tick")
 
 
 @pytest.mark.parametrize(
