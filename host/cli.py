@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from contextlib import redirect_stdout, suppress
 from typing import Any
 
-from host.commands._options import EVERY, asks_for_json, common, refuse_unused
+from host.commands._options import EVERY, asks_for_json, common, join_places, refuse_unused
 from host.commands._parser import Parser, join_negative
 from host.commands._signals import Interrupts, interruptible
 from host.commands._streams import OUTPUT, drop_output, prepare
@@ -35,6 +35,7 @@ VERBS = (
     "log",
     "doctor",
     "discover",
+    "robots",
     "deploy",
     "experiment",
     "theory",
@@ -42,6 +43,9 @@ VERBS = (
     "rods",
     "reproduce",
 )
+
+# `stop` waits for nothing, so it has a way of its own; `deploy` says itself that it has no robot.
+_OWN_WAYS = ("stop", "deploy")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
@@ -70,7 +74,9 @@ def make_parser() -> argparse.ArgumentParser:
             parents=[common(defaults=False, used=getattr(module, "USES", EVERY))],
         )
         module.add_arguments(verb)
-        verb.set_defaults(run=module.run, verb=name)
+        verb.set_defaults(
+            run=module.run, verb=name, in_one_line=getattr(module, "in_one_line", None)
+        )
     return parser
 
 
@@ -117,14 +123,28 @@ def _run(arguments: list[str]) -> int:
         else:
             print_result(help_text.getvalue().removesuffix("\n"))
         return 0
+    join_places(options)
     refuse_unused(options)
     name_robot(options.brick, options.token)
     choose(options.own_name)
     _give_params(options)
-    status = int(options.run(options))
+    status = _run_verb(options)
     print_answer(None)
     sys.stdout.flush()
     return status
+
+
+def _run_verb(options: argparse.Namespace) -> int:
+    """Run the verb on its robot, or on several side by side."""
+    text = options.brick or os.environ.get("KICK_BRICK", "")
+    reaches_one = "brick" in options.used and options.verb not in _OWN_WAYS
+    if reaches_one and (text == "all" or "," in text):
+        from host.commands._side_by_side import on_each
+        from host.link.names import is_several
+
+        if is_several(text):
+            return on_each(options, text, options.in_one_line)
+    return int(options.run(options))
 
 
 def _report(error: BaseException, interrupts: Interrupts, *, in_json: bool) -> int:
@@ -158,8 +178,8 @@ def _report(error: BaseException, interrupts: Interrupts, *, in_json: bool) -> i
 
 def _give_params(options: argparse.Namespace) -> None:
     """Turn --set into a part of the simulated robot's address. Raises WrongUse."""
-    settings = [*(options.set_before or ()), *getattr(options, "set_after", ())]
-    if settings:
-        from host.link.addresses import chosen, with_params
+    if options.set:
+        from host.link.addresses import with_params
+        from host.link.names import address_of
 
-        options.brick = with_params(chosen(options.brick), settings)
+        options.brick = with_params(address_of(options.brick), options.set)

@@ -49,6 +49,10 @@ class LeaseLost(RefusedByRobot):
     """The robot is not, or no longer, controlled by this host."""
 
 
+class TokenRefused(RefusedByRobot):
+    """The robot has another token than this host."""
+
+
 class RobotFault(KickctlError):
     """The robot is in fault."""
 
@@ -69,6 +73,7 @@ _STATUS_BY_CODE = {
     "busy": NotDone,
     "fault": RobotFault,
     "lease": LeaseLost,
+    "token": TokenRefused,
 }
 
 

@@ -40,6 +40,7 @@ REAL_TIME = (
     "tests/link/test_neighbours.py",
     "tests/link/test_program_start.py",
     "tests/link/test_protocol_page.py",
+    "tests/link/test_robots_by_name.py",
     "tests/link/test_robots_line.py",
     "tests/link/test_serial.py",
     "tests/link/test_stop.py",
@@ -65,5 +66,6 @@ def pytest_collection_modifyitems(items):
 def _own_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "token"))
     monkeypatch.delenv("KICK_BRICK", raising=False)

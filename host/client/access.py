@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from pathlib import Path
 
 from host.client.conversation import Conversation
-from host.errors import NoLink, RefusedByRobot
+from host.errors import NoLink, RefusedByRobot, TokenRefused
 from host.link.transport import Link
 from host.util.arguments import need_path
 from robot.token import TokenError, default_path, load
@@ -14,31 +15,39 @@ from robot.token import TokenError, default_path, load
 LOOK_S = 0.1
 
 
-def find_token(link: Link, path: str | Path | None = None) -> bytes | None:
+def find_token(link: Link, path: str | Path | None = None, own: str | None = None) -> bytes | None:
     """The token for a link: its own if it has one, else a file's.
+
+    A file that nobody named on purpose may be unfit: that keeps nobody from looking on.
 
     Args:
         link: The way to the robot.
-        path: The token file, by default the one in the usual place if it is there.
+        path: The token file that somebody named for this connection.
+        own: Else the robot's own token file; by default the one in the usual place.
 
     Returns:
-        The token; None if there is no file in the usual place.
+        The token; None if there is no usable file, and nobody named one.
 
     Raises:
         WrongUse: The path is none.
-        RefusedByRobot: The file holds no token, or others can read it.
+        RefusedByRobot: The file that was named holds no token, or others can read it.
     """
     if path is not None:
         path = need_path("token", path)
-    own: bytes | None = getattr(link, "token", None)
-    if own is not None:
-        return own
-    place = path or default_path()
-    if path is None and not (place and Path(place).exists()):
+    carried: bytes | None = getattr(link, "token", None)
+    if carried is not None:
+        return carried
+    place = path or own or default_path()
+    if path is None and own is None and not (place and Path(place).exists()):
         return None
     try:
         secret: bytes = load(place)
     except TokenError as error:
+        if path is None:
+            logging.getLogger("kickctl").warning(
+                "%s. Without it you may look, and stop the robot, but not move it", error
+            )
+            return None
         raise RefusedByRobot(
             str(error), "name another token file by --token, or leave it to the default place"
         ) from error
@@ -47,6 +56,9 @@ def find_token(link: Link, path: str | Path | None = None) -> bytes | None:
 
 def greet(link: Link, talk: Conversation, send: Callable[[bytes], None], patience_s: float) -> None:
     """Say hello over an open link, and prove the token if there is one.
+
+    Who has another robot's token may do what one without any may do: look, and stop the robot. A
+    refused proof ends the conversation, so another one begins, without the token.
 
     Args:
         link: The open link.
@@ -58,6 +70,26 @@ def greet(link: Link, talk: Conversation, send: Callable[[bytes], None], patienc
         KickctlError: Nobody answers, or the robot refuses.
         LinkLost: The robot hung up.
     """
+    try:
+        _introduce(link, talk, send, patience_s)
+    except TokenRefused as refusal:
+        talk.token = None
+        talk.token_refused = True
+        try:
+            link.open()
+            _introduce(link, talk, send, patience_s)
+        except NoLink:  # such as an ssh that would have to ask for the password again
+            raise refusal from None
+        logging.getLogger("kickctl").warning(
+            "the token on this computer is not that of the robot at %s: you may look, and stop the"
+            " robot, but not move it",
+            link.uri,
+        )
+
+
+def _introduce(
+    link: Link, talk: Conversation, send: Callable[[bytes], None], patience_s: float
+) -> None:
     talk.begin()
     send(talk.hello_frame())
     hear(link, talk, lambda: bool(talk.hello), patience_s)

@@ -126,15 +126,26 @@ class Connection(LastingLink):
             if not self._whole and self._broken is None:
                 self._reopen("it was left half open")
             if sealed and not self._talk.trusted:
-                raise RefusedByRobot(
-                    "this computer does not have the robot's token, so it may only look, and stop"
-                    " the robot",
-                    f"`{deploy_command()}` gives it to both. Or copy the robot's token file to"
-                    f" {default_path() or 'a file that KICK_TOKEN names'}, and chmod 600 it",
-                )
+                raise self._untrusted()
             return self._exchange(
                 lambda: self._talk.request(command, arguments or {}, sealed), command
             )
+
+    def _untrusted(self) -> RefusedByRobot:
+        """The error for what takes the robot's token."""
+        if self._talk.token_refused:
+            return RefusedByRobot(
+                "this computer has the token of another robot, so it may only look, and stop this"
+                " one",
+                "copy the token file of this robot here, chmod 600 it, and name it by --token, or"
+                f" once and for all: kickctl robots add NAME {self.link.uri} --token FILE",
+            )
+        return RefusedByRobot(
+            "this computer does not have the robot's token, so it may only look, and stop the"
+            " robot",
+            f"`{deploy_command()}` gives it to both. Or copy the robot's token file to"
+            f" {default_path() or 'a file that KICK_TOKEN names'}, and chmod 600 it",
+        )
 
     def stop_at_once(self) -> Stopped:
         """Stop the motors, waiting neither for a lock, nor for a handshake, nor for control.

@@ -39,13 +39,15 @@ class Conversation:
 
     session: how often the conversation has begun; an answer belongs to the session it came in.
     stopped: the robot's latest answer to a STOP. taken_over_by: who has taken control from this
-    program, as the robot has said last.
+    program, as the robot has said last. token_refused: whether the robot has another token than
+    this host, which goes on without one.
     """
 
     def __init__(self, token: bytes | None, name: str, client: str) -> None:
         self.token = token
         self.hello: dict[str, Any] = {}
         self.trusted = False
+        self.token_refused = False
         self.session = 0
         self.stopped: Stopped | None = None
         self.taken_over_by: str | None = None

@@ -107,6 +107,11 @@ class LastingLink:
         return self._talk.trusted
 
     @property
+    def token_refused(self) -> bool:
+        """Whether the robot has another token than this host, which may only look and stop it."""
+        return self._talk.token_refused
+
+    @property
     def drives(self) -> bool:
         """Whether this connection controls the robot, as far as it knows."""
         return self._control.held

@@ -18,7 +18,8 @@ from typing import Any, Self
 from host.client.access import find_token
 from host.client.watching import Watcher
 from host.errors import KickctlError, LeaseLost, NoLink, WrongUse
-from host.link.addresses import chosen, make_link
+from host.link.addresses import make_link
+from host.link.names import chosen, own_token
 from host.link.transport import Link
 from robot.record import STATES
 from robot.words import person
@@ -54,10 +55,10 @@ class Robot(Watcher):
         """Connect to a robot, real or simulated; to be used as a `with` block.
 
         Args:
-            uri: The robot's address, by default $KICK_BRICK or the embedded simulated robot. The
-                simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.
+            uri: The robot's name or address, by default $KICK_BRICK or the embedded simulated
+                robot. The simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.
             seed: Fixes all chances of the simulated robot.
-            token: The path of the token file, by default the usual place.
+            token: The path of the token file, by default the robot's own, or the usual place.
             name: Who this is, for the robot and for other people, in at most 40 letters; by
                 default the user and the machine, as in 'anna@lab-3'.
             observe: Only look on, and stop the robot if need be, which takes no token.
@@ -71,8 +72,12 @@ class Robot(Watcher):
         """
         if observe and take_over:
             raise WrongUse("who only looks on cannot take over", "leave observe or take_over out")
-        link = make_link(chosen(uri), seed)
-        robot = cls(link, None if observe else find_token(link, token), name)
+        named = chosen(uri)
+        link = make_link(named.address, seed)
+        if observe:
+            return cls(link, None, name)
+        own = own_token(named) if token is None else None
+        robot = cls(link, find_token(link, token, own), name)
         if take_over:
             try:
                 robot.take_over()

@@ -65,7 +65,7 @@ def print_answer(failure: KickctlError | None) -> None:
         return
     result, essentials = _answers.pop() if _answers else _Answer({}, "")
     if failure is not None:
-        result = {**result, "error": _as_dict(failure)}
+        result = {**result, "error": as_dict(failure)}
         if isinstance(failure, Interrupted) and len(result) > 1:
             result["interrupted"] = True
     print_result(json.dumps(result, allow_nan=False), essentials)
@@ -86,7 +86,8 @@ def show_next(item: dict[str, Any]) -> None:
     print(json.dumps(item, allow_nan=False), flush=True)
 
 
-def _as_dict(failure: KickctlError) -> dict[str, str | int]:
+def as_dict(failure: KickctlError) -> dict[str, str | int]:
+    """An error as JSON has it."""
     return {
         "message": as_typed(failure.message),
         "hint": as_typed(failure.hint),

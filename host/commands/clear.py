@@ -1,6 +1,7 @@
 """kickctl clear."""
 
 import argparse
+from typing import Any
 
 from host.commands._options import add_take_over
 from host.commands._terminal import answer, robot_of
@@ -18,9 +19,11 @@ def run(options: argparse.Namespace) -> int:
     with robot_of(options, sends="clear") as robot:
         reason = robot.status()["reason"]
         tick = robot.clear()
-        answer(
-            options,
-            {"state": "stopped", "tick": tick, "was": reason},
-            f"fault cleared ({reason}); `kickctl start` starts the robot",
-        )
+        result = {"state": "stopped", "tick": tick, "was": reason}
+        answer(options, result, in_one_line(result))
     return 0
+
+
+def in_one_line(result: dict[str, Any]) -> str:
+    """The result in words."""
+    return f"fault cleared ({result['was']}); `kickctl start` starts the robot"

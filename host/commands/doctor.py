@@ -18,6 +18,7 @@ from host.client.robot import Robot, connect
 from host.commands._hints import as_typed
 from host.commands._terminal import show
 from host.errors import KickctlError, NotDone
+from host.link.names import chosen, own_token
 from host.util import requirements
 from host.util.installation import deploy_command, install_command
 from robot import __version__
@@ -52,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         KickctlError: Something needs mending, or the robot is out of reach.
     """
-    findings = [*_machine(), *_token(options.token)]
+    findings = [*_machine(), *_token(options.token or _own_token(options.brick))]
     failure: KickctlError | None = None
     try:
         with connect(options.brick, options.seed, options.token) as robot:
@@ -125,6 +126,14 @@ def _libraries() -> Iterator[Finding]:
         yield Finding(f"extra {extra}", found if names else "all there")
 
 
+def _own_token(brick: str | None) -> str | None:
+    """The token file of the robot that is named; None if it has none, or is no robot."""
+    try:
+        return own_token(chosen(brick))
+    except KickctlError:  # connecting says it too
+        return None
+
+
 def _token(path: str | None) -> Iterator[Finding]:
     chosen = path or default_path()
     if not (chosen and Path(chosen).exists()):
@@ -151,7 +160,11 @@ def _robot(robot: Robot) -> Iterator[Finding]:
     yield _sources(hello.get("sources", ""))
     yield Finding(
         "access",
-        "token accepted" if robot.trusted else "no token: you may look, and stop the robot",
+        "token accepted"
+        if robot.trusted
+        else "another robot's token: you may look, and stop the robot"
+        if robot.token_refused
+        else "no token: you may look, and stop the robot",
         (
             ""
             if robot.trusted

@@ -2,6 +2,7 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from host.commands._options import add_take_over
 from host.commands._recording import conclude, recorded
@@ -117,6 +118,13 @@ def run(options: argparse.Namespace) -> int:
     conclude(options, result, describe(outcome), recording, draw)
     require_done(outcome)
     return 0
+
+
+def in_one_line(result: dict[str, Any]) -> str:
+    """The result in words, and the log."""
+    done = "reversed" if result["reversed"] else "did not reverse"
+    before, after = (", ".join(result[key].values()) for key in ("before", "after"))
+    return f"{done}: {before} before the kick, {after} after it; log {result['log']}"
 
 
 def _in_name(options: argparse.Namespace) -> str:

@@ -134,6 +134,12 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def in_one_line(result: dict[str, Any]) -> str:
+    """The result in words."""
+    fault = f"; fault meanwhile: {result['fault']}" if "fault" in result else ""
+    return f"{result['ticks']} ticks in {result['log']}, {result['missing']} missing{fault}"
+
+
 def _new_log(out: Path | None, info: dict[str, Any]) -> McapTap:
     from host.logs.log_folder import in_folder
     from host.logs.mcap_files import McapTap

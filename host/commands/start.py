@@ -1,6 +1,7 @@
 """kickctl start."""
 
 import argparse
+from typing import Any
 
 from host.commands._options import add_take_over
 from host.commands._terminal import answer, robot_of
@@ -19,5 +20,11 @@ def run(options: argparse.Namespace) -> int:
         if robot.link.virtual and robot.status()["state"] == "running":
             robot.stop()
         tick = robot.start()
-        answer(options, {"state": "running", "tick": tick}, f"the robot runs from tick {tick} on")
+        result = {"state": "running", "tick": tick}
+        answer(options, result, in_one_line(result))
     return 0
+
+
+def in_one_line(result: dict[str, Any]) -> str:
+    """The result in words."""
+    return f"the robot runs from tick {result['tick']} on"

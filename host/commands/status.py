@@ -32,9 +32,8 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         show(status)
     else:
-        battery = "unknown" if status["battery_v"] is None else f"{status['battery_v']:.2f} V"
         print(f"{status['brick']}: {status['state']} ({status['reason']}), tick {status['tick']}")
-        print(f"battery {battery}; {_driver(status)}")
+        print(_battery_and_driver(status))
         for line in rest:
             print(line)
         edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
@@ -49,6 +48,16 @@ def run(options: argparse.Namespace) -> int:
                 print(f"  began {late} ms late: {count}")
     require_no_fault(status)
     return 0
+
+
+def in_one_line(status: dict[str, Any]) -> str:
+    """The main part of a status in words."""
+    return f"{status['state']} ({status['reason']}); {_battery_and_driver(status)}"
+
+
+def _battery_and_driver(status: dict[str, Any]) -> str:
+    battery = "unknown" if status["battery_v"] is None else f"{status['battery_v']:.2f} V"
+    return f"battery {battery}; {_driver(status)}"
 
 
 def _driver(status: dict[str, Any]) -> str:

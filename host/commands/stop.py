@@ -1,13 +1,25 @@
 """kickctl stop."""
 
-import argparse
+from __future__ import annotations
 
-from host.client.stop import stop_robot
+import argparse
+import threading
+from queue import SimpleQueue
+from typing import Any
+
+from host.client.stop import Stopped, stop_robot
+from host.commands._failures import in_words
+from host.commands._hints import name_robot
+from host.commands._side_by_side import Outcome, failed, show_each
 from host.commands._terminal import answer
 from host.errors import WrongUse
-from host.link.addresses import chosen, make_link, sim_options
+from host.link.addresses import make_link, sim_options
+from host.link.names import ALL, Chosen, chosen, every, is_several, named
 
-HELP = "stop the motors; needs no token, and no robot that understands anything else"
+HELP = (
+    "stop the motors; needs no token, and no robot that understands anything else. Without --brick:"
+    " of every robot that has a name"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,16 +27,73 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Send the STOP frame before anything else, and wait until the robot confirms it."""
-    uri = chosen(options.brick)
-    if sim_options(uri) is not None:
+    """Send the STOP frame before anything else, and wait until each robot confirms it.
+
+    Returns:
+        0 if all have confirmed it, else the highest exit status of those that have not.
+    """
+    text = named(options.brick)
+    if text in (None, ALL):
+        return _stop_all(options, _all_known())
+    if is_several(text):
+        # One that is unknown must not keep the others from being stopped.
+        return _stop_all(options, [name.strip() for name in text.split(",")])
+    robot = chosen(text)
+    stopped = _stop(robot, options.seed)
+    answer(options, _result(robot, stopped), stopped.sentence())
+    return 0
+
+
+def _all_known() -> list[str]:
+    try:
+        return [robot.name for robot in every()]
+    except WrongUse as error:
+        raise WrongUse(
+            f"none has been stopped, since no robot is named here: {error.message}",
+            "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back"
+            f" button on the brick. {error.hint}",
+        ) from error
+
+
+def _stop(robot: Chosen, seed: int | None) -> Stopped:
+    """Stop one robot. Raises KickctlError if nobody has confirmed it."""
+    if sim_options(robot.address) is not None:
         raise WrongUse(
             "no robot of its own is named, so none has been stopped: a simulated robot is embedded"
             " in each command, and ends with it",
             "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back"
             " button on the brick",
         )
-    stopped = stop_robot(make_link(uri, options.seed))
-    result = {"brick": uri, "state": stopped.state, "tick": stopped.tick}
-    answer(options, result, stopped.sentence())
-    return 0
+    return stop_robot(make_link(robot.address, seed))
+
+
+def _stop_all(options: argparse.Namespace, names: list[str]) -> int:
+    """Stop robots side by side: none waits for another one. Say of each what is known."""
+    ends: SimpleQueue[tuple[str, tuple[Chosen, Stopped] | BaseException]] = SimpleQueue()
+
+    def stop(name: str) -> None:
+        try:
+            robot = chosen(name)
+            ends.put((name, (robot, _stop(robot, options.seed))))
+        except BaseException as error:  # noqa: BLE001 - it is said below
+            ends.put((name, error))
+
+    for name in names:
+        threading.Thread(target=stop, args=(name,), daemon=True).start()
+    outcomes = (_outcome(*ends.get(), options.token) for _ in names)
+    return show_each(options, names, outcomes)
+
+
+def _outcome(name: str, end: tuple[Chosen, Stopped] | BaseException, token: str | None) -> Outcome:
+    if isinstance(end, tuple):
+        robot, stopped = end
+        return Outcome(name, _result(robot, stopped), stopped.sentence(), 0)
+    failure = in_words(end)
+    if failure is None:
+        raise end
+    name_robot(name, token)  # in the hint
+    return failed(name, failure)
+
+
+def _result(robot: Chosen, stopped: Stopped) -> dict[str, Any]:
+    return {"brick": robot.address, "state": stopped.state, "tick": stopped.tick}

@@ -5,9 +5,9 @@ sim:// (embedded, in virtual time), tcp://HOST:PORT, ssh://USER@HOST and serial:
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import dataclass
+from difflib import get_close_matches
 from ipaddress import IPv6Address
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
@@ -15,15 +15,15 @@ from host.errors import WrongUse, quotable
 from host.link.serial_line import SerialLink
 from host.link.settings import parse_setting
 from host.link.transport import Link, TcpLink
-from host.util.arguments import need_seed, need_text
+from host.util.arguments import need_seed
 from host.util.interrupts import uninterrupted
 from robot.program import PORT
 from robot.serial_line import BAUD, FASTEST_BAUD
 
 SIM = "sim://"
 
-_FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
-_SCHEMES = ("sim", "tcp", "ssh", "serial")
+FORMS = "addresses are sim://, tcp://HOST:PORT, ssh://USER@HOST and serial:///dev/DEVICE?baud=RATE"
+SCHEMES = ("sim", "tcp", "ssh", "serial")
 # USER@HOST:PORT; a host that is an IPv6 address stands in brackets.
 _AUTHORITY = re.compile(
     r"(?:(?P<user>[^@]*)@)?(?:\[(?P<v6>[^][@]*)\]|(?P<name>[^][@:]*))(?::(?P<port>[0-9]*))?"
@@ -48,7 +48,7 @@ class _Parts:
                 raise no_address(self.uri, f"it has no option '{name}'{they_are}")
 
 
-def no_address(uri: str, why: str, hint: str = _FORMS) -> WrongUse:
+def no_address(uri: str, why: str, hint: str = FORMS) -> WrongUse:
     """The error for what is no address of a robot.
 
     Args:
@@ -67,8 +67,10 @@ def _split(uri: str) -> _Parts:
         parts = urlsplit(uri)
     except ValueError as error:
         raise no_address(uri, str(error)) from error
-    if parts.scheme not in _SCHEMES or not uri.lstrip()[len(parts.scheme) :].startswith("://"):
-        raise no_address(uri, f"it begins with none of {', '.join(f'{s}://' for s in _SCHEMES)}")
+    if parts.scheme not in SCHEMES or not uri.lstrip()[len(parts.scheme) :].startswith("://"):
+        why = f"it begins with none of {', '.join(f'{scheme}://' for scheme in SCHEMES)}"
+        meant = _meant(uri)
+        raise no_address(uri, why, f"did you mean {meant}?" if meant else FORMS)
     if parts.fragment:
         raise no_address(uri, "nothing belongs behind a '#'")
     pairs = parse_qsl(parts.query, keep_blank_values=True)
@@ -80,27 +82,45 @@ def _split(uri: str) -> _Parts:
     return _Parts(uri, parts.scheme, parts.netloc, parts.path, options)
 
 
-def chosen(uri: str | None) -> str:
-    """The address to use: the one given, else $KICK_BRICK, else the embedded simulated robot's.
+def _meant(text: str) -> str:
+    """The address that a text without a scheme, or with a wrong one, probably means; or empty."""
+    scheme, colon, rest = text.partition(":")
+    close = get_close_matches(scheme.lower(), SCHEMES, 1)
+    if close and (colon or "sim" in close):
+        slashes = "///" if close == ["serial"] else "//"
+        text = f"{close[0]}:{slashes}{rest.lstrip('/')}"
+    elif text.startswith("/dev/"):
+        text = f"serial://{text}"
+    elif "@" in text:
+        text = f"ssh://{text}"
+    elif "." in text or ":" in text:
+        text = f"tcp://{text}"
+    else:
+        return ""
+    try:
+        _split(text)
+        if not text.startswith(SIM):
+            make_link(text)
+    except WrongUse:
+        return ""
+    return text
+
+
+def place_of(uri: str) -> tuple[str, str]:
+    """Where a robot listens: machine and port, or the device.
+
+    A robot's tcp:// address and its ssh:// address have the same place, if both say the same name
+    of the machine.
 
     Raises:
-        WrongUse: What was given is no text, or empty. A shell's variable that is not set is empty,
-            and whoever named a robot must not get a simulated one.
+        WrongUse: It is no address of a robot.
     """
-    if uri is not None:
-        if uri == "":
-            raise WrongUse(
-                "the robot's address is empty",
-                f"name the robot, or leave its address out for a simulated one; {_FORMS}",
-            )
-        return need_text("the robot's address", uri, f"text; {_FORMS}")
-    named = os.environ.get("KICK_BRICK", SIM)
-    if not named:
-        raise WrongUse(
-            "KICK_BRICK is set, and it is empty",
-            "give it the robot's address, or type `unset KICK_BRICK` for a simulated robot",
-        )
-    return named
+    parts = _split(uri)
+    pieces = _AUTHORITY.fullmatch(parts.authority)
+    if parts.scheme in ("sim", "serial") or pieces is None:
+        return parts.authority, parts.path
+    port = parts.options.get("port") if parts.scheme == "ssh" else pieces["port"]
+    return (pieces["v6"] or pieces["name"]).lower(), port or str(PORT)
 
 
 def with_params(uri: str, settings: list[str]) -> str:

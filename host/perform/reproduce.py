@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.experiments.registry import BODIES, TABLE
-from host.link.addresses import chosen, sim_options
+from host.link.addresses import sim_options
+from host.link.names import chosen, own_token
 from host.perform.run import RESULTS, perform
 from host.runs import html_report as report
 from host.runs.claims import Claim
@@ -69,7 +70,7 @@ def reproduce(
     """Run what decides the claims, or resume it, and write a report.
 
     Args:
-        uri: The robot's address, as `connect` takes it.
+        uri: The robot's name or address, as `connect` takes it.
         seed: The random seed; by default 1.
         only: The ids of the claims; by default all that this robot can decide.
         token: The path of the robot's token file.
@@ -85,7 +86,8 @@ def reproduce(
         raise WrongUse(
             f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(claim_ids())
         )
-    uri = chosen(uri)
+    robot = chosen(uri)
+    uri, token = robot.address, own_token(robot) if token is None else token
     simulated = sim_options(uri) is not None
     skipped = (
         {}

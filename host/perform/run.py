@@ -12,7 +12,8 @@ from typing import Any
 
 from host.errors import WrongUse
 from host.experiments.efforts import EFFORTS, in_words
-from host.link.addresses import SIM, chosen, make_link, sim_options
+from host.link.addresses import SIM, make_link, sim_options
+from host.link.names import chosen, own_token
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.robots import robots
 from host.runs.contract import Setting
@@ -45,7 +46,7 @@ def perform(
 
     Args:
         name: Its name, as in `kickctl experiment NAME` or `kickctl theory NAME`.
-        uri: The robot's address, as `connect` takes it. A study has no robot.
+        uri: The robot's name or address, as `connect` takes it. A study has no robot.
         seed: The random seed, also of a simulated robot; by default 1.
         token: The path of the robot's token file.
         out: The folder for results. Each combination of arguments and sources has its own folder
@@ -81,7 +82,8 @@ def perform(
         out = out / "theory"
         setting = Setting(DEFAULT_SEED if seed is None else seed, options)
     else:
-        uri = chosen(uri)
+        robot = chosen(uri)
+        uri, token = robot.address, own_token(robot) if token is None else token
         simulated = _simulated(name, found.kind, uri)
         setting = setting_of(options, simulated, seed)
         settings["brick"] = uri

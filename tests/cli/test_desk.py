@@ -102,14 +102,19 @@ def test_without_the_token_one_may_look_and_stop_but_not_move(tmp_path, outside)
         assert json.loads(outside("--brick", uri, "status", "--json")[1])["state"] == "stopped"
 
 
-def test_a_wrong_token_is_refused(tmp_path, outside):
+def test_who_has_another_robots_token_may_look_and_stop_but_not_move(tmp_path, outside):
     with desk_robot(tmp_path) as (uri, _):
         wrong = tmp_path / "wrong"
         wrong.write_text("11" * 32)
         wrong.chmod(0o600)
-        status, _, err = outside("--brick", uri, "status", "--token", str(wrong))
+        for verb in (("status",), ("record", "0.1"), ("watch", "--seconds", "0.1"), ("stop",)):
+            status, _, err = outside("--brick", uri, "--token", str(wrong), *verb)
+            assert status == 0, err
+            assert err.count("is not that of the robot") == (verb != ("stop",))
+        status, _, err = outside("--brick", uri, "--token", str(wrong), "start")
         assert status == 4
-        assert "token" in err
+        assert "the token of another robot" in err
+        assert f"kickctl robots add NAME {uri} --token FILE" in err
 
 
 def test_one_controller_at_a_time(tmp_path, outside):

@@ -207,11 +207,21 @@ def test_a_machine_without_the_token_may_look_and_stop(link):
         assert robot.status()["state"] == "stopped"
 
 
-def test_a_wrong_token_is_refused_and_leaves_nothing_open(link):
+def test_who_has_another_robots_token_looks_on_and_leaves_nothing_open(link, caplog):
     gc.collect()
     files = open_files()
-    with pytest.raises(RefusedByRobot, match="token"):
-        Robot(link, b"x" * 32)
+    with Robot(link, b"x" * 32) as robot:
+        assert robot.record(0.3).missing() == []
+        for call in (robot.start, robot.lease, robot.clear):
+            with pytest.raises(RefusedByRobot, match="the token of another robot"):
+                call()
+        link.cut()
+        robot.wait(0.3)  # over another connection
+        robot.stop()
+        assert robot.status()["state"] == "stopped"
+    assert [record.levelname for record in caplog.records] == ["WARNING"]
+    assert "not that of the robot" in caplog.text
+    del robot
     gc.collect()
     assert open_files() == files
 

@@ -5,7 +5,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from host.errors import KickctlError, NoLink, WrongUse
-from host.link.addresses import chosen, make_link, sim_options, with_params
+from host.link.addresses import make_link, place_of, sim_options, with_params
 from host.link.serial_line import SerialLink
 from host.link.transport import TcpLink
 from robot.program import BAUD, PORT
@@ -182,18 +182,40 @@ def test_only_the_embedded_robot_takes_a_seed_and_parameters():
     assert sim_options(with_params("sim://?seed=1", ["k=2.5"])) == {"seed": "1", "k": "2.5"}
 
 
-def test_the_address_that_is_used(monkeypatch):
-    assert chosen(None) == "sim://"
-    monkeypatch.setenv("KICK_BRICK", "tcp://h")
-    assert (chosen(None), chosen("tcp://other")) == ("tcp://h", "tcp://other")
-    with pytest.raises(WrongUse, match="is empty") as error:
-        chosen("")
-    assert error.value.hint
-    monkeypatch.setenv("KICK_BRICK", "")
-    assert chosen("tcp://other") == "tcp://other"
-    with pytest.raises(WrongUse, match="KICK_BRICK") as error:
-        chosen(None)
-    assert "unset KICK_BRICK" in error.value.hint
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("127.0.0.1:5531", "tcp://127.0.0.1:5531"),
+        ("ev3dev.local", "tcp://ev3dev.local"),
+        ("[::1]:5531", "tcp://[::1]:5531"),
+        ("robot@ev3dev.local", "ssh://robot@ev3dev.local"),
+        ("/dev/ttyUSB0", "serial:///dev/ttyUSB0"),
+        ("serial:/dev/ttyUSB0", "serial:///dev/ttyUSB0"),
+        ("tcp:ev3dev.local", "tcp://ev3dev.local"),
+        ("tpc://ev3dev.local:1", "tcp://ev3dev.local:1"),
+        ("shh://robot@h", "ssh://robot@h"),
+        ("sim", "sim://"),
+    ],
+)
+def test_what_was_probably_meant(text, meant):
+    with pytest.raises(WrongUse) as error:
+        make_link(text)
+    assert error.value.hint == f"did you mean {meant}?"
+
+
+@pytest.mark.parametrize("text", ["http://h", "", "::", "a b.c", "tcp:", "@", ":"])
+def test_nothing_is_proposed_that_would_be_refused(text):
+    with pytest.raises(WrongUse) as error:
+        make_link(text)
+    assert "addresses are sim://" in error.value.hint
+
+
+def test_the_place_of_a_robot():
+    assert place_of("tcp://Ev3") == place_of("ssh://robot@ev3:2222") == ("ev3", str(PORT))
+    assert place_of("tcp://ev3:7") == place_of("ssh://ev3?port=7")
+    assert place_of("tcp://[::1]:7") == ("::1", "7")
+    assert place_of("serial:///dev/a?baud=9600") == place_of("serial:///dev/a")
+    assert place_of("serial:///dev/a") != place_of("serial:///dev/b")
 
 
 PIECES = st.sampled_from(

@@ -1,0 +1,272 @@
+"""Three robots with names, each a process of its own with its own token, and who may do what."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from host.cli import main
+from host.client.robot import connect
+from host.errors import RefusedByRobot
+from tests.cli.test_desk import desk_robot
+
+NAMES = ("anna", "bert", "carl")
+
+
+class Laptop:
+    """A user's folder with names and tokens of robots, and kickctl there."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.config = folder / "config" / "kickctl"
+        folder.mkdir(exist_ok=True)
+
+    def knows(self, name, address, token=None):
+        """Write a robot into the file of robots."""
+        self.config.mkdir(parents=True, exist_ok=True)
+        more = "" if token is None else f'token = "{token}"\n'
+        with (self.config / "robots.toml").open("a", encoding="utf-8") as file:
+            file.write(f'[{name}]\naddress = "{address}"\n{more}')
+
+    def environment(self, **more):
+        kept = {key: value for key, value in os.environ.items() if not key.startswith("KICK_")}
+        root = Path(__file__).resolve().parents[2]
+        config = str(self.folder / "config")
+        return {**kept, "XDG_CONFIG_HOME": config, "PYTHONPATH": str(root), **more}
+
+    def run(self, *arguments, **more):
+        """Run kickctl: (exit status, standard output, standard error)."""
+        done = subprocess.run(
+            [sys.executable, "-m", "host", *arguments],
+            env=self.environment(**more),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=100,
+            check=False,
+        )
+        return done.returncode, done.stdout, done.stderr
+
+    def each(self, *arguments, **more):
+        """Run kickctl with --json on several robots: (exit status, {name: result})."""
+        status, out, err = self.run(*arguments, "--json", **more)
+        assert out, err
+        return status, json.loads(out)["robots"]
+
+
+@pytest.fixture
+def robots(tmp_path):
+    """Three running robots: {name: address}. Their tokens are the files NAME/token."""
+    with ExitStack() as stack:
+        found = {}
+        for name in NAMES:
+            (tmp_path / name).mkdir()
+            found[name] = stack.enter_context(desk_robot(tmp_path / name))[0]
+        yield found
+
+
+@pytest.fixture
+def teacher(tmp_path, robots):
+    """A laptop that knows all three, with their tokens."""
+    laptop = Laptop(tmp_path / "teacher")
+    for name, address in robots.items():
+        laptop.knows(name, address, tmp_path / name / "token")
+    return laptop
+
+
+@pytest.fixture
+def pupil(tmp_path, robots):
+    """A laptop that knows all three, with the token of anna where a token usually is."""
+    laptop = Laptop(tmp_path / "pupil")
+    for name, address in robots.items():
+        laptop.knows(name, address)
+    token = laptop.config / "token"
+    token.write_text((tmp_path / "anna" / "token").read_text(encoding="ascii"), encoding="ascii")
+    token.chmod(0o600)
+    return laptop
+
+
+def test_a_teacher_looks_at_all_and_kicks_each_and_all(teacher, robots):
+    status, found = teacher.each("--brick", "all", "status")
+    assert status == 0
+    assert {name: one["state"] for name, one in found.items()} == dict.fromkeys(NAMES, "running")
+    assert {name: one["brick"] for name, one in found.items()} == robots
+
+    status, out, err = teacher.run("--brick", "bert", "kick", "--mode", "phase", "--json")
+    assert status == 0, err
+    assert json.loads(out)["brick"] == robots["bert"]
+
+    status, found = teacher.each("--brick", "anna,carl", "kick", "--mode", "phase")
+    assert status == 0
+    assert {name: one["reversed"] for name, one in found.items()} == {"anna": True, "carl": True}
+    assert len({one["log"] for one in found.values()}) == 2
+
+    status, out, err = teacher.run("--brick", "all", "record", "0.2")
+    assert status == 0, err
+    lines = out.splitlines()
+    assert sorted(line.partition(":")[0] for line in lines) == sorted(NAMES)
+    assert all("0 missing" in line for line in lines)
+
+    token = str(teacher.folder.parent / "bert" / "token")
+    # An address leads to the robot's own token, too.
+    assert teacher.run("--brick", robots["bert"], "start", KICK_TOKEN=token + "none")[0] == 1
+    assert teacher.run("start", KICK_BRICK="bert")[0] == 1  # it runs already
+
+
+def test_a_pupil_with_another_robots_token_looks_and_stops_but_moves_nothing(pupil, robots):
+    status, found = pupil.each("--brick", "all", "status")
+    assert (status, len(found)) == (0, 3)
+    status, _, err = pupil.run("--brick", "all", "record", "0.1")
+    assert status == 0
+    assert "bert: the token on this computer is not that of the robot" in err
+    assert "anna: the token" not in err
+
+    status, found = pupil.each("--brick", "all", "kick", "--mode", "phase", "--now")
+    assert status == 4
+    assert found["anna"]["reversed"] is True
+    for name in ("bert", "carl"):
+        error = found[name]["error"]
+        assert error["status"] == 4
+        assert "the token of another robot" in error["message"]
+        assert "kickctl robots add NAME" in error["hint"]
+
+    assert pupil.run("--brick", "bert", "stop")[0] == 0
+    status, found = pupil.each("--brick", "all", "status")
+    assert [one["state"] for one in found.values()] == ["running", "stopped", "running"]
+
+
+def test_stop_without_a_name_stops_every_robot_and_says_which_it_did_not_reach(
+    teacher, robots, tmp_path
+):
+    teacher.knows("gone", "tcp://127.0.0.1:1")
+    status, found = teacher.each("stop")
+    assert status == 3
+    assert list(found) == [*NAMES, "gone"]
+    assert [found[name]["state"] for name in NAMES] == ["stopped"] * 3
+    assert "refuses the connection" in found["gone"]["error"]["message"]
+    status, found = teacher.each("--brick", ",".join(NAMES), "status")
+    assert {one["state"] for one in found.values()} == {"stopped"}
+
+    assert teacher.run("robots", "remove", "gone")[0] == 0
+    status, out, _ = teacher.run("stop")
+    assert status == 0
+    for name in NAMES:
+        assert f"{name}: motors stopped before tick" in out
+    # One that is unknown keeps nobody from being stopped.
+    assert teacher.run("--brick", "all", "start")[0] == 0
+    status, found = teacher.each("--brick", "anan,bert", "stop")
+    assert status == 2
+    assert found["anan"]["error"]["hint"] == "did you mean anna?"
+    assert found["bert"]["state"] == "stopped"
+    # Who has named a robot in the shell has named one.
+    status, out, _ = teacher.run("stop", KICK_BRICK="carl")
+    assert (status, "carl:" in out, "motors stopped" in out) == (0, False, True)
+    status, found = teacher.each("--brick", "all", "status")
+    assert [one["state"] for one in found.values()] == ["running", "stopped", "stopped"]
+
+    nobody = Laptop(tmp_path / "nobody")
+    for more in ({}, {"KICK_BRICK": "all"}):
+        status, out, err = nobody.run("stop", **more)
+        assert (status, out) == (2, "")
+        assert "none has been stopped" in err
+        assert "kickctl robots add" in err
+
+
+def test_an_interrupt_reaches_every_robots_process(teacher):
+    """The processes of the robots have groups of their own: the first one hands ^C on."""
+    command = [sys.executable, "-m", "host", "--brick", "all", "record", "1000", "--json"]
+    logs = teacher.folder / "logs"
+    with subprocess.Popen(
+        command,
+        env=teacher.environment(),
+        cwd=teacher.folder,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        while process.poll() is None and (not logs.exists() or len(list(logs.iterdir())) < 3):
+            time.sleep(0.02)
+        process.terminate()
+        out = process.communicate(timeout=60)[0]
+    assert process.returncode == 130
+    found = json.loads(out)["robots"]
+    assert [one["error"]["status"] for one in found.values()] == [130] * 3
+
+
+def test_names_in_a_program(teacher, robots, monkeypatch):
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(teacher.folder / "config"))
+    with connect("anna") as robot:
+        assert robot.link.uri == robots["anna"]
+        assert robot.kick("phase") > 0
+    elsewhere = teacher.folder.parent / "bert" / "token"
+    with (
+        connect("anna", token=str(elsewhere)) as robot,
+        pytest.raises(RefusedByRobot, match="the token of another robot"),
+    ):
+        robot.start()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words", "hint"),
+    [
+        (("--brick", "anna", "--brick", "bert", "status"), "--brick is given twice", "anna,bert"),
+        (("--brick", "anna", "stop", "--brick", "bert"), "--brick is given twice", "anna,bert"),
+        (("--brick", "anan", "status"), "no robot is named 'anan'", "did you mean anna?"),
+        (("--brick", "anna,bert", "doctor"), "the verb doctor takes one robot", "name one"),
+        (("--brick", "anna,anan", "status"), "no robot is named 'anan'", "did you mean anna?"),
+        (("--brick", "all", "record", "1", "--out", "x"), "--out names one file", "leave --out"),
+        (("--brick", "127.0.0.1:5531", "status"), "no address", "tcp://127.0.0.1:5531?"),
+    ],
+)
+def test_what_names_no_robot_changes_nothing(tmp_path, capsys, arguments, words, hint):
+    laptop = Laptop(tmp_path)  # whose folder for settings is that of the test
+    for name in NAMES[:2]:
+        laptop.knows(name, "tcp://127.0.0.1:1")
+    status = main(arguments)
+    out, err = capsys.readouterr()
+    assert (status, out) == (2, "")
+    assert words in err
+    assert hint in err
+
+
+def test_names_are_given_and_taken_on_the_command_line(tmp_path, capsys):
+    token = tmp_path / "key"
+    token.write_text("00" * 32, encoding="ascii")
+
+    def run(*arguments):
+        status = main(["robots", *arguments])
+        return (status, *capsys.readouterr())
+
+    assert run("list")[:2] == (0, "no robot has a name yet: kickctl robots add NAME ADDRESS\n")
+    status, _, err = run("add", "anna", "tcp://h", "--token", str(token))
+    assert (status, "chmod 600" in err) == (2, True)
+    token.chmod(0o600)
+    assert run("add", "anna", "tcp://h", "--token", "key")[0] == 0
+    assert run("add", "bert", "ssh://robot@h?port=7")[0] == 0
+    assert json.loads(run("list", "--json")[1]) == {
+        "robots": {
+            "anna": {"address": "tcp://h", "token": str(token)},
+            "bert": {"address": "ssh://robot@h?port=7", "token": None},
+        }
+    }
+    assert run("rename", "anna", "zoe")[0] == 0
+    assert json.loads(run("remove", "bert", "--json")[1]) == {"removed": "bert", "token": None}
+    assert run("list")[1] == f"zoe  tcp://h  (token {token})\n"
+    for arguments, words in (
+        (("add", "zoe", "tcp://i"), "already"),
+        (("add", "carl", "127.0.0.1:1"), "did you mean tcp://127.0.0.1:1?"),
+        (("add", "carl", "sim://"), "simulated robot"),
+        (("add", "carl"), "takes NAME ADDRESS"),
+        (("list", "zoe"), "takes no names"),
+        (("remove", "zo"), "did you mean zoe?"),
+        (("remove", "zoe", "--token", "key"), "belongs to"),
+        (("--brick", "zoe", "list"), "--brick chooses a robot"),
+    ):
+        status, out, err = run(*arguments)
+        assert (status, out) == (2, ""), arguments
+        assert words in err
+    assert list(json.loads(run("list", "--json")[1])["robots"]) == ["zoe"]

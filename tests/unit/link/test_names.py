@@ -1,0 +1,250 @@
+"""Robots with names: the file that keeps them, and what a name on a command line means."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from host.errors import WrongUse
+from host.link import robots_file
+from host.link.names import Chosen, chosen, every, is_several, own_token, several
+from host.link.robots_file import add, file_path, is_name, read, remove, rename, token_path
+
+NAMES = st.from_regex("[A-Za-z0-9][A-Za-z0-9_-]{0,39}", fullmatch=True).filter(is_name)
+TEXTS = st.text(st.characters(codec="utf-8"), min_size=1, max_size=20).filter(str.isprintable)
+ROBOTS = st.dictionaries(NAMES, st.tuples(TEXTS, st.none() | TEXTS.map("/t/{}".format)), max_size=4)
+
+BY_HAND = """\
+# my robots
+[anna] # the red one
+# by cable
+address = "tcp://10.0.0.1"
+
+# bert has a dent
+[bert]
+address = "tcp://10.0.0.2"
+token = "/keys/bert"
+# the end
+"""
+
+
+@pytest.fixture
+def by_hand():
+    """A file that its owner wrote."""
+    path = file_path()
+    path.parent.mkdir(parents=True)
+    path.write_text(BY_HAND, encoding="utf-8")
+    return path
+
+
+def write_token(name):
+    path = token_path(name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("00" * 32, encoding="ascii")
+    return path
+
+
+# The file
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(robots=ROBOTS, extra=NAMES)
+def test_what_was_added_is_read_again_and_what_was_removed_is_gone(robots, extra):
+    path = file_path()
+    path.unlink(missing_ok=True)
+    for name, (address, token) in robots.items():
+        add(name, address, token)
+    found = {one.name: (one.address, one.token) for one in read().values()}
+    assert found == robots
+    assert list(found) == list(robots)
+    if extra not in robots and robots:
+        first = next(iter(robots))
+        rename(first, extra)
+        renamed = [extra if name == first else name for name in robots]
+        assert list(read()) == renamed
+        for name in renamed:
+            remove(name)
+        assert read() == {}
+
+
+def test_a_change_keeps_every_other_line(by_hand):
+    add("carl", "serial:///dev/a")
+    text = by_hand.read_text(encoding="utf-8")
+    assert text == BY_HAND + '\n[carl]\naddress = "serial:///dev/a"\n'
+    rename("anna", "zoe")
+    assert by_hand.read_text(encoding="utf-8") == text.replace("[anna]", "[zoe]")
+    remove("zoe")
+    text = by_hand.read_text(encoding="utf-8")
+    assert "# my robots\n" in text
+    assert "# bert has a dent\n[bert]\n" in text
+    assert "zoe" not in text
+    assert "red one" not in text
+    remove("bert")
+    assert "# the end\n" in by_hand.read_text(encoding="utf-8")
+
+
+def test_a_token_moves_and_goes_with_its_robot(by_hand):
+    write_token("anna")
+    assert read()["anna"].token == str(token_path("anna"))
+    rename("anna", "zoe")
+    assert read()["zoe"].token == str(token_path("zoe"))
+    assert not token_path("anna").exists()
+    write_token("anna")
+    with pytest.raises(WrongUse, match="is there already"):
+        rename("zoe", "anna")
+    assert remove("zoe") == token_path("zoe")
+    assert not token_path("zoe").exists()
+
+
+def test_a_token_elsewhere_stays(by_hand, tmp_path):
+    elsewhere = tmp_path / "key"
+    elsewhere.write_text("x", encoding="ascii")
+    add("carl", "tcp://h", str(elsewhere))
+    rename("carl", "dora")
+    assert read()["dora"].token == str(elsewhere)
+    assert remove("dora") is None
+    assert elsewhere.exists()
+
+
+def test_a_token_is_named_relative_to_the_file(by_hand):
+    by_hand.write_text('[a]\naddress = "tcp://h"\ntoken = "keys/a"\n', encoding="utf-8")
+    assert read()["a"].token == str(by_hand.parent / "keys" / "a")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "why"),
+    [
+        ('[anna]\naddress = "tcp://h\n', 2, "Illegal"),
+        ('[anna]\naddress = "a"\n[anna]\n', 3, ""),
+        ('# x\n[anna]\ntoken = "t"\n', 2, "anna has no address"),
+        ("[anna]\naddress = 3\n", 1, "the address of anna is no text"),
+        ('[anna]\naddress = ""\n', 1, "the address of anna is no text"),
+        ('[anna]\naddress = "a"\ntokn = "t"\n', 1, "unknown 'tokn'"),
+        ('\naddress = "tcp://h"\n', 2, "outside of a robot's table"),
+        ('[all]\naddress = "tcp://h"\n', 1, "'all' is no name"),
+        ('["a b"]\naddress = "tcp://h"\n', 1, "'a b' is no name"),
+    ],
+)
+def test_a_spoiled_file_is_named_with_its_line_and_nothing_changes(by_hand, text, line, why):
+    by_hand.write_text(text, encoding="utf-8")
+    for change in (read, lambda: add("x", "tcp://h"), lambda: rename("anna", "b"), every):
+        with pytest.raises(WrongUse, match=re.escape(f"{by_hand}, line {line}")) as error:
+            change()
+        assert why in error.value.message
+        assert "kickctl robots add" in error.value.hint
+    assert by_hand.read_text(encoding="utf-8") == text
+    assert chosen("tcp://h") == Chosen("tcp://h", "tcp://h")
+
+
+def test_a_file_that_is_no_text(by_hand):
+    by_hand.write_bytes(b"\xff")
+    with pytest.raises(WrongUse, match="no text"):
+        read()
+
+
+@pytest.mark.parametrize("text", ['anna = {address = "a"}\n', 'anna.address = "a"\n'])
+def test_a_form_that_lines_cannot_change_is_left_as_it_is(by_hand, text):
+    by_hand.write_text(text, encoding="utf-8")
+    for change in (lambda: rename("anna", "new"), lambda: remove("anna")):
+        with pytest.raises(WrongUse, match="not change"):
+            change()
+        assert by_hand.read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "all", "ALL", "sim", "ssh", "a b", "-a", "_a", "a.b", "tcp://h", "a,b", "ä", "a" * 41],
+)
+def test_what_no_robot_can_be_named(name, by_hand):
+    with pytest.raises(WrongUse) as error:
+        add(name, "tcp://h")
+    assert "letters" in error.value.hint
+    with pytest.raises(WrongUse):
+        rename("anna", name)
+    assert by_hand.read_text(encoding="utf-8") == BY_HAND
+
+
+def test_a_name_stands_for_one_robot(by_hand):
+    with pytest.raises(WrongUse, match=r"already, at tcp://10\.0\.0\.1"):
+        add("anna", "tcp://h")
+    with pytest.raises(WrongUse, match="'bert' already"):
+        rename("anna", "bert")
+    with pytest.raises(WrongUse, match="no robot 'ana'") as error:
+        remove("ana")
+    assert error.value.hint == "did you mean anna?"
+
+
+def test_of_two_programs_that_add_at_once_none_loses_a_robot(tmp_path):
+    """Each adds twenty robots, as fast as it can."""
+    program = (
+        "import sys; from host.link.robots_file import add\n"
+        "for n in range(20): add(f'{sys.argv[1]}{n}', 'tcp://h')"
+    )
+    root = Path(robots_file.__file__).parents[2]
+    programs = [
+        subprocess.Popen([sys.executable, "-c", program, letter], cwd=root) for letter in "abc"
+    ]
+    assert [one.wait(60) for one in programs] == [0, 0, 0]
+    assert len(read()) == 60
+
+
+# What a person means
+
+
+def test_the_robot_that_is_used(monkeypatch, by_hand):
+    assert chosen(None) == Chosen("sim://", "sim://")
+    assert chosen("anna") == Chosen("anna", "tcp://10.0.0.1")
+    assert chosen("bert") == Chosen("bert", "tcp://10.0.0.2", "/keys/bert")
+    monkeypatch.setenv("KICK_BRICK", "bert")
+    assert (chosen(None).name, chosen("tcp://other").address) == ("bert", "tcp://other")
+    with pytest.raises(WrongUse, match="is empty") as error:
+        chosen("")
+    assert error.value.hint
+    monkeypatch.setenv("KICK_BRICK", "")
+    assert chosen("tcp://other").address == "tcp://other"
+    with pytest.raises(WrongUse, match="KICK_BRICK") as error:
+        chosen(None)
+    assert "unset KICK_BRICK" in error.value.hint
+
+
+def test_an_unknown_name_is_answered_with_a_known_one(by_hand):
+    with pytest.raises(WrongUse, match="no robot is named 'anan'") as error:
+        chosen("anan")
+    assert error.value.hint == "did you mean anna?"
+    with pytest.raises(WrongUse) as error:
+        chosen("xyz")
+    assert "there are anna, bert" in error.value.hint
+    by_hand.unlink()
+    with pytest.raises(WrongUse) as error:
+        chosen("xyz")
+    assert "no robot has a name yet" in error.value.hint
+
+
+def test_an_address_has_the_token_of_the_robot_there(by_hand):
+    for address in ("tcp://10.0.0.2", "ssh://robot@10.0.0.2", "tcp://10.0.0.2:5425"):
+        assert own_token(chosen(address)) == "/keys/bert"
+    for address in ("tcp://10.0.0.1", "tcp://10.0.0.2:5426", "sim://"):
+        assert own_token(chosen(address)) is None
+
+
+def test_several_robots(by_hand):
+    assert [one.name for one in several("bert, anna")] == ["bert", "anna"]
+    assert [one.name for one in several("all")] == ["anna", "bert"]
+    assert [one.name for one in several("anna,tcp://h")] == ["anna", "tcp://h"]
+    for text, words in (
+        ("anna,anan", "no robot is named 'anan'"),
+        ("anna,,bert", "a name is missing"),
+        ("anna,anna", "stands twice"),
+    ):
+        with pytest.raises(WrongUse, match=words):
+            several(text)
+    with pytest.raises(WrongUse, match="means several robots"):
+        chosen("anna,bert")
+    assert not is_several("serial:///dev/a,b")
+    by_hand.unlink()
+    with pytest.raises(WrongUse, match="no robot has a name"):
+        several("all")
