@@ -136,8 +136,17 @@ def run(options: argparse.Namespace) -> int:
 
 def in_one_line(result: dict[str, Any]) -> str:
     """The result in words."""
-    fault = f"; fault meanwhile: {result['fault']}" if "fault" in result else ""
-    return f"{result['ticks']} ticks in {result['log']}, {result['missing']} missing{fault}"
+    deadlines = "1 deadline" if result["missed"] == 1 else f"{result['missed']:,} deadlines"
+    words = (
+        f"{result['ticks']:,} of {result['due']:,} due ticks in {result['log']}: the robot missed"
+        f" {deadlines}, {result['missing']:,} records missing"
+    )
+    if result["restarts"]:
+        words += (
+            f"; the robot's program started again {result['restarts']} times, and the ticks that it"
+            " had not sent by then are lost"
+        )
+    return words
 
 
 def _new_log(out: Path | None, info: dict[str, Any]) -> McapTap:
@@ -178,17 +187,6 @@ def _answer(
         "restarts": tally.restarts,
         "interrupted": interrupted,
     }
-    more = (
-        f"; the robot's program started again {tally.restarts} times, and the ticks that it had not"
-        " sent by then are lost"
-        if tally.restarts
-        else ""
-    )
     if tally.fault:
         facts["fault"] = tally.fault
-    deadlines = "1 deadline" if tally.missed == 1 else f"{tally.missed:,} deadlines"
-    words = (
-        f"{tally.ticks:,} of {tally.due:,} due ticks in {path}: the robot missed {deadlines},"
-        f" {tally.missing:,} records missing{more}"
-    )
-    answer(options, facts, words)
+    answer(options, facts, in_one_line(facts))

@@ -110,7 +110,7 @@ def test_a_teacher_looks_at_all_and_kicks_each_and_all(teacher, robots):
     assert status == 0, err
     lines = out.splitlines()
     assert sorted(line.partition(":")[0] for line in lines) == sorted(NAMES)
-    assert all("0 missing" in line for line in lines)
+    assert all("0 records missing" in line for line in lines)
 
     token = str(teacher.folder.parent / "bert" / "token")
     # An address leads to the robot's own token, too.
