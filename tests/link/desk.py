@@ -6,7 +6,7 @@ from pathlib import Path
 
 from host.client.conversation import Conversation
 from robot import wire
-from robot.server import Server
+from robot.server import SEND_BUFFER_BYTES, Server
 from tests.rig import TOKEN, Rig
 
 STOP = wire.encode(wire.STOP, b"")
@@ -41,16 +41,26 @@ class Desk(Rig):
 
 
 class Peer:
-    """A host's end of a connection, which sends and reads only when a test says so."""
+    """A host's end of a connection, which sends and reads only when a test says so.
 
-    def __init__(self, desk, token=TOKEN, name="peer", receive_buffer=None):
+    A `paired` one is no TCP connection: what its end has read makes room at once, while TCP has
+    timers of its own, which virtual time overtakes.
+    """
+
+    def __init__(self, desk, token=TOKEN, name="peer", receive_buffer=None, paired=False):
         self.desk = desk
         self.talk = Conversation(token, name, name)
         self.stream = []
-        self.socket = socket.socket()
-        if receive_buffer:
-            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-        self.socket.connect(desk.address)
+        if paired:
+            self.socket, robot_end = socket.socketpair()
+            robot_end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
+            robot_end.setblocking(False)
+            desk.server.adopt(robot_end)
+        else:
+            self.socket = socket.socket()
+            if receive_buffer:
+                self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+            self.socket.connect(desk.address)
         self.socket.setblocking(False)
 
     def greet(self):

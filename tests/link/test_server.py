@@ -147,15 +147,13 @@ def test_of_too_many_strangers_the_one_that_came_first_gives_way(desk):
 
 def test_who_reads_nothing_for_a_minute_is_hung_up_on(desk):
     """Else a lost computer would keep its place until the kernel gives up, which takes hours."""
-    peers = [desk.connect(name=name, receive_buffer=4096).greet() for name in ("deaf", "slow")]
-    for peer in peers:
+    deaf, slow = (desk.connect(name=name, paired=True).greet() for name in ("deaf", "slow"))
+    for peer in (deaf, slow):
         peer.ask("subscribe", **{"from": 0})
-    slow = peers[1]
     while not desk.server._peers[0].out:
         desk.run()
-    # In real time, which virtual time is none of, a kernel may still move some bytes: more minutes.
     ticks = 0
-    while len(desk.server._peers) > 1 and ticks < 5 * DEAF_S / 0.03:
+    while len(desk.server._peers) > 1 and ticks < 2 * DEAF_S / 0.03:
         ticks += 1
         desk.run()
         slow.read()
