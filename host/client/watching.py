@@ -13,6 +13,7 @@ from host.client.connection import Connection
 from host.client.listeners import Backlog, Listener, Records
 from host.client.stream import Feed
 from host.errors import NoLink
+from host.link.names import name_at
 from host.logs.tap import Span, Tap
 from host.util.arguments import need_function, need_seconds, need_tap
 from host.util.provenance import origin
@@ -238,7 +239,9 @@ class Watcher(Connection):
         Returns:
             Plain JSON data, as in `Log.info`.
         """
-        return origin(self.link.uri, self.hello, self.status(), self.clock_zero_s, self.started_utc)
+        info = origin(self.link.uri, self.hello, self.status(), self.clock_zero_s, self.started_utc)
+        name = name_at(self.link.uri)
+        return {"robot": name, **info} if name else info
 
     def _forget(self, listener: Listener) -> None:
         self.stream.remove(listener.backlog)

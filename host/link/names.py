@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -137,15 +138,21 @@ def own_token(robot: Chosen) -> str | None:
     """The token file of a robot: its own, or that of a robot with a name at the same place."""
     if robot.token is not None or sim_options(robot.address) is not None:
         return robot.token
-    place = place_of(robot.address)
-    return next(
-        (
-            one.token
-            for one in robots_file.read().values()
-            if one.token is not None and _is_at(place, one.address)
-        ),
-        None,
-    )
+    return next((one.token for one in _at(robot.address) if one.token is not None), None)
+
+
+def name_at(address: str) -> str:
+    """The name of the robot at an address; empty if none is known."""
+    try:
+        return "" if address.startswith(SIM) else next((one.name for one in _at(address)), "")
+    except WrongUse:  # a spoiled file of names keeps nobody from a robot whose address is known
+        return ""
+
+
+def _at(address: str) -> Iterator[robots_file.Known]:
+    """The robots with a name that are at the place of an address."""
+    place = place_of(address)
+    return (one for one in robots_file.read().values() if _is_at(place, one.address))
 
 
 def _is_at(place: tuple[str, str], address: str) -> bool:

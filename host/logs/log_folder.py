@@ -35,7 +35,8 @@ def in_folder(what: str, info: dict[str, Any], write: Callable[[Path], T]) -> T:
 
     Args:
         what: What was done.
-        info: What is known of it, as in Log; `brick` is the robot's address.
+        info: What is known of it, as in Log; `robot` is the robot's name if it has one, `brick`
+            its address.
         write: Creates the file that it gets; see `under_free_name`.
 
     Returns:
@@ -52,7 +53,8 @@ def in_folder(what: str, info: dict[str, Any], write: Callable[[Path], T]) -> T:
             "go to a folder that you may write to",
         ) from None
     moment = datetime.now().astimezone()
-    parts = [f"{moment:%Y%m%d-%H%M%S}", robot_in_name(str(info.get("brick", ""))), what]
+    robot = str(info.get("robot") or robot_in_name(str(info.get("brick", ""))))
+    parts = [f"{moment:%Y%m%d-%H%M%S}", robot, what]
     return under_free_name(LOG_FOLDER / ("-".join(filter(None, parts)) + ".mcap"), write)
 
 

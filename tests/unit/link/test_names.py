@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from host.errors import WrongUse
 from host.link import robots_file
-from host.link.names import Chosen, chosen, every, is_several, own_token, several
+from host.link.names import Chosen, chosen, every, is_several, name_at, own_token, several
 from host.link.robots_file import add, file_path, is_name, read, remove, rename, token_path
 
 NAMES = st.from_regex("[A-Za-z0-9][A-Za-z0-9_-]{0,39}", fullmatch=True).filter(is_name)
@@ -229,6 +229,14 @@ def test_an_address_has_the_token_of_the_robot_there(by_hand):
         assert own_token(chosen(address)) == "/keys/bert"
     for address in ("tcp://10.0.0.1", "tcp://10.0.0.2:5426", "sim://"):
         assert own_token(chosen(address)) is None
+
+
+@pytest.mark.usefixtures("by_hand")
+def test_the_robot_at_an_address_is_known_by_its_name():
+    places = ["tcp://10.0.0.1", "ssh://robot@10.0.0.2", "tcp://10.0.0.3", "sim://", "no address"]
+    assert [name_at(place) for place in places] == ["anna", "bert", "", "", ""]
+    file_path().write_text("spoiled", encoding="utf-8")
+    assert name_at("tcp://10.0.0.1") == ""
 
 
 def test_several_robots(by_hand):

@@ -331,6 +331,8 @@ def test_new_logs_have_names_of_their_own_in_the_present_folder(tmp_path, monkey
         "20261122-153012-sim-kick-phase-4-ticks-3.mcap",
     ]
     assert in_folder("record", {}, log.save).name == "20261122-153012-record.mcap"
+    named = {"robot": "anna", "brick": "tcp://192.168.0.7"}
+    assert in_folder("record", named, log.save).name == "20261122-153012-anna-record.mcap"
 
 
 @pytest.mark.parametrize(
