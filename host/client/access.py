@@ -8,6 +8,7 @@ from pathlib import Path
 
 from host.client.conversation import Conversation
 from host.errors import NoLink, RefusedByRobot, TokenRefused
+from host.link.patience import Patience
 from host.link.transport import Link
 from host.util.arguments import need_path
 from robot.token import TokenError, default_path, load
@@ -101,15 +102,13 @@ def _introduce(
 def hear(link: Link, talk: Conversation, arrived: Callable[[], bool], patience_s: float) -> None:
     """Read from a link until what is awaited has arrived.
 
-    A link may ask for more patience: ssh waits for a person who types a password.
-
     Raises:
         KickctlError: Nothing has come in time, or the robot refuses.
         LinkLost: The robot hung up.
     """
-    until = link.now() + float(getattr(link, "answer_s", patience_s))
+    patience = Patience(link, patience_s)
     while not arrived():
-        if link.now() > until:
+        if patience.is_over():
             raise NoLink(
                 f"no robot answers at {link.uri}, though something is there",
                 "is it the robot's port, or its line and baud rate? Or its program hangs: look"

@@ -5,8 +5,10 @@ from __future__ import annotations
 import struct
 from typing import Any, NamedTuple
 
-from host.errors import NoLink, printable
+from host.errors import KickctlError, NoLink, RobotFault, printable
+from host.link.patience import Patience
 from host.link.transport import Link, LinkLost
+from host.util.installation import deploy_command
 from host.util.own_name import own_name
 from robot import wire
 from robot.record import STATES, unpack
@@ -94,14 +96,16 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
 
     Raises:
         NoLink: Nobody has confirmed the stop, so the motors may be running.
+        RobotFault: The robot's program does not answer. Its machine was reached by ssh, and says
+            that the motors are off.
     """
     frame, decoder = stop_frame(name or own_name()), wire.Decoder()
     link = link.another()
     try:
         link.open()
-        until = link.now() + (patience_s or float(getattr(link, "answer_s", CONFIRM_S)))
+        patience = Patience(link, patience_s or CONFIRM_S)
         repeat = link.now()
-        while link.now() <= until:
+        while not patience.is_over():
             if link.now() >= repeat:
                 link.send(frame)
                 repeat = link.now() + REPEAT_S
@@ -110,11 +114,36 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
                 stopped = confirmation(*received)
                 if stopped is not None:
                     return stopped
+        failure = unconfirmed(link.uri, "no answer has come")
     except LinkLost as error:
-        raise unconfirmed(link.uri, f"the link broke ({error})") from error
+        failure = unconfirmed(link.uri, f"the link broke ({error})")
+    except NoLink as error:
+        failure = error
     finally:
+        reached = _logged_in(link)
         link.close()
-    raise unconfirmed(link.uri, "no answer has come")
+    raise _halted(link, failure) if reached else failure
+
+
+def _logged_in(link: Any) -> bool:
+    """Whether ssh has reached the robot's machine, which can switch its motors off itself."""
+    return hasattr(link, "halt") and bool(link.logged_in())
+
+
+def _halted(link: Any, failure: NoLink) -> KickctlError:
+    """Have the robot's machine switch its motors off, as its program has not confirmed the stop.
+
+    Returns:
+        The error that says what is known then.
+    """
+    words = link.halt()
+    if words not in ("the motors are off", "the brick sees no motor"):
+        return NoLink(f"{failure.message}. {words}", failure.hint) if words else failure
+    return RobotFault(
+        f"the robot's program at {link.uri} does not answer. Its motors were switched off over ssh"
+        f" without it, and the kernel there says: {words}",
+        f"`{deploy_command()}` ends the program and starts it again",
+    )
 
 
 def unconfirmed(uri: str, why: str) -> NoLink:

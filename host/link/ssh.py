@@ -5,19 +5,22 @@ ssh knows the user's keys, settings and known hosts.
 
 from __future__ import annotations
 
+import os
 import re
 import socket
 import subprocess
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import IO, Self
 from urllib.parse import parse_qsl
 
+import robot
 from host.errors import NoLink, WrongUse, printable, quotable
 from host.link.logins import Login, parse_login, ssh_options
 from host.link.ssh_failures import remedy
-from host.link.transport import CONNECT_TIMEOUT_S, LinkLost, TcpLink
+from host.link.transport import CONNECT_TIMEOUT_S, READ_BYTES, LinkLost, TcpLink
 from robot.program import PORT
 
 _FORM = (
@@ -32,6 +35,11 @@ _BATCH = ["-o", "BatchMode=yes"]
 _BATCH_ANSWER_S = 15.0
 # ssh may say much; what it gives up for comes last.
 _LAST_WORDS = 280
+_LOGGED_IN = b"Authenticated to "
+# What ssh says besides, though nothing is wrong.
+_CHATTER = ("Authenticated to ", "Transferred: ", "Bytes per second: ")
+# How long the brick may take to switch its motors off.
+_HALT_S = 15.0
 # ^C reaches ssh too, and must not end it: kickctl still has to stop the motors over this link.
 _RUN = ("sh", "-c", 'trap "" INT; exec ssh "$@"', "sh")
 # What a person's settings add to a login by hand is switched off, and ssh has to say why it fails.
@@ -40,7 +48,7 @@ _SETTINGS = (
     "ServerAliveInterval=5",
     "RemoteCommand=none",
     "PermitLocalCommand=no",
-    "LogLevel=INFO",
+    "LogLevel=VERBOSE",  # it says when it has logged in, and why it has not
 )
 
 
@@ -109,12 +117,41 @@ class SshLink(TcpLink):
         self._heard = self._heard or bool(data)
         return data
 
+    def logged_in(self) -> bool:
+        """Whether ssh has got through to the machine, so that only the robot has to answer."""
+        if self._heard:
+            return True
+        if self._words is None:
+            return False
+        # Not by `seek`: ssh writes where this process has left off.
+        return _LOGGED_IN in os.pread(self._words.fileno(), READ_BYTES, 0)
+
+    def halt(self) -> str:
+        """Have the brick's kernel switch the motors off, without the robot's program.
+
+        Returns:
+            What the brick says of its motors, in words; empty if it could not be asked.
+        """
+        service = Path(robot.__file__).parent / "service"
+        script = b"".join((service / name).read_bytes() for name in ("change.sh", "brick.sh"))
+        options = self._options[3:]  # without the way to the robot's port
+        command = ["ssh", "-T", *options, *_BATCH, "--", self._target, "sh -s halt"]
+        try:
+            done = subprocess.run(
+                command, input=script, capture_output=True, timeout=_HALT_S, check=False
+            )
+        except (OSError, subprocess.TimeoutExpired):
+            return ""
+        said = re.search("kickctl-motors=([^=]*)=", done.stdout.decode(errors="replace"))
+        return printable(said[1]) if said else ""
+
     def close(self) -> None:
         """Close the connection and end ssh."""
         super().close()
         if self._ssh is not None:
             try:
-                self._ssh.wait(_END_S)  # it ends by itself when its input does
+                # It ends by itself when its input does, if the robot's program hangs up, too.
+                self._ssh.wait(_END_S if self._heard else 0.1)
             except subprocess.TimeoutExpired:
                 self._ssh.kill()
                 self._ssh.wait()
@@ -133,7 +170,8 @@ class SshLink(TcpLink):
             with suppress(subprocess.TimeoutExpired):
                 self._ssh.wait(_END_S)
             self._words.seek(0)
-            said = self._words.read().decode(errors="replace")
+            lines = self._words.read().decode(errors="replace").splitlines(keepends=True)
+            said = "".join(line for line in lines if not line.startswith(_CHATTER))
             words = " ".join(said.split())
             shown = printable(
                 words

@@ -145,6 +145,12 @@ motors() { # in words, what the kernel says of the motors
     fi
 }
 
+# When the program does not answer: the kernel can switch the motors off without it.
+halt() {
+    reset_motors
+    tell "kickctl-motors=$(motors)="
+}
+
 stop_program() {
     [ ! -e "$UNIT" ] || as_root systemctl stop kickctl || true
     running=$(program_pid)

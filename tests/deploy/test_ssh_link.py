@@ -9,11 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from host.client.robot import connect
-from host.errors import NoLink, WrongUse
+from host.client.robot import Robot, connect
+from host.client.stop import stop_robot
+from host.errors import NoLink, RobotFault, WrongUse
 from host.link.addresses import make_link
+from host.link.ssh import SshLink
 from host.util.installation import deploy_command
-from tests.deploy.brick import ROOT, free_port, needs_sshd
+from tests.deploy.brick import ROOT, free_port, needs_sshd, write
 from tests.sysfs.mount import ended, mounted, needs_mount, started
 
 
@@ -104,13 +106,12 @@ def test_a_robot_drives_on_when_a_cell_connects_again(desk, through, tmp_path):
 
 @needs_sshd
 def test_a_tunnel_that_dies_is_dug_anew_and_no_tick_is_lost(desk, through, tmp_path):
-    with connect(f"ssh://brick?port={desk}", token=str(tmp_path / "token")) as robot:
-        log = robot.record(0.3)
-        robot.add_tap(log)
+    uri, token = f"ssh://brick?port={desk}", str(tmp_path / "token")
+    with connect(uri, token=token) as robot, robot.recording() as log:
         robot.wait(0.3)
         os.kill(tunnels()[-1], signal.SIGKILL)
         robot.wait(1.0)
-        assert log.missing() == []
+    assert log.missing() == []
 
 
 @needs_sshd
@@ -129,6 +130,44 @@ def test_a_brick_whose_robot_does_not_run(brick, through):
     with pytest.raises(NoLink, match="no robot answers at ssh://brick") as caught:
         connect(f"ssh://brick?port={free_port()}")
     assert deploy_command() in caught.value.hint
+
+
+@needs_sshd
+@pytest.mark.parametrize("state", ["", "running"])
+def test_a_stop_does_not_wait_for_a_program_that_hangs(
+    brick, through, tmp_path, monkeypatch, state
+):
+    """The time counts from the login on; then the brick's kernel switches the motors off."""
+    monkeypatch.setattr(SshLink, "answer_s", 3600.0)
+    monkeypatch.setattr(Robot, "answer_s", 1.0)
+    motor = brick.sysfs / "tacho-motor" / "motor0"
+    write(motor / "command", "run-direct")
+    write(motor / "state", state)
+    process, uri = started("sim_motor", "--port", "0", "--token", str(tmp_path / "token"))
+    process.send_signal(signal.SIGSTOP)
+    link = make_link(f"ssh://brick?port={uri.rpartition(':')[2]}")
+    try:
+        with pytest.raises(NoLink if state else RobotFault) as caught:
+            stop_robot(link, patience_s=1.0)
+        with pytest.raises(NoLink, match="no robot answers at ssh://"):
+            connect(link.uri, token=str(tmp_path / "token"))
+    finally:
+        process.send_signal(signal.SIGCONT)
+        ended(process)
+    assert (motor / "command").read_text(encoding="ascii") == "reset\n"
+    words = "motors may be on: motor0 reads 'running'" if state else "says: the motors are off"
+    assert words in caught.value.message
+    assert tunnels() == []
+
+
+@needs_sshd
+def test_a_stop_switches_the_motors_off_if_no_program_runs(brick, through):
+    motor = brick.sysfs / "tacho-motor" / "motor0"
+    write(motor / "command", "run-direct")
+    write(motor / "state", "")
+    with pytest.raises(RobotFault, match="says: the motors are off"):
+        stop_robot(make_link(f"ssh://brick?port={free_port()}"))
+    assert (motor / "command").read_text(encoding="ascii") == "reset\n"
 
 
 @needs_sshd
