@@ -44,8 +44,9 @@ VERBS = (
     "reproduce",
 )
 
-# `stop` waits for nothing, so it has a way of its own; `deploy` says itself that it has no robot.
-_OWN_WAYS = ("stop", "deploy")
+# `stop` waits for nothing and `watch` has one table, so they have ways of their own with several
+# robots; `deploy` says itself that it has no robot.
+_OWN_WAYS = ("stop", "watch", "deploy")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.

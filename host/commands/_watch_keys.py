@@ -15,6 +15,7 @@ from host.errors import KickctlError
 
 if TYPE_CHECKING:
     from host.client.robot import Robot
+    from host.client.stop import Stopped
 
 # A kick that could not be sent for so long is not what anybody wants any more (s).
 STALE_S = 1.0
@@ -72,7 +73,7 @@ class KeyActions:
     for it, and is dropped if that takes too long, as while a link is broken.
 
     Args:
-        robot: The robot.
+        stop: Stops the robot.
         say: Shows words; any thread may call it.
         change_foot: Shows other lines about keys.
         clock: The time in s.
@@ -80,13 +81,13 @@ class KeyActions:
 
     def __init__(
         self,
-        robot: Robot,
+        stop: Callable[[], Stopped],
         say: Callable[[str], None],
         change_foot: Callable[[list[str]], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.left = False
-        self._robot = robot
+        self._stop_robot = stop
         self._say = say
         self._change_foot = change_foot
         self._clock = clock
@@ -105,11 +106,15 @@ class KeyActions:
             self._kicks.put((self._clock(), KICKS[key]))
             self._pressed.set()
         elif key in (QUIT_KEY, QUIT_KEY.upper()):
-            self.left = True
-            self._pressed.set()
+            self.leave()
         elif key == HELP_KEY:
             self._helps = not self._helps
             self._change_foot(HELP_FOOT if self._helps else FOOT)
+
+    def leave(self) -> None:
+        """Have the watch end."""
+        self.left = True
+        self._pressed.set()
 
     @property
     def waiting(self) -> bool:
@@ -121,13 +126,13 @@ class KeyActions:
         self._pressed.wait(seconds)
         self._pressed.clear()
 
-    def kick(self) -> None:
+    def kick(self, robot: Robot) -> None:
         """Send the kicks that wait."""
         with suppress(queue.Empty):
             while True:
                 pressed_s, kick = self._kicks.get_nowait()
                 if self._clock() - pressed_s <= STALE_S:
-                    self._send(kick)
+                    self._send(robot, kick)
                 else:
                     self._say(f"kick {kick.title}: not sent, since the robot was out of reach")
 
@@ -136,24 +141,25 @@ class KeyActions:
         if self._stopping is not None:
             self._stopping.join()
 
-    def _send(self, kick: KeyKick) -> None:
+    def _send(self, robot: Robot, kick: KeyKick) -> None:
         """Kick, and give control back, so that whoever only watches locks nobody out."""
         try:
-            self._robot.kick(**kick.details)
+            robot.kick(**kick.details)
         except KickctlError as refusal:
-            self._say(f"kick {kick.title}: {_words(refusal)}")
+            self._say(f"kick {kick.title}: {in_a_line(refusal)}")
         finally:
             with suppress(KickctlError):
-                self._robot.release()
+                robot.release()
 
     def _stop(self) -> None:
         self._say("stop: sent; waiting for the robot's answer")
         try:
-            words = self._robot.stop_at_once().sentence()
+            words = self._stop_robot().sentence()
         except KickctlError as failure:
-            words = _words(failure)
+            words = in_a_line(failure)
         self._say(f"stop: {words}")
 
 
-def _words(error: KickctlError) -> str:
+def in_a_line(error: KickctlError) -> str:
+    """What happened and what to do, as typed on this command line."""
     return as_typed(f"{error.message}; {error.hint}" if error.hint else error.message)

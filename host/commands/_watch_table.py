@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,32 +29,27 @@ _HAPPENINGS = 5
 _DRAW_S = 0.1
 
 
-class Screen:
-    """What a person sees of a watched robot.
+class Screen(ABC):
+    """What a person sees of watched robots.
 
-    A thread draws it, so that neither the robot's link nor a stop ever waits for a terminal, and so
+    A thread draws it, so that neither a robot's link nor a stop ever waits for a terminal, and so
     that words about a stop appear while a link is broken.
 
     Args:
-        uri: The robot's address.
         foot: The lines below all others, which say what keys do.
     """
 
-    def __init__(self, uri: str, foot: list[str]) -> None:
-        self._uri = uri
+    def __init__(self, foot: list[str]) -> None:
         self._foot = foot
-        self._line: dict[str, Any] | None = None
         self._happened: deque[str] = deque(maxlen=_HAPPENINGS)
         self._lock = threading.Lock()
         self._live: Live | None = None
         self._ended = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def take(self, line: dict[str, Any]) -> None:
-        """Show the next line."""
-        with self._lock:
-            self._line = line
-            self._happened.extend(map(event_words, line["events"]))
+    @abstractmethod
+    def body(self) -> list[Any]:
+        """What stands above the words, for rich."""
 
     def add(self, words: str) -> None:
         """Show words among what has happened."""
@@ -70,12 +66,10 @@ class Screen:
         from rich.console import Group
         from rich.text import Text
 
+        body = self.body()
         with self._lock:
-            line, happened, foot = self._line, list(self._happened), self._foot
-        if line is None:
-            return Group(Text(f"{self._uri}: no record yet"), *map(Text, foot))
-        words = [*_facts(line), *happened, *foot]
-        return Group(_title(self._uri, line), _wheels(line), *map(Text, words))
+            words = [*self._happened, *self._foot]
+        return Group(*body, *map(Text, words))
 
     def open(self) -> None:
         """Draw on the terminal from now on, below what is there."""
@@ -113,6 +107,74 @@ class Screen:
                 live.update(self.render(), refresh=True)
         except OSError:
             pass  # the terminal is gone; `close` says so
+
+
+class OneRobot(Screen):
+    """The screen for one robot.
+
+    Args:
+        uri: The robot's address.
+        foot: As for Screen.
+    """
+
+    def __init__(self, uri: str, foot: list[str]) -> None:
+        super().__init__(foot)
+        self._uri = uri
+        self._line: dict[str, Any] | None = None
+
+    def take(self, line: dict[str, Any]) -> None:
+        """Show the next line."""
+        self._line = line
+        for event in line["events"]:
+            self.add(event_words(event))
+
+    def body(self) -> list[Any]:
+        from rich.text import Text
+
+        line = self._line
+        if line is None:
+            return [Text(f"{self._uri}: no record yet")]
+        return [_title(self._uri, line), _wheels(line), *map(Text, _facts(line))]
+
+
+class SeveralRobots(Screen):
+    """The screen for several robots: a row for each.
+
+    Args:
+        names: The robots, in the order of their rows.
+        foot: As for Screen.
+    """
+
+    def __init__(self, names: list[str], foot: list[str]) -> None:
+        super().__init__(foot)
+        self._lines: dict[str, dict[str, Any] | None] = dict.fromkeys(names)
+
+    def take(self, name: str, line: dict[str, Any]) -> None:
+        """Show a robot's next line."""
+        self._lines[name] = line
+        for event in line["events"]:
+            self.add(f"{name}: {event_words(event)}")
+
+    def body(self) -> list[Any]:
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table()
+        for title in ("robot", "state", "kick", "driven by"):
+            table.add_column(title)
+        for title in ("left (turns/s)", "right (turns/s)", "missed", "lost"):
+            table.add_column(title, justify="right")
+        for name, line in self._lines.items():
+            cells = ["no record yet"] if line is None else _cells(line)
+            table.add_row(*map(Text, [name, *cells]))
+        return [table]
+
+
+def _cells(line: dict[str, Any]) -> list[str]:
+    speeds = (f"{line[side]['turns_per_s']:.2f}" for side in WHEELS)
+    driver = line["controller"] or "nobody"
+    counts = str(line["missed"]), str(line["lost"])
+    return [line["state"], line["recent_kick"], driver, *speeds, *counts]
 
 
 def _title(uri: str, line: dict[str, Any]) -> Any:

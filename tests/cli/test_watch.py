@@ -13,7 +13,7 @@ from host.client.robot import Robot
 from host.client.stop import Stopped
 from host.commands._keys import KeyParser
 from host.commands._watch_keys import FOOT, HELP_FOOT, KICKS, STALE_S, KeyActions
-from host.commands._watch_table import Screen
+from host.commands._watch_table import OneRobot, SeveralRobots
 from host.commands._watched import VISIBLE_S, Watched, event_words
 from host.errors import LeaseLost, NoLink, RefusedByRobot
 from robot.kick_requests import parse
@@ -159,7 +159,7 @@ def drawn(screen, width=100):
 
 
 def test_the_table_says_it_all(watched):
-    screen = Screen("tcp://brick", FOOT)
+    screen = OneRobot("tcp://brick", FOOT)
     watched.take_records([*kicked(10), *records(11, 13, late_s=0.0021, left_duty_pct=-85)])
     watched.take_event({"event": "stop", "tick": 13, "number": 9, "reason": "'bert' stopped it"})
     watched.lost = 4
@@ -182,7 +182,7 @@ def test_the_table_says_it_all(watched):
 
 def test_nothing_of_an_address_or_a_robot_is_taken_for_markup(watched):
     uri = "tcp://[fe80::1%usb0]:5425"
-    screen = Screen(uri, [])
+    screen = OneRobot(uri, [])
     watched.take_status({**STATUS, "controller": "[red]x[/red]", "reason": "[bold]"})
     screen.take(watched.line())
     text = drawn(screen)
@@ -192,7 +192,7 @@ def test_nothing_of_an_address_or_a_robot_is_taken_for_markup(watched):
 
 
 def test_only_the_latest_happenings_stay(watched):
-    screen = Screen("sim://", [])
+    screen = OneRobot("sim://", [])
     screen.take(watched.line())
     for number in range(50):
         screen.add(f"words {number}")
@@ -202,7 +202,19 @@ def test_only_the_latest_happenings_stay(watched):
 
 
 def test_before_the_first_record_it_says_so():
-    assert "no record yet" in drawn(Screen("sim://", []))
+    assert "no record yet" in drawn(OneRobot("sim://", []))
+
+
+def test_several_robots_have_a_row_each(watched):
+    screen = SeveralRobots(["anna", "bert"], ["keys"])
+    watched.take_records(kicked(10, "phase"))
+    watched.take_event({"event": "stop", "tick": 11, "number": 9, "reason": "'bert' stopped it"})
+    screen.take("anna", watched.line())
+    screen.add("bert: no answer")
+    text = drawn(screen)
+    assert "anna  │ running       │ phase │ anna@lab" in text
+    assert "bert  │ no record yet" in text
+    assert "anna: tick 11: stopped: 'bert' stopped it\nbert: no answer\nkeys\n" in text
 
 
 # Keys
@@ -262,7 +274,7 @@ class Rig:
     def __init__(self):
         self.robot, self.words, self.feet, self.now_s = FakeRobot(), [], [], 0.0
         self.actions = KeyActions(
-            self.robot, self.words.append, self.feet.append, clock=lambda: self.now_s
+            self.robot.stop_at_once, self.words.append, self.feet.append, clock=lambda: self.now_s
         )
 
 
@@ -278,7 +290,7 @@ def test_a_kick_key_kicks_and_gives_control_back(keyed):
     keyed.actions.press("3")
     assert keyed.actions.waiting
     assert keyed.robot.done == []
-    keyed.actions.kick()
+    keyed.actions.kick(keyed.robot)
     assert keyed.robot.done == ["phase", "release"]
     assert not keyed.actions.waiting
     assert keyed.words == []
@@ -288,7 +300,7 @@ def test_a_kick_key_kicks_and_gives_control_back(keyed):
 def test_a_refused_kick_is_a_line_in_words(keyed, kind):
     keyed.robot.refusal = kind("'anna' controls the robot", "wait")
     keyed.actions.press("1")
-    keyed.actions.kick()
+    keyed.actions.kick(keyed.robot)
     assert keyed.words == ["kick membrane: 'anna' controls the robot; wait"]
     assert not keyed.actions.left
 
@@ -297,7 +309,7 @@ def test_a_kick_that_could_not_be_sent_is_not_sent_late(keyed):
     keyed.actions.press("1")
     keyed.now_s = STALE_S + 0.1
     keyed.actions.press("2")
-    keyed.actions.kick()
+    keyed.actions.kick(keyed.robot)
     assert keyed.robot.done == ["position", "release"]
     assert keyed.words == ["kick membrane: not sent, since the robot was out of reach"]
 
@@ -339,10 +351,10 @@ def test_keys_drive_a_robot_that_is_watched():
     link = RigLink()
     with Robot(link, link.token) as robot:
         words = []
-        actions = KeyActions(robot, words.append, words.append)
+        actions = KeyActions(robot.stop_at_once, words.append, words.append)
         for key in "15":
             actions.press(key)
-            actions.kick()
+            actions.kick(robot)
             assert link.loop.lease.holder is None
             robot.wait(0.1)
         actions.press(" ")

@@ -175,7 +175,7 @@ def test_a_stop_waits_for_no_thread_that_looks_for_the_robot(desk):
     folder, uri = desk
     words = []
     with restarted(folder, uri) as robot:
-        actions = KeyActions(robot, words.append, words.append)
+        actions = KeyActions(robot.stop_at_once, words.append, words.append)
         with robot._lock:
             actions.press(" ")
             actions.close()
