@@ -61,6 +61,7 @@ def _show_table(robot: Robot, seconds: float) -> None:
         stack.enter_context(screen.shown())
         stack.callback(actions.close)
         if not lacking:
+            robot.on_trouble = screen.add
             stack.enter_context(keys(actions.press, screen.close, screen.open))
         for line in lines(robot, seconds, lambda: actions.waiting, actions.pause):
             screen.take(line)

@@ -182,6 +182,18 @@ def test_a_stop_waits_for_no_thread_that_looks_for_the_robot(desk):
         assert words[-1].startswith("stop: motors stopped before tick")
 
 
+def test_words_and_keys_go_on_while_a_robot_that_is_gone_is_looked_for(tmp_path):
+    with desk_robot(tmp_path) as (uri, process), terminal(tmp_path, watching(uri)) as screen:
+        screen.wait_for(FOOT)
+        process.kill()
+        place = screen.wait_for(b"looking for the robot for")
+        screen.type(b" ")
+        screen.wait_for(b"stop: ", place)
+        screen.type(b"?")
+        screen.wait_for(b"membrane inversion", place)
+        assert b"Traceback" not in screen.seen
+
+
 @pytest.mark.parametrize(
     "end", [b"\x03", signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=["^C", "INT", "TERM", "HUP"]
 )
