@@ -61,8 +61,10 @@ Environment:
                      '--left outA --right outD --set polarity_left=-1'.
                      python3 -m robot --help lists them. If the new release is not well, the
                      arguments of before count again
-  KICK_TOKEN         the token's file, by default ~/.config/kickctl/token; if there is none, the
-                     brick's is fetched, or a new one is made
+  KICK_AS            the robot's name on this machine, by default that of its machine
+  KICK_TOKEN         the token's file, by default ~/.config/kickctl/tokens/NAME if it is there, or
+                     ~/.config/kickctl/token; if there is none, the brick's is fetched, or a new
+                     one is made
   KICK_SSH_OPTIONS   options for ssh, for example '-p 2222 -i "my key"', quoted as for a shell
 
 Exit status: 0 done, and the program is well. It may still report a fault of the robot, such as a
@@ -180,7 +182,10 @@ change_over() {
     }
     # It is done, even if the connection is lost now.
     (ask address) >"$folder/answer" 2>/dev/null || true
+    where=ssh://$brick$(listens) kickctl=kickctl
+    command -v kickctl >/dev/null || kickctl=${KICKCTL-$(typed "$from/.venv/bin/kickctl")}
     say
+    remember
     if [ -n "$fault" ]; then
         say "The program runs on $brick, but the robot is in fault: see above. Mend that, then:"
         commands "clear" "start"
@@ -190,15 +195,30 @@ change_over() {
     fi
 }
 
+# Give the robot a name on this machine, by which kickctl finds its address and its token. Without a
+# kickctl, say how.
+remember() {
+    called='' run=${KICKCTL-}
+    [ -n "$run" ] || ! command -v kickctl >/dev/null || run=kickctl
+    add="robots add $(typed "$name") $(typed "$where") --token $(typed "$token")"
+    if [ -z "$run" ]; then
+        say "To give the robot a name: $kickctl $add"
+    elif eval "$run $add" >"$folder/answer" 2>&1; then
+        called=$name
+        say "The robot is known here as $name: kickctl robots list"
+    else
+        say "The robot got no name here:"
+        sed 's/^/  /' "$folder/answer"
+    fi
+}
+
 # commands VERB...: how a person types kickctl for this robot
 commands() {
-    kickctl=kickctl
-    command -v kickctl >/dev/null || kickctl=${KICKCTL-$(typed "$from/.venv/bin/kickctl")}
     with=''
     [ -z "${KICK_SSH_OPTIONS-}" ] || with="KICK_SSH_OPTIONS=$(typed "$KICK_SSH_OPTIONS") "
-    [ -z "${KICK_TOKEN-}" ] || with="${with}KICK_TOKEN=$(typed "$token") "
+    [ -n "$called" ] || [ -z "${KICK_TOKEN-}" ] || with="${with}KICK_TOKEN=$(typed "$token") "
     for words; do
-        say "  $with$kickctl --brick $(typed "ssh://$brick$(listens)") $words"
+        say "  $with$kickctl --brick $(typed "${called:-$where}") $words"
     done
     [ -n "${KICKCTL-}" ] || [ "$kickctl" = kickctl ] || [ -x .venv/bin/kickctl ] ||
         say "There is no kickctl yet: type $(typed cd "$from") && make setup"
@@ -248,7 +268,12 @@ done
 [ -z "$service" ] || [ "$verb" = deploy ] ||
     fail 2 "--service and --$verb at once" "give one of them"
 
-token=${KICK_TOKEN:-${XDG_CONFIG_HOME:-${HOME:-\~}/.config}/kickctl/token}
+# The robot's name on this machine: its machine's, if nobody has given another one.
+name=${KICK_AS:-$(printf '%s' "${host%.local}" | tr -c 'A-Za-z0-9_-' '-')}
+config=${XDG_CONFIG_HOME:-${HOME:-\~}/.config}/kickctl
+token=${KICK_TOKEN:-$config/tokens/$name}
+# Without a kickctl that keeps names, robots share a token, but for those that have their own.
+[ -n "${KICK_TOKEN-}${KICKCTL-}" ] || [ -e "$token" ] || token=$config/token
 case $token in
 \~*) fail 2 "there is no home folder for the token file $token" \
     "name a file by its whole path in KICK_TOKEN" ;;

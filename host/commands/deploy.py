@@ -7,12 +7,14 @@ import os
 import sys
 
 from host.errors import WrongUse
+from host.link import robots_file
 from host.link.logins import parse_login
 from host.util.installation import DEPLOY_SCRIPT, kickctl_command
 
 HELP = "bring the robot's program to a brick over ssh, and start it there"
 USES = ("brick", "token")
 
+DEFAULT_LOGIN = "robot@ev3dev.local"
 # The options of deploy.sh, which does the work.
 OPTIONS = {
     "service": "have the program start with the brick from now on (asks for the brick's password)",
@@ -36,7 +38,7 @@ port of ssh. An IPv6 address before a port stands in brackets.
 Environment:
   KICK_ROBOT_ARGS    arguments of the robot's program, from this deploy on:
                      '--idle --left outA --right outD --set polarity_left=-1'
-  KICK_TOKEN         the token's file (default ~/.config/kickctl/token)
+  KICK_TOKEN         the token's file (default ~/.config/kickctl/tokens/NAME)
   KICK_SSH_OPTIONS   options for ssh, for example '-p 2222 -i "my key"', quoted as for a shell
 
 Exit status: 0 done, and the program is well; 1 not done, and the brick is as it was; 2 wrong use;
@@ -56,6 +58,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             f"--{name}", dest="given", action="append_const", const=f"--{name}", help=text
         )
 
+    parser.add_argument(
+        "--as",
+        dest="robot_name",
+        metavar="NAME",
+        help="the robot's name here from now on, for --brick NAME (default: the name that it has,"
+        " or that of its machine)",
+    )
+
 
 def run(options: argparse.Namespace) -> int:
     """Become deploy.sh, with its output, its questions at the terminal and its exit status."""
@@ -67,11 +77,30 @@ def run(options: argparse.Namespace) -> int:
             "name the brick's user and address: kickctl deploy robot@ev3dev.local",
         )
     environment = {**os.environ, "KICKCTL": kickctl_command()}
-    if options.token is not None:
-        environment["KICK_TOKEN"] = options.token
     # Checked here by its own rules, and by deploy.sh by the same in shell.
     login = [] if options.login is None else [str(parse_login(options.login))]
+    environment["KICK_AS"], own = _known(options.robot_name, login)
+    token = options.token or os.environ.get("KICK_TOKEN") or own
+    if token:
+        environment["KICK_TOKEN"] = token
     sys.stdout.flush()
     os.execvpe(  # noqa: S606 - ssh has to find the terminal as it is
         "sh", ["sh", str(DEPLOY_SCRIPT), *(options.given or []), *login], environment
     )
+
+
+def _known(name: str | None, login: list[str]) -> tuple[str, str | None]:
+    """The name of the brick's robot, and its own token file if it has one.
+
+    Raises:
+        WrongUse: A robot cannot be named so.
+    """
+    address = f"ssh://{login[0] if login else DEFAULT_LOGIN}"
+    if name is None:
+        for robot in robots_file.read().values():
+            # Its program may listen at another port than the usual one.
+            if robot.address.split("?")[0] == address:
+                return robot.name, robot.token
+        return robots_file.free_name(parse_login(address).host, ()), None
+    known = robots_file.read().get(robots_file.need_name(name))
+    return name, None if known is None else known.token

@@ -4,6 +4,7 @@ import argparse
 
 from host.commands._terminal import show
 from host.errors import NoLink
+from host.link.names import save
 from host.util.numbers import Number
 
 HELP = "look for robots in the network"
@@ -28,6 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="how long to listen, s (default %(default)s)",
     )
+    parser.add_argument(
+        "--save", action="store_true", help="give names to those that have none: see kickctl robots"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -35,11 +39,18 @@ def run(options: argparse.Namespace) -> int:
     from host.link.discovery import look_around
 
     found = look_around(options.seconds)
+    saved = save((robot.name, robot.uri) for robot in found) if options.save else {}
     if options.json:
-        show({"robots": [robot.as_dict() for robot in found]})
+        more = {"saved": saved} if options.save else {}
+        show({"robots": [robot.as_dict() for robot in found], **more})
     for robot in found:
         if not options.json:
             print(f"{robot.uri}  ({robot.name}: {robot.kind})")
+    if options.save and not options.json:
+        for name, address in saved.items():
+            print(f"{name} is {address} from now on: kickctl --brick {name} status")
+        if found and not saved:
+            print("all of them have names already: kickctl robots list")
     if not found:
         raise NoLink("no robot has answered", WHAT_TO_TRY)
     return 0

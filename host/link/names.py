@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -153,6 +153,24 @@ def _at(address: str) -> Iterator[robots_file.Known]:
     """The robots with a name that are at the place of an address."""
     place = place_of(address)
     return (one for one in robots_file.read().values() if _is_at(place, one.address))
+
+
+def save(found: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Give names to robots that have none yet.
+
+    Args:
+        found: (name, address) of each. A name that is taken, or none, is changed.
+
+    Returns:
+        The addresses that are new, by their names.
+    """
+    saved: dict[str, str] = {}
+    for wanted, address in found:
+        if next(_at(address), None) is None:
+            name = robots_file.free_name(wanted, robots_file.read())
+            robots_file.add(name, address)
+            saved[name] = address
+    return saved
 
 
 def _is_at(place: tuple[str, str], address: str) -> bool:

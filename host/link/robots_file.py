@@ -10,7 +10,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -89,7 +89,7 @@ def read() -> dict[str, Known]:
 
 
 def add(name: str, address: str, token: str | None = None) -> Known:
-    """Add a robot.
+    """Add a robot; nothing happens if it is there just so.
 
     Args:
         name: Its name, which nobody has yet.
@@ -103,6 +103,8 @@ def add(name: str, address: str, token: str | None = None) -> Known:
     entry = {"address": address} | ({} if token is None else {"token": token})
 
     def change(text: str, robots: dict[str, dict[str, str]]) -> str:
+        if robots.get(name) == entry:
+            return text
         if name in robots:
             raise WrongUse(
                 f"there is a robot '{name}' already, at {robots[name]['address']}",
@@ -118,6 +120,14 @@ def add(name: str, address: str, token: str | None = None) -> Known:
 
     _change(change)
     return _known(name, entry)
+
+
+def free_name(text: str, taken: Iterable[str]) -> str:
+    """A name like a text that may be any, with a number behind it if it is taken."""
+    name = re.sub("[^A-Za-z0-9_-]", "-", text.removesuffix(".local"))[:LONGEST_NAME].strip("-_")
+    name = name if is_name(name) else "robot"
+    names = (name, *(f"{name[: LONGEST_NAME - 4]}-{number}" for number in range(2, 1000)))
+    return next(one for one in names if one not in taken)
 
 
 def rename(old: str, new: str) -> None:
