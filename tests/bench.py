@@ -15,7 +15,7 @@ from pathlib import Path
 
 from tests.bench_io import reads_and_writes
 from tests.bench_starts import starts
-from tests.bench_stop import stop_beside_a_blocked_request
+from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell
 from tests.bench_storm import many_hosts
 
 REAL_TIME_S = 30.0
@@ -34,6 +34,7 @@ def main() -> None:
         bodies,
         real_time,
         stop_beside_a_blocked_request,
+        stop_from_a_shell,
         many_hosts,
     ):
         measure()

@@ -5,12 +5,10 @@ from __future__ import annotations
 import argparse
 import platform
 import shutil
-import statistics
 import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,6 @@ from host.commands._hints import as_typed
 from host.commands._terminal import show
 from host.errors import KickctlError, NotDone
 from host.link.names import chosen, own_token
-from host.util import requirements
 from host.util.installation import deploy_command, install_command
 from robot import __version__
 from robot.sources import of_robot
@@ -103,6 +100,11 @@ def _machine() -> Iterator[Finding]:
 
 def _libraries() -> Iterator[Finding]:
     """What the package's own metadata requires, first always and then for each extra."""
+    # Every other verb starts sooner without these.
+    from importlib.metadata import PackageNotFoundError
+
+    from host.util import requirements
+
     try:
         absent = requirements.missing()
         extras = {extra: requirements.missing(extra) for extra in requirements.extras()}
@@ -149,6 +151,8 @@ def _token(path: str | None) -> Iterator[Finding]:
 
 
 def _robot(robot: Robot) -> Iterator[Finding]:
+    from statistics import median
+
     hello = robot.hello
     same = hello["software"] == __version__
     yield Finding("robot", f"{robot.link.uri}, {hello['machine']}")
@@ -176,10 +180,10 @@ def _robot(robot: Robot) -> Iterator[Finding]:
         asked = time.perf_counter()
         status = robot.status()
         delays.append(1000 * (time.perf_counter() - asked))
-    slow = statistics.median(delays) > 100.0
+    slow = median(delays) > 100.0
     yield Finding(
         "link",
-        f"an answer takes {statistics.median(delays):.1f} ms (median of {PINGS}), {max(delays):.1f}"
+        f"an answer takes {median(delays):.1f} ms (median of {PINGS}), {max(delays):.1f}"
         " ms at most",
         "use a cable, or come nearer" if slow else "",
     )
