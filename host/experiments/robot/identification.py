@@ -138,7 +138,7 @@ def break_away(drive: Drive, ramps: Sequence[int]) -> Interval:
         ramps: numbers of the stretches in which the duty rises slowly from 0.
 
     Raises:
-        NotDone: There are no such stretches, or the wheel did not move in one of them.
+        NotDone: There are no stretches of this kind, or the wheel did not move in one of them.
     """
     if not ramps:
         raise NotDone(

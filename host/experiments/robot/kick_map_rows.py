@@ -59,7 +59,7 @@ def counts(rows: list[Row]) -> NDArray[np.float64]:
 
 
 def share(totals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rates of such counts; NaN where nothing was tried."""
+    """The rates of these counts; NaN where nothing was tried."""
     done, tried = totals
     rates: NDArray[np.float64] = np.divide(
         done, tried, out=np.full_like(done, np.nan), where=tried > 0
