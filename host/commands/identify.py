@@ -4,7 +4,7 @@ import argparse
 from typing import Any
 
 from host.commands._terminal import answer, robot_of
-from host.errors import NotDone, WrongUse
+from host.errors import NotDone, WrongUse, printable
 
 HELP = "have the robot blink its lights and beep for 3 s, to find it among others; needs no token"
 
@@ -34,11 +34,11 @@ def run(options: argparse.Namespace) -> int:
             f"{result['brick']} has neither lights nor a speaker that its program may use",
             "its lights and its speaker belong to ev3dev; see its program's messages",
         )
-    answer(options, result, in_one_line(result))
+    answer(options, result, f"{result['brick']} {in_one_line(result)}")
     return 0
 
 
 def in_one_line(result: dict[str, Any]) -> str:
     """The result in words."""
-    ways = [_WAYS.get(way, way) for way in result["ways"]]
-    return f"{result['brick']} {' and '.join(ways)} for {result['seconds']:.0f} s"
+    ways = [_WAYS.get(way, printable(str(way))) for way in result["ways"]]
+    return f"{' and '.join(ways)} for {result['seconds']:.0f} s"
