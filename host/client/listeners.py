@@ -37,6 +37,8 @@ class Backlog:
     def take_records(self, records: list[Record]) -> None:
         """Keep records; never waits."""
         with self._changed:
+            if self._ended:  # the link's thread had these in its hands
+                return
             self._records.extend(records)
             while len(self._records) > self._length:
                 self._records.popleft()

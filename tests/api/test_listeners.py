@@ -316,6 +316,15 @@ def test_a_backlog_drops_the_oldest_and_counts_them():
     assert backlog.get() is None
 
 
+def test_a_closed_backlog_takes_nothing_more():
+    """The link's thread may hand on records while another thread closes the listener."""
+    backlog = Backlog()
+    backlog.end()
+    backlog.take_records([record(1)])
+    assert backlog.wait() is None
+    assert (len(backlog), backlog.dropped) == (0, 0)
+
+
 def test_a_closed_backlog_lets_nobody_wait():
     backlog = Backlog()
     waiter = threading.Thread(target=backlog.wait)
