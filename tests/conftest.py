@@ -33,6 +33,7 @@ REAL_TIME = (
     "tests/api/test_own_motors_page.py",
     "tests/api/test_slow_listeners.py",
     "tests/cli/test_desk.py",
+    "tests/cli/test_lesson_desk.py",
     "tests/cli/test_watch_several.py",
     "tests/cli/test_watch_terminal.py",
     "tests/contract/test_motor.py",

@@ -191,13 +191,16 @@ def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -
 
 
 def _lines(summary: dict[str, Any]) -> Iterator[str]:
-    """The results of a run: claims in sentences, main numbers, accuracies, and its files."""
+    """The results of a run: claims, main numbers (in words if it has them), accuracies, files."""
     from host.runs.claims import Claim
 
     for claim in summary["claims"]:
         yield Claim.from_dict(claim).sentence()
-    for name, value in _single_values(summary["numbers"]):
-        yield f"{name} {f'{value:.10g}' if isinstance(value, float) else value}"
+    if "in_words" in summary["numbers"]:
+        yield summary["numbers"]["in_words"]
+    else:
+        for name, value in _single_values(summary["numbers"]):
+            yield f"{name} {f'{value:.10g}' if isinstance(value, float) else value}"
     for kind, path in (
         ("table", summary["table"]),
         ("numbers", summary["summary"]),

@@ -94,7 +94,7 @@ class Numbers(TypedDict):
 
     Attributes:
         starts: how many starts.
-        in_words: the counts of each wheel in a sentence.
+        in_words: the counts of each wheel, and of both, in lines for people.
         left: the left wheel.
         right: the right wheel.
         both: both wheels together.
@@ -165,7 +165,7 @@ def count(rows: list[Row]) -> Counts:
 
 
 def in_words(name: str, counts: Counts) -> str:
-    """The counts of a wheel in words."""
+    """The counts of a wheel in words, and how they compare with those of a coin."""
     low, high = counts["interval"]
     others = "".join(
         f", {number} {words}"
@@ -173,12 +173,13 @@ def in_words(name: str, counts: Counts) -> str:
         if number
     )
     share = (
-        f" (forward 95 %: {low:.0%} to {high:.0%}; p = {counts['p']:.2g} if both are equally"
-        " likely)"
+        f"\n  the share of forward is {100 * counts['forward_share']:.0f} % (95 % interval"
+        f" {100 * low:.0f} to {100 * high:.0f} %); a fair coin is as uneven as this, or more, in"
+        f" {100 * counts['p']:.2g} % of all tries"
         if counts["forward_share"] is not None
         else ""
     )
-    return f"{name} {counts['forward']} forward, {counts['backward']} backward{others}{share}"
+    return f"{name}: {counts['forward']} forward, {counts['backward']} backward{others}{share}"
 
 
 def report(rows: list[Row], setting: Setting) -> Findings:
@@ -187,15 +188,18 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     left, right, both = count(by_wheel["left"]), count(by_wheel["right"]), count(rows)
     moved = [row for row in rows if row["direction"]]
     pairs = zip(by_wheel["left"], by_wheel["right"], strict=True)
+    total = len({row["start"] for row in rows})
+    same_way = sum(bool(a["direction"]) and a["direction"] == b["direction"] for a, b in pairs)
     numbers: Numbers = {
-        "starts": len({row["start"] for row in rows}),
-        "in_words": f"{in_words('left', left)}; {in_words('right', right)}",
+        "starts": total,
+        "in_words": (
+            f"{in_words('left wheel', left)}\n{in_words('right wheel', right)}\n"
+            f"both wheels went the same way in {same_way} of {total} starts"
+        ),
         "left": left,
         "right": right,
         "both": both,
-        "same_way": sum(
-            bool(a["direction"]) and a["direction"] == b["direction"] for a, b in pairs
-        ),
+        "same_way": same_way,
         "as_pushed": fraction(
             sum((row["ahead_deg"] > 0) == (row["direction"] == 1) for row in moved), len(moved)
         ),

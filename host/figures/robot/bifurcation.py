@@ -44,7 +44,8 @@ def draw(rows: list[BifurcationRow], findings: Findings) -> Figure:
         figure = Figure(**SIZE)
         upper, lower = figure.subplots(2, 2, sharex="col")
         _draw_quantity(upper, rows, "torque", "torque $M$", "$|M|$", 1.1, 0.45)
-        _draw_quantity(lower, rows, "hz", r"$\omega/2\pi$ (Hz)", r"$|\omega|/2\pi$ (Hz)", 2.3, 0.75)
+        speeds = (r"speed $\omega/2\pi$ (Hz)", r"$|\omega|/2\pi$ (Hz)")
+        _draw_quantity(lower, rows, "hz", *speeds, 2.3, 0.75)
         for axes in (*upper, *lower):
             axes.axvline(k_c, color="dimgrey", linestyle=":", linewidth=1.4)
         stall: Any = {"color": "grey", "alpha": 0.25, "linewidth": 0}

@@ -173,7 +173,7 @@ def _draw_speeds(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
             label=side,
         )
     axes.legend(ncols=2, handlelength=1.4)
-    axes.set_ylabel(r"$\omega/2\pi$ (Hz)")
+    axes.set_ylabel("speed\n$\\omega/2\\pi$ (Hz)")
 
 
 def _name(axes: Axes, kicks: list[Span], first_s: float, last_s: float) -> None:

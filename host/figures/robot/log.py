@@ -60,7 +60,7 @@ def draw(log: Curves, title: str) -> Figure:
             axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
             _mark(axes, log, unit_s)
         angles.set_ylabel(r"angle $\varphi$ (rad)")
-        potentials.set_ylabel("potentials $x$ (1)")
+        potentials.set_ylabel("potentials $x$")
         duties.set_ylabel("duty cycle (%)")
         duties.set_xlabel(f"time since the log began ({unit})")
         if log.t_s[-1] > 0.0:

@@ -14,8 +14,8 @@ from robot.kicks import MEMBRANE, PHASE, POSITION
 
 _CURVES: tuple[tuple[str, str, bool | None], ...] = (
     ("position inverted", POSITION, None),
-    ("phase shift of the named sign", PHASE, True),
-    ("phase shift of the other sign", PHASE, False),
+    ("phase shift, + if forward, \N{MINUS SIGN} if backward", PHASE, True),
+    ("phase shift, \N{MINUS SIGN} if forward, + if backward", PHASE, False),
 )
 _MARKERS = "os^"
 
@@ -33,13 +33,13 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         )
         rates.set_ylabel("reversed (%)")
         rates.set_ylim(-4, 104)
-        rates.legend(loc="center", fontsize=11)
         for index, (_, mode, named) in enumerate(_CURVES):
             _draw_times(times, rows, index, mode, named)
-        times.set_ylabel("settling time (s)\nof the reversed")
+        times.set_ylabel("settling time (s)\nof reversed wheels")
         times.set_xlabel("length of the kick (ticks)")
         times.set_xticks(LENGTHS)
         times.set_ylim(bottom=0)
+        times.legend(*rates.get_legend_handles_labels(), loc="lower right", ncols=2, fontsize=11)
         kicks = [(mode, ticks, named) for _, mode, named in _CURVES for ticks in LENGTHS]
         trials = max(len(points(rows, *kick)) for kick in kicks)
         figure.suptitle(

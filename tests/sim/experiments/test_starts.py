@@ -111,8 +111,16 @@ def test_the_counts_of_each_wheel():
     right = numbers["right"]
     assert [right[kind] for kind in ("forward", "backward", "rest", "unsettled")] == [1, 7, 1, 1]
     assert numbers["as_pushed"] == pytest.approx(15 / 18)
-    assert "left 8 forward, 2 backward (forward 95 %: 49% to 94%; p = 0.11" in numbers["in_words"]
-    assert "1 at rest, 1 not settled" in numbers["in_words"]
+    words = numbers["in_words"].splitlines()
+    assert words[:2] == [
+        "left wheel: 8 forward, 2 backward",
+        (
+            "  the share of forward is 80 % (95 % interval 49 to 94 %); a fair coin is as uneven as"
+            " this, or more, in 11 % of all tries"
+        ),
+    ]
+    assert words[2] == "right wheel: 1 forward, 7 backward, 1 at rest, 1 not settled"
+    assert words[-1] == "both wheels went the same way in 3 of 10 starts"
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
 
 
@@ -120,7 +128,9 @@ def test_of_wheels_that_all_rest_there_is_no_share():
     numbers = starts.report([row(0, "left", 0), row(0, "right", 0)], SETTING).numbers
     assert (numbers["left"]["forward_share"], numbers["left"]["p"]) == (None, 1.0)
     assert numbers["in_words"] == (
-        "left 0 forward, 0 backward, 1 at rest; right 0 forward, 0 backward, 1 at rest"
+        "left wheel: 0 forward, 0 backward, 1 at rest\n"
+        "right wheel: 0 forward, 0 backward, 1 at rest\n"
+        "both wheels went the same way in 0 of 1 starts"
     )
 
 
