@@ -114,7 +114,9 @@ def test_nobody_there_is_told_with_what_to_try(capsys, monkeypatch):
     monkeypatch.setattr(discovery.look_around, "__defaults__", (LOOPBACK,))
     assert main(["discover", "--seconds", "0.3", "--json"]) == 3
     captured = capsys.readouterr()
-    assert json.loads(captured.out) == {"robots": []}
+    answer = json.loads(captured.out)
+    assert answer["robots"] == []
+    assert answer["error"]["status"] == 3
     for advice in ("USB", "address", "ev3dev-2.local"):
         assert advice in captured.err
 
