@@ -12,7 +12,7 @@ from host.commands._streams import OUTPUT
 DONE = {
     "kick --mode phase --seed 1": ("reversed the robot", "logs/"),
     "drive forward --seed 1": ("reached forward", "logs/"),
-    "record 0.5 --seed 1": ("17 ticks in logs/",),
+    "record 0.5 --seed 1": ("17 of 17 due ticks in logs/",),
     "start --seed 1": ("the robot runs from tick",),
     "params set k=2": ("the robot has set k = 2",),
     "log pull --seed 1": ("ticks", "logs/"),
