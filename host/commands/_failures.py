@@ -22,6 +22,7 @@ _REMEDIES = {
     errno.EFBIG: "files may not grow that long here: see `ulimit -f`",
     errno.EIO: "is the disk or the terminal gone?",
     errno.ENAMETOOLONG: "choose a shorter name",
+    errno.EBADF: "let it lead to a terminal or a file; /dev/null drops what nobody needs",
     errno.EMFILE: "too many files are open: see `ulimit -n`",
 }
 

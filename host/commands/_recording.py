@@ -92,7 +92,12 @@ def recorded(robot: Robot, what: str, *, of_kick: bool = False) -> Iterator[Reco
     from host.logs.mcap_files import McapTap
 
     info = robot.info()
-    recording = Recording(Log(info), in_folder(what, info, lambda path: McapTap(path, info)))
+    try:
+        file = in_folder(what, info, lambda path: McapTap(path, info))
+    except (KickctlError, OSError) as error:
+        error.add_note("no kick was sent")
+        raise
+    recording = Recording(Log(info), file)
     try:
         robot.add_tap(recording)
         yield recording

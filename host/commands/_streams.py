@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import select
@@ -22,6 +23,8 @@ class _Output(io.FileIO):
                 select.select([], [self], [])
         except OSError as error:
             error.filename = OUTPUT
+            if error.errno == errno.EBADF:
+                error.strerror = "it is closed"
             raise
         return count
 
@@ -39,15 +42,15 @@ class _Words(io.FileIO):
 def prepare() -> None:
     r"""Make the three streams of this process usable.
 
-    A stream that was closed leads nowhere. Otherwise a log could get its number, and Python would
-    print the words for standard error on standard output. Letters that a terminal cannot show
-    appear as codes like \xb0.
+    What stands in for a stream that was closed cannot be written. Otherwise a log could get its
+    number, and Python would print the words for standard error on standard output. Letters that a
+    terminal cannot show appear as codes like \xb0.
     """
     for number in (0, 1, 2):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # gets the lowest free number, which is this one
+            os.open(os.devnull, os.O_RDONLY)  # gets the lowest free number, which is this one
     sys.stdout = _stream(_Output, 1, sys.stdout)
     sys.stderr = _stream(_Words, 2, sys.stderr)
 

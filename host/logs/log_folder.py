@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Callable
@@ -44,10 +45,19 @@ def in_folder(what: str, info: dict[str, Any], write: Callable[[Path], T]) -> T:
 
     Raises:
         LogError: The folder or the file cannot be created.
+        OSError: The disk is full.
     """
     try:
         LOG_FOLDER.mkdir(exist_ok=True)
+    except FileExistsError:
+        kind = "a link that leads nowhere" if LOG_FOLDER.is_symlink() else "a file"
+        raise LogError(
+            f"logs go to the folder {LOG_FOLDER}, and {LOG_FOLDER} is {kind} here",
+            "rename or remove it, or go to another folder",
+        ) from None
     except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise
         raise LogError(
             f"the folder {LOG_FOLDER} cannot be created here: {error.strerror}",
             "go to a folder that you may write to",

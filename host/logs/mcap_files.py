@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
@@ -114,7 +114,8 @@ class McapTap:
     Raises:
         NameTaken: The file exists already.
         LogError: The file cannot be created.
-        OSError: The disk fails later; the error names the file.
+        OSError: The disk is full or fails, now or later; the error names the file. If it fails now,
+            no file is left.
     """
 
     def __init__(
@@ -128,6 +129,19 @@ class McapTap:
         self._writer: Any = Writer(
             self._file, compression=CompressionType.LZ4, enable_data_crcs=True
         )
+        try:
+            with uninterrupted(), naming(self.path):
+                self._begin(info)
+        except BaseException:
+            with suppress(OSError):
+                self._file.close()
+            if file is None:  # a log without its beginning is of no use
+                with suppress(OSError):
+                    self.path.unlink()
+            raise
+
+    def _begin(self, info: dict[str, Any]) -> None:
+        """Write what stands before the first record."""
         self._writer.start(library=f"kickctl {__version__}")
         self._writer.add_metadata(
             METADATA, {"format": FORMAT, **{name: _to_text(value) for name, value in info.items()}}
@@ -135,6 +149,7 @@ class McapTap:
         self._ticks = self._register(TICKS, "kickctl.Tick", _ticks_schema())
         self._events = self._register(EVENTS, "kickctl.Event", _events_schema())
         self._writer.flush()
+        self._file.flush()
 
     def _register(self, topic: str, name: str, schema: dict[str, Any]) -> int:
         text = json.dumps(schema, allow_nan=False)

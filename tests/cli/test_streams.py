@@ -22,10 +22,23 @@ def test_words_for_a_closed_standard_error_are_not_mixed_with_the_answer(shell):
     assert json.loads(out)["reversed"] is True
 
 
-def test_a_closed_standard_output_is_no_log_and_no_traceback(shell, tmp_path):
-    assert shell("kickctl kick --mode phase --seed 1 <&- >&-")[0] == 0
+@pytest.mark.parametrize("json_too", ["", " --json"])
+def test_a_closed_standard_output_is_no_log_and_no_traceback(shell, tmp_path, json_too):
+    status, _, err = shell(f"kickctl kick --mode phase --seed 1 {json_too} <&- >&-")
+    assert status == 1
+    assert "standard output cannot be written or read: it is closed" in err
+    assert "reversed the robot" in err
     (log,) = (tmp_path / "logs").glob("*.mcap")
+    assert f"log logs/{log.name}" in err
     assert "truncated" not in Log.load(log).info
+
+
+@pytest.mark.parametrize("verb", ["status", "log export log.mcap", "watch --seconds 1 --json"])
+def test_an_answer_that_a_closed_standard_output_does_not_take_is_a_failure(shell, verb):
+    shell("kickctl record 1 --seed 1 --out log.mcap")
+    status, _, err = shell(f"kickctl {verb} >&-")
+    assert status == 1
+    assert "it is closed" in err
 
 
 @pytest.mark.parametrize("verb", ["status", "kick --mode phase --seed 1", "params list", "--help"])
