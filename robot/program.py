@@ -6,6 +6,7 @@ The brick and the simulated brick differ only in the motors, battery, clock and 
 import argparse
 import os
 import signal
+import socket
 import sys
 
 from robot import token
@@ -161,6 +162,14 @@ def _settings(options):
 
 def _listen(server, options):
     """The port on which the server listens now. Raises Refused."""
+    if not options.host.strip():
+        # The system would take it for every address of this machine.
+        raise Refused(
+            "usage",
+            "--host cannot be empty",
+            "give an address of this machine: 127.0.0.1 lets in this machine only, 0.0.0.0 all"
+            " others too",
+        )
     try:
         return server.listen(options.host, options.port)
     # Of what is no machine's name, Python says UnicodeError, which is a ValueError, or TypeError.
@@ -173,6 +182,19 @@ def _listen(server, options):
         ) from None
 
 
+def _own_address():
+    """The address of this machine in its network, or 127.0.0.1 if it is in none."""
+    probe = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        # An address for documentation. Nothing is sent: the system only chooses the interface.
+        probe.connect(("192.0.2.1", PORT))
+        return probe.getsockname()[0]
+    except OSError:
+        return "127.0.0.1"
+    finally:
+        probe.close()
+
+
 def _serve(options, loop, server, port, panels):
     """Run the loop and serve hosts until a signal ends it."""
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -183,7 +205,15 @@ def _serve(options, loop, server, port, panels):
         except Refused as refusal:
             loop.stop(refusal.message)
             _warn("not started: {}".format(refusal.message))
-    host = "[{}]".format(options.host) if ":" in options.host else options.host
+    host = options.host
+    if server.everywhere:
+        host = _own_address()
+        _warn(
+            "listening on every address of this machine ({}); READY names one of them".format(
+                options.host
+            )
+        )
+    host = "[{}]".format(host) if ":" in host else host
     say("READY tcp://{}:{}".format(host, port), sys.stdout)
 
     def serve(timeout_s):

@@ -92,6 +92,12 @@ class Server(object):
         self._poll.register(self._listener, select.EPOLLIN)
         return self._listener.getsockname()[1]
 
+    @property
+    def everywhere(self):
+        """Whether the server listens on every address of this machine."""
+        host = self._listener.getsockname()[0]
+        return host in ("0.0.0.0", "::", "::ffff:0.0.0.0")  # noqa: S104
+
     def adopt(self, link, lasting=False):
         """Serve a link that is open already.
 

@@ -15,7 +15,7 @@ from host.client.stream import Feed
 from host.errors import NoLink
 from host.link.names import name_at
 from host.logs.tap import Span, Tap
-from host.util.arguments import need_function, need_seconds, need_tap
+from host.util.arguments import need_function, need_seconds, need_tap, wrong
 from host.util.provenance import origin
 from robot.record import Record
 
@@ -66,18 +66,21 @@ class Watcher(Connection):
         """Let time pass, as counted by the robot's records.
 
         Args:
-            seconds: How long (s of the robot's time).
+            seconds: How long (s of the robot's time). It may be infinite if `until` is given.
             until: Ends the wait as soon as it returns True.
 
         Returns:
             Whether `until` has ended the wait.
 
         Raises:
+            WrongUse: Nothing would end the wait.
             NoLink: The robot is gone, or sends no more records.
         """
         seconds = need_seconds("seconds", seconds)
         if until is not None:
             need_function("until", until, "a function without arguments")
+        elif seconds == inf:
+            raise wrong("seconds", seconds, "a number of seconds, or a function as `until`")
         self._subscribe()
         first = self.newest
         patience_s = self.answer_s + self.reconnect_s

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from host.commands._log_damage import damage_facts, damage_status
-from host.commands._outputs import add_force, answer_beside, require_place
+from host.commands._outputs import add_force, answer_beside, path_argument, require_place
 from host.errors import NotDone, WrongUse
 from host.util.numbers import Number
 
@@ -24,13 +24,13 @@ def add_arguments(plot: argparse.ArgumentParser, film: argparse.ArgumentParser) 
     """Add the arguments of both actions."""
     plot.add_argument(
         "--out",
-        type=Path,
+        type=path_argument,
         metavar="FILE",
         help="the figure, .png, .svg or .pdf (default: NAME-plot.png beside the log)",
     )
     film.add_argument(
         "--out",
-        type=Path,
+        type=path_argument,
         metavar="FILE",
         help="the film, .mp4 or .gif (default: NAME-film.mp4 beside the log)",
     )

@@ -8,9 +8,16 @@ from typing import Any
 
 from host.commands._terminal import answer, say
 from host.errors import WrongUse
-from host.util.whole_files import descriptor_of, require_free
+from host.util.whole_files import descriptor_of, require_folder, require_free
 
 _STANDARD_OUTPUT = 1
+
+
+def path_argument(text: str) -> Path:
+    """The path that an option takes. Raises argparse.ArgumentTypeError if it is empty."""
+    if not text:
+        raise argparse.ArgumentTypeError("cannot be empty; give the name of a file or a folder")
+    return Path(text)
 
 
 def add_force(parser: argparse.ArgumentParser) -> None:
@@ -31,8 +38,8 @@ def require_place(options: argparse.Namespace, path: Path) -> Path:
         The path.
 
     Raises:
-        WrongUse: There is a log there, or a file without --force; or the file is standard output,
-            where --json answers.
+        WrongUse: There is a log there, or a file without --force; or no file can be written there;
+            or the file is standard output, where --json answers.
     """
     from host.logs.mcap_reading import require_no_log
 
@@ -40,6 +47,7 @@ def require_place(options: argparse.Namespace, path: Path) -> Path:
     if options.json and descriptor_of(path) == _STANDARD_OUTPUT:
         raise WrongUse("with --json the answer goes to standard output", "name a file with --out")
     require_free(path, replace=options.force)
+    require_folder(path)
     return path
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.commands._failures import os_words
-from host.commands._outputs import add_force, require_place
+from host.commands._outputs import add_force, path_argument, require_place
 from host.commands._recording import figure_words
 from host.commands._terminal import print_result, say, show
 from host.errors import KickctlError, NotDone
@@ -86,19 +86,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             " be given more than once"
         ),
     )
-    parser.add_argument("--film", type=Path, metavar="FILE", help="film it, as .mp4 or .gif")
+    parser.add_argument(
+        "--film", type=path_argument, metavar="FILE", help="film it, as .mp4 or .gif"
+    )
     parser.add_argument(
         "--live", action="store_true", help="watch it in MuJoCo's viewer, in real time"
     )
     parser.add_argument(
         "--model",
-        type=Path,
+        type=path_argument,
         metavar="FILE",
         help="also write the scene with the cars as MJCF, for any viewer",
     )
     parser.add_argument(
         "--out",
-        type=Path,
+        type=path_argument,
         default=Path("results"),
         metavar="FOLDER",
         help="where results go (default %(default)s)",

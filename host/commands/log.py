@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.commands import _log_pictures
 from host.commands._log_damage import damage_facts, damage_status
 from host.commands._options import EVERY, common
-from host.commands._outputs import add_force, answer_beside, require_place
+from host.commands._outputs import add_force, answer_beside, path_argument, require_place
 from host.commands._terminal import answer, robot_of, say, show
 from host.errors import NotDone, WrongUse
-from host.util.whole_files import descriptor_of
+from host.util.whole_files import descriptor_of, require_folder
 
 if TYPE_CHECKING:
     from host.logs.replay import ReplayResult
@@ -37,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     def reader(name: str, words: str) -> argparse.ArgumentParser:
         own = action(name, words)
-        own.add_argument("log", type=Path, help="the log, an MCAP file; it is not changed")
+        own.add_argument("log", type=path_argument, help="the log, an MCAP file; it is not changed")
         own.epilog = (
             "The exit status is 1 if the log breaks off or is damaged: then this is done for what"
             " can be read."
@@ -45,10 +44,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         return own
 
     listing = action("list", "list the logs in a folder")
-    listing.add_argument("folder", nargs="?", type=Path, help="the folder (default: logs/ here)")
+    listing.add_argument(
+        "folder", nargs="?", type=path_argument, help="the folder (default: logs/ here)"
+    )
     pull = action("pull", "fetch the last minutes from the robot's black box", EVERY)
     pull.add_argument(
-        "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
+        "--out",
+        type=path_argument,
+        metavar="FILE",
+        help="the log to write (default: a new one under logs/)",
     )
     export = reader("export", "write a log as a table")
     export.add_argument(
@@ -63,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     export.add_argument(
         "--out",
-        type=Path,
+        type=path_argument,
         metavar="FILE",
         help="the table to write (default: csv to standard output, npz beside the log)",
     )
@@ -76,10 +80,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     recovery = action(
         "recover", "write what can be read of a log that breaks off to a new log that viewers open"
     )
-    recovery.add_argument("log", type=Path, help="the log, an MCAP file; it is not changed")
+    recovery.add_argument(
+        "log", type=path_argument, help="the log, an MCAP file; it is not changed"
+    )
     recovery.add_argument(
         "--out",
-        type=Path,
+        type=path_argument,
         metavar="FILE",
         help="the log to write (default: NAME-recovered.mcap beside it)",
     )
@@ -135,6 +141,7 @@ def _pull(options: argparse.Namespace) -> int:
 
     if options.out is not None:
         require_new_log(options.out)
+        require_folder(options.out)
     with robot_of(options) as robot:
         log = Log(robot.info())
         robot.pull(log)
@@ -169,16 +176,11 @@ def _export(options: argparse.Namespace) -> int:
         write_csv(log.stream(), sys.stdout, excel=options.excel)
         return damage_status(log)
     new = not options.force
-    try:
-        ticks = (
-            save_csv(log.stream(), out, new=new, excel=options.excel)
-            if form == "csv"
-            else save_npz(log.stream(), log.info, out, new=new)
-        )
-    except OSError as error:
-        raise WrongUse(
-            f"{out} cannot be written: {error.strerror}", "choose another place with --out"
-        ) from error
+    ticks = (
+        save_csv(log.stream(), out, new=new, excel=options.excel)
+        if form == "csv"
+        else save_npz(log.stream(), log.info, out, new=new)
+    )
     facts = {"table": str(out), "ticks": ticks, **damage_facts(log)}
     answer_beside(options, out, facts, f"{ticks} ticks in {out}")
     return damage_status(log)

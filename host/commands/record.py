@@ -7,6 +7,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from host.commands._outputs import path_argument
 from host.commands._terminal import answer, robot_of
 from host.errors import Interrupted, KickctlError, RobotFault, printable
 from host.logs.tap import Span
@@ -26,7 +27,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "seconds", type=Number("s", 0.001, 1e6), help="how long, in s of the robot's time"
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="the log to write (default: a new one under logs/)"
+        "--out",
+        type=path_argument,
+        metavar="FILE",
+        help="the log to write (default: a new one under logs/)",
     )
 
 

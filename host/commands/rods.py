@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from host.commands._outputs import add_force, answer_beside, require_place
+from host.commands._outputs import add_force, answer_beside, path_argument, require_place
 from host.commands._recording import recorded
 from host.commands._terminal import robot_of
 
@@ -14,7 +14,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Where the film goes."""
     parser.add_argument(
         "--out",
-        type=Path,
+        type=path_argument,
         default=Path("rods.mp4"),
         metavar="FILE",
         help="where the film goes, .mp4 or .gif (default %(default)s)",

@@ -206,7 +206,13 @@ def _tcp(parts: _Parts) -> Link:
     pieces = _AUTHORITY.fullmatch(parts.authority)
     if pieces is None:
         many = parts.authority.count(":") > 1 and "[" not in parts.authority
-        why = "an IPv6 address stands in brackets" if many else "its host or port is none"
+        why = (
+            "an IPv6 address stands in brackets"
+            if many
+            else "ports are 1 to 65535"
+            if re.search(":(?![0-9]*$)[^]:]*$", parts.authority)
+            else "its brackets or its '@' stand where they cannot"
+        )
         raise no_address(parts.uri, why, hint)
     if pieces["user"] is not None or parts.path.strip("/"):
         raise no_address(parts.uri, "only a host and a port belong into it", hint)

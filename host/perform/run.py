@@ -16,6 +16,7 @@ from host.link.addresses import SIM, make_link, sim_options
 from host.link.names import chosen, own_token
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.robots import robots
+from host.runs.cluster import require_scheduler
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.runs.runner import do_cells, finish, open_study, simulate
@@ -97,6 +98,8 @@ def perform(
             "--scheduler is for simulations, and this experiment runs on a robot",
             "leave it out",
         )
+    if scheduler:
+        require_scheduler(scheduler)  # before the run has a folder
     cells = found.work.cells(options, batch=batch)
     with open_study(out, settings, cells, say) as study:
         if batch and found.work.simulate is not None:

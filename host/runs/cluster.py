@@ -15,7 +15,7 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from host.errors import NoLink, NotDone, WrongUse
+from host.errors import NoLink, NotDone, WrongUse, quotable
 from host.runs.contract import Cell, Row, Setting
 from host.util.installation import install_command
 from host.util.provenance import sources
@@ -36,6 +36,21 @@ _TASK = """(
         if (differences := getattr(cluster, "compare", lambda _: "another version")(computing))
         else ("rows", "", __import__("pickle").loads(work)())
 )(__import__("host.runs.cluster", fromlist=["cluster"]))"""
+
+
+def require_scheduler(address: str) -> None:
+    """Raise WrongUse if this is no scheduler's address, or the package distributed is missing."""
+    if not re.fullmatch(r"\w+://.+:\d+", address):
+        raise WrongUse(
+            f"'{quotable(address)}' is no address of a Dask scheduler", "it is like tcp://HOST:8786"
+        )
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        raise WrongUse(
+            "--scheduler needs the package distributed",
+            f"install it: {install_command('cluster')}",
+        ) from error
 
 
 def compute_on_cluster(
@@ -60,18 +75,10 @@ def compute_on_cluster(
         NoLink: There is no scheduler or no worker, or they were lost.
         NotDone: A worker would compute other numbers, or lacks a package.
     """
-    try:
-        from distributed import Client
-        from distributed.scheduler import KilledWorker
-    except ImportError as error:
-        raise WrongUse(
-            "--scheduler needs the package distributed",
-            f"install it: {install_command('cluster')}",
-        ) from error
-    if not re.fullmatch(r"\w+://.+:\d+", address):
-        raise WrongUse(
-            f"'{address}' is no address of a Dask scheduler", "it is like tcp://HOST:8786"
-        )
+    require_scheduler(address)
+    from distributed import Client
+    from distributed.scheduler import KilledWorker
+
     start_s = monotonic()
     try:
         client = Client(address, timeout=ANSWER_S, set_as_default=False)

@@ -86,6 +86,23 @@ def require_free(path: str | Path, *, replace: bool = False) -> None:
         raise FileTaken(path)
 
 
+def require_folder(path: str | Path) -> None:
+    """Raise WrongUse if there is no folder for this file, or none that takes files."""
+    if is_stream(path):
+        return
+    folder = Path(os.path.realpath(path)).parent
+    if not folder.is_dir():
+        raise WrongUse(
+            f"{path} cannot be written: there is no folder {Path(path).parent}",
+            "create the folder first, or choose another place",
+        )
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise WrongUse(
+            f"{path} cannot be written: you may not write to the folder {Path(path).parent}",
+            "choose a folder that you may write to",
+        )
+
+
 def is_stream(path: str | Path) -> bool:
     """Whether a path names something to write to that cannot be replaced: a device or a pipe."""
     if descriptor_of(path) is not None:

@@ -78,6 +78,39 @@ def test_a_kick_from_another_process_reverses_the_desk_robot_and_leaves_it_runni
         assert outside("--brick", uri, "status")[0] == 3
 
 
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "0"])  # noqa: S104
+def test_ready_names_an_address_that_works_where_the_robot_listens_everywhere(tmp_path, host):
+    environment = dict(os.environ, KICK_TOKEN=str(tmp_path / "token"))
+    with subprocess.Popen(
+        [sys.executable, "-m", "sim_motor", "--port", "0", "--host", host],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            uri = process.stdout.readline().split()[1]
+            with connect(uri, observe=True) as robot:
+                assert robot.status()["state"] == "running"
+        finally:
+            process.terminate()
+        assert f"every address of this machine ({host})" in process.stderr.read()
+
+
+def test_a_robot_does_not_listen_on_an_address_without_letters(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "sim_motor", "--host", "", "--port", "0"],
+        env=dict(os.environ, KICK_TOKEN=str(tmp_path / "token")),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "--host cannot be empty" in done.stderr
+
+
 def test_an_idle_robot_waits_for_start(tmp_path, outside):
     with desk_robot(tmp_path, "--idle") as (uri, _):
         status, _, err = outside("kick", "--mode", "phase", KICK_BRICK=uri)
