@@ -51,7 +51,7 @@ _OWN_WAYS = ("stop", "watch", "deploy")
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
 Exit status: 0 it worked; 1 tried, and not or not wholly done; 2 wrong use; 3 no link to the robot;
-4 refused (version, token, lease); 5 fault on the robot; 130 interrupted."""
+4 refused (version, token, lease); 5 fault on the robot; 130 interrupted (but 0 for `watch`)."""
 
 
 def make_parser() -> argparse.ArgumentParser:

@@ -8,9 +8,11 @@ class KickctlError(Exception):
         message: What happened, and why.
         hint: What to do next; may be empty.
         status: The exit status of a command that ends with it.
+        kept: The path of the log, or of the folder, that holds what was done until then; or empty.
     """
 
     status = 1
+    kept = ""
 
     def __init__(self, message: str, hint: str = "") -> None:
         message, hint = escaped(message), escaped(hint)
@@ -19,6 +21,11 @@ class KickctlError(Exception):
         self.hint = hint
         if hint:
             self.add_note(hint)  # so that a notebook, which shows a traceback, shows it too
+
+
+def mark_kept(error: BaseException, path: object) -> None:
+    """Note in an error, or an interrupt, where what was done until then is kept."""
+    vars(error)["kept"] = escaped(str(path))
 
 
 class NotDone(KickctlError):

@@ -31,13 +31,15 @@ def in_words(error: BaseException) -> KickctlError | None:
     """The words for what ended a command.
 
     Args:
-        error: What was raised. Its notes, if it has any, say what was kept.
+        error: What was raised. Its notes, if it has any, say what was kept; see `mark_kept` too.
 
     Returns:
         What happened, as a KickctlError; None for what only a mistake in this program can raise.
     """
     failure = _failure(error)
     notes = getattr(error, "__notes__", [])
+    if failure is not None:
+        failure.kept = getattr(error, "kept", "")
     if isinstance(error, KickctlError):
         notes = [note for note in notes if note != error.hint]  # see KickctlError
     if failure is not None and notes:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from host.commands._failures import os_words
 from host.commands._terminal import print_result, say, show
-from host.errors import KickctlError, NotDone
+from host.errors import KickctlError, NotDone, mark_kept
 
 if TYPE_CHECKING:
     from host.client.robot import Robot
@@ -105,6 +105,7 @@ def recorded(robot: Robot, what: str, *, of_kick: bool = False) -> Iterator[Reco
         if of_kick and not recording.log.kicks():
             recording.rename(what, f"no-{what}")
         error.add_note(f"what was recorded until then is in {recording.path}")
+        mark_kept(error, recording.path)
         raise
     finally:
         robot.remove_tap(recording)

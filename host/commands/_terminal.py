@@ -87,11 +87,13 @@ def show_next(item: dict[str, Any]) -> None:
 
 
 def as_dict(failure: KickctlError) -> dict[str, str | int]:
-    """An error as JSON has it."""
+    """An error as JSON has it: with `kept` if there is a file or folder that keeps something."""
+    kept = {"kept": as_typed(failure.kept)} if failure.kept else {}
     return {
         "message": as_typed(failure.message),
         "hint": as_typed(failure.hint),
         "status": failure.status,
+        **kept,
     }
 
 

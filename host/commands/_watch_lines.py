@@ -28,7 +28,8 @@ def lines(
     watched = Watched()
     robot.add_tap(watched)
     robot.wait(REFRESH_S)
-    while watched.elapsed_s < seconds:
+    shown = False  # there is one line at least, no matter how short the time is
+    while not shown or watched.elapsed_s < seconds:
         robot.wait(REFRESH_S, until)
         if robot.link.virtual:
             # Virtual time would pass before anyone has seen it.
@@ -37,4 +38,5 @@ def lines(
             watched.take_status(robot.status())
         line = watched.line()
         if line is not None:
+            shown = True
             yield line

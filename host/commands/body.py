@@ -13,7 +13,7 @@ from host.commands._failures import os_words
 from host.commands._outputs import add_force, path_argument, require_place
 from host.commands._recording import figure_words
 from host.commands._terminal import print_result, say, show
-from host.errors import KickctlError, NotDone
+from host.errors import KickctlError, NotDone, mark_kept
 from host.util.numbers import Number
 from host.util.whole_files import write_text
 
@@ -245,8 +245,9 @@ def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dic
                     watcher(body.data)
 
             run_with_kicks(body, options.time, result.kicks, watch)
-        except (KickctlError, KeyboardInterrupt):
+        except (KickctlError, KeyboardInterrupt) as error:
             result.finish(keeper)
+            mark_kept(error, folder)
             say(f"the first {body.time_s:g} s are kept in {folder}")
             raise
     return result.finish(keeper)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from host.commands._outputs import path_argument
 from host.commands._terminal import answer, robot_of
-from host.errors import Interrupted, KickctlError, RobotFault, printable
+from host.errors import Interrupted, KickctlError, RobotFault, mark_kept, printable
 from host.logs.tap import Span
 from host.util.numbers import Number
 from robot.record import Record
@@ -126,6 +126,7 @@ def run(options: argparse.Namespace) -> int:
     except (KickctlError, OSError) as error:
         if tally.ticks:
             error.add_note(f"what was recorded until then, {tally.ticks} ticks, is in {path}")
+            mark_kept(error, path)
         raise
     _answer(options, path, tally, interrupted=interrupted)
     if interrupted:

@@ -18,8 +18,8 @@ from host.util.numbers import Number
 
 HELP = (
     "show what the robot does in a live table; on a terminal, space stops it, 1 to 5 kick it, ?"
-    " explains the keys, and q ends the table. With --json: a stream of JSON lines, one object for"
-    " each refresh"
+    " explains the keys, and q ends the table. ^C ends it too, and the exit status is 0. With"
+    " --json: a stream of JSON lines, one object for each refresh"
 )
 
 

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from host.errors import KickctlError
+from host.errors import KickctlError, mark_kept
 from host.runs.contract import Cell, Findings, Row, Setting
 from host.runs.folder import Study
 from host.util.progress import progress
@@ -39,7 +39,8 @@ def open_study(
     )
     try:
         yield study
-    except (KickctlError, KeyboardInterrupt, OSError):
+    except (KickctlError, KeyboardInterrupt, OSError) as error:
+        mark_kept(error, study.folder)
         say(
             f"{sum(cell in study for cell in cells)} of {len(cells)} cells complete in"
             f" {study.folder}; the same command resumes the run"

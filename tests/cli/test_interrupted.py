@@ -1,7 +1,9 @@
 """What an interrupt leaves: the answer, and whether the robot was commanded."""
 
 import json
+import pkgutil
 import signal
+from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
@@ -37,6 +39,35 @@ def test_while_the_figure_is_drawn_the_answer_says_so(kickctl, monkeypatch, verb
     assert answer["figure"] is None
     assert set(whole) < set(answer)
     assert "interrupted" in err
+
+
+def after_one(function):
+    """The function, interrupted when it is called the second time."""
+    calls = iter([function])
+
+    def call(*values):
+        return next(calls, interrupted)(*values)
+
+    return call
+
+
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [
+        ("body car --time 5", "host.bodies.keeping.Keeper.note"),
+        ("theory hopf", "host.runs.folder.Study.keep"),
+        ("kick --mode phase", "host.client.robot.Robot.kick"),
+    ],
+)
+def test_the_place_of_what_is_kept_is_in_the_error(kickctl, monkeypatch, line, place):
+    owner, name = place.rsplit(".", 1)
+    function = getattr(pkgutil.resolve_name(owner), name)
+    monkeypatch.setattr(place, interrupted if "kick" in name else after_one(function))
+    status, out, err = kickctl(*line.split(), "--seed", "1", "--json")
+    error = json.loads(out)["error"]
+    assert status == error["status"] == 130
+    assert Path(error["kept"]).exists()
+    assert error["kept"] in err
 
 
 @pytest.mark.parametrize("method", ["info", "wait", "status"])

@@ -384,3 +384,10 @@ def test_without_a_terminal_there_are_no_keys_and_the_table_says_so(kickctl):
     assert status == 0
     assert "no keys: standard input and output are no terminal" in out
     assert "space stop" not in out
+
+
+@pytest.mark.parametrize("seconds", ["0.001", "0.1"])
+def test_a_short_watch_has_one_line_at_least(kickctl, seconds):
+    status, out, _ = kickctl("watch", "--seconds", seconds, "--json")
+    assert status == 0
+    assert json.loads(out.splitlines()[0])["tick"] >= 0
