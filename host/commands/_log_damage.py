@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def damage_facts(log: LogFile) -> dict[str, Any]:
     """The same for every verb that reads a log, when it has been read."""
-    return {"truncated": not log.whole, "damage": log.damage()}
+    return {"truncated": not log.whole, "damage": log.damage(), "lost": log.lost}
 
 
 def damage_status(log: LogFile) -> int:

@@ -78,8 +78,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         reader("film", "film both wheels and their rods, turning as logged"),
     )
     recovery = action(
-        "recover", "write what can be read of a log that breaks off to a new log that viewers open"
+        "recover",
+        "write what can be read of a log that breaks off or is damaged to a new log that viewers"
+        " open",
     )
+    recovery.epilog = "The exit status is 1 if ticks are known to be lost."
     recovery.add_argument(
         "log", type=path_argument, help="the log, an MCAP file; it is not changed"
     )
@@ -106,7 +109,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> int:
-    from host.logs.log_folder import BREAKS_OFF, LOG_FOLDER, list_logs
+    from host.logs.log_folder import BREAKS_OFF, DAMAGED, LOG_FOLDER, list_logs
 
     folder = options.folder or LOG_FOLDER
     if not folder.is_dir():
@@ -128,6 +131,12 @@ def _list(options: argparse.Namespace) -> int:
         say(
             f"a log that breaks off is still being recorded, or was cut: kickctl log recover"
             f" {shlex.quote(str(cut[0]))}"
+        )
+    damaged = [row.path for row in rows if row.note.startswith(DAMAGED)]
+    if damaged:
+        say(
+            "a damaged log is read up to the damage; what follows is read by: kickctl log recover"
+            f" {shlex.quote(str(damaged[0]))}"
         )
     if not rows:
         say(f"no logs in {folder}; `kickctl record 10` writes one")
@@ -218,15 +227,30 @@ def _replay(options: argparse.Namespace) -> int:
 
 
 def _recover(options: argparse.Namespace) -> int:
-    from host.logs.log_folder import recover
+    from host.logs.recovery import recover
 
-    path, ticks, whole = recover(options.log, options.out)
-    state = "was whole" if whole else "breaks off or is damaged after them"
-    answer(
-        options,
-        {"log": str(path), "ticks": ticks, "from": str(options.log), "was_whole": whole},
-        f"{ticks} ticks of {options.log}, which {state}, are in {path}",
-    )
+    found = recover(options.log, options.out)
+    share = f"{found.ticks:,} " if found.total is None else f"{found.ticks:,} of {found.total:,} "
+    if found.was_whole:
+        state = "which was whole,"
+    elif found.lost is None:
+        state = "which breaks off; how many are lost is not known, they"
+    else:
+        state = f"{'' if found.total is not None else 'at least '}{found.lost:,} lost,"
+    facts = {
+        "log": str(found.path),
+        "ticks": found.ticks,
+        "from": str(options.log),
+        "was_whole": found.was_whole,
+        "lost": found.lost,
+        "total": found.total,
+    }
+    answer(options, facts, f"{share}ticks of {options.log}, {state} are in {found.path}")
+    if found.lost:
+        raise NotDone(
+            f"{found.lost:,} ticks of {options.log} cannot be read",
+            f"go on with {found.path}: its events `lost` say where they are missing",
+        )
     return 0
 
 

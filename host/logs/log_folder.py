@@ -13,18 +13,17 @@ from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from mcap.reader import SeekingReader
-
-from host.logs.mcap_files import METADATA, TICKS, LogError, NameTaken, new_log
-from host.logs.mcap_reading import DAMAGE, LogFile, play
+from host.logs.mcap_files import LogError, NameTaken
+from host.logs.mcap_index import read_index
+from host.logs.mcap_reading import LogFile
 from host.logs.tap import Event
 from robot.record import Record
 
 T = TypeVar("T")
 
 LOG_FOLDER = Path("logs")
-# The note of a log that has no end (yet), or is damaged.
-BREAKS_OFF = "breaks off"
+# The notes of logs that cannot be read to their end: one has no end (yet), the other one has.
+BREAKS_OFF, DAMAGED = "breaks off", "damaged"
 
 
 def in_folder(what: str, info: dict[str, Any], write: Callable[[Path], T]) -> T:
@@ -150,7 +149,8 @@ class Summary(NamedTuple):
 def list_logs(folder: str | Path = LOG_FOLDER) -> list[Summary]:
     """The MCAP files in a folder, by name.
 
-    Only files that break off are read as a whole. One that is deleted meanwhile is not listed.
+    The checksum of each file is compared. The ticks are read of damaged files only; `ticks` are
+    those before the damage. A file that is deleted meanwhile is not listed.
 
     Raises:
         LogError: The folder cannot be read.
@@ -171,95 +171,44 @@ def list_logs(folder: str | Path = LOG_FOLDER) -> list[Summary]:
 def _summarize(path: Path) -> Summary:
     try:
         found = _summary_of_whole(path) if path.is_file() else None
-    except (OSError, *DAMAGE):
+    except OSError:
         found = None
     if found is not None:
         return found
     extent = _Extent()
     try:
-        info, whole = play(path, extent)
+        log = LogFile(path)
+        for item in log.stream():
+            extent.take(item)
     except LogError as error:
         return Summary(path, 0, 0.0, "", "", error.message)
-    brick, started_utc = str(info.get("brick", "")), str(info.get("started_utc", ""))
-    note = "" if whole else BREAKS_OFF
+    brick, started_utc = str(log.info.get("brick", "")), str(log.info.get("started_utc", ""))
+    note = "" if log.whole else BREAKS_OFF
+    if log.breaks_off and (total := log.total) is not None:
+        note = f"{DAMAGED}: {total - extent.ticks} of {total} ticks are missing"
     return Summary(path, extent.ticks, extent.seconds, brick, started_utc, note)
 
 
 def _summary_of_whole(path: Path) -> Summary | None:
-    """The summary of a file that has an index at its end; None without one."""
-    with path.open("rb") as file:
-        reader = SeekingReader(file)
-        summary = reader.get_summary()
-        info = {item.name: item.metadata for item in reader.iter_metadata()}.get(METADATA)
-    if summary is None or summary.statistics is None or info is None:
+    """The summary of an intact file that has an index at its end; None of any other."""
+    index = read_index(path)
+    if index is None or not index.intact or not index.info:
         return None
-    statistics = summary.statistics
-    counts = statistics.channel_message_counts
-    channels = [channel.id for channel in summary.channels.values() if channel.topic == TICKS]
-    ticks = sum(counts.get(channel, 0) for channel in channels)
-    seconds = (statistics.message_end_time - statistics.message_start_time) / 1e9
-    return Summary(path, ticks, seconds, info.get("brick", ""), info.get("started_utc", ""), "")
-
-
-class Recovered(NamedTuple):
-    """What came of a log that breaks off.
-
-    Attributes:
-        path: The new log.
-        ticks: How many ticks it has.
-        was_whole: Whether the old one was whole.
-    """
-
-    path: Path
-    ticks: int
-    was_whole: bool
-
-
-def recover(path: str | Path, out: Path | None = None) -> Recovered:
-    """Write what can be read of a log that breaks off to a new one, which has an index again.
-
-    Args:
-        path: The log; it is not changed.
-        out: The new log, which must not exist; by default NAME-recovered.mcap beside it.
-
-    Returns:
-        The new log.
-
-    Raises:
-        LogError: There is no such log, or the new one cannot be written.
-        OSError: The disk fails, or is full.
-    """
-    source = LogFile(path)
-
-    def write(place: Path) -> Recovered:
-        ticks = 0
-        with new_log(place, source.info) as tap:
-            for item in source.stream():
-                if isinstance(item, dict):
-                    tap.take_event(item)
-                else:
-                    tap.take_records([item])
-                    ticks += 1
-        return Recovered(place, ticks, source.whole)
-
-    if out is not None:
-        return write(out)
-    return under_free_name(source.path.with_name(f"{source.path.stem}-recovered.mcap"), write)
+    brick, started_utc = index.info.get("brick", ""), index.info.get("started_utc", "")
+    return Summary(path, index.ticks, index.seconds, brick, started_utc, "")
 
 
 class _Extent:
-    """A tap that finds how long a stream is."""
+    """Finds how long a stream is."""
 
     def __init__(self) -> None:
         self.ticks = 0
         self.seconds = 0.0
         self._latest_s = inf
 
-    def take_records(self, records: list[Record]) -> None:
-        for record in records:
-            self.seconds += max(0.0, record.t_s - self._latest_s)
-            self._latest_s = record.t_s
-        self.ticks += len(records)
-
-    def take_event(self, event: Event) -> None:
-        """A robot that restarts counts its time from zero; `take_records` ignores the step back."""
+    def take(self, item: Event | Record) -> None:
+        """Count a record. A robot that restarts counts its time from zero: a step back is none."""
+        if not isinstance(item, dict):
+            self.seconds += max(0.0, item.t_s - self._latest_s)
+            self._latest_s = item.t_s
+            self.ticks += 1

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 import json
-import struct
 from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from mcap.exceptions import McapError
 from mcap.records import Channel, Message, Metadata
-from mcap.stream_reader import StreamReader
 
+from host.logs.mcap_chunks import Damage, read_items
 from host.logs.mcap_files import EVENTS, FORMAT, METADATA, NAMED, TICKS, LogError
+from host.logs.mcap_index import DAMAGE, MAGIC, read_index
 from host.logs.tap import Event, Tap
 from host.util.whole_files import is_stream
 from robot.record import NAMES, Record
 
-MAGIC = b"\x89MCAP0\r\n"
-# What the reader raises for a file that breaks off or was damaged. A wrong checksum and wrong UTF-8
-# are ValueErrors.
-DAMAGE = (McapError, struct.error, ValueError, RuntimeError, KeyError, OverflowError, MemoryError)
-
+_DAMAGED = "the log's file was damaged here"
 _GIVE_OURS = "give a log that kickctl recorded; 'kickctl log list' shows those in ./logs"
 
 
@@ -39,6 +34,9 @@ class LogFile:
             one with a number that is not finite.
         first_left_out: The first of them, in words; empty if there is none.
         last_tick: The last tick that was read; None before the first.
+        ticks: How many ticks were read.
+        skipped: How many ticks lie in the damaged places between those that were read.
+        open_end: Whether the file's last part cannot be read.
 
     These, except `info`, are known at the end of `stream`.
 
@@ -65,25 +63,51 @@ class LogFile:
         self.left_out = 0
         self.first_left_out = ""
         self.last_tick: int | None = None
+        self.ticks = 0
+        self.skipped = 0
+        self.open_end = False
+        self._due: int | None = None  # the tick after those that were read or are known to be lost
 
     @property
     def whole(self) -> bool:
         """Whether all of the log was read. It is known at the end of `stream`."""
         return not self.breaks_off and not self.left_out
 
+    @property
+    def total(self) -> int | None:
+        """How many ticks the file was closed with; None if it has no index that says so."""
+        index = read_index(self.path)
+        return None if index is None else index.ticks
+
+    @property
+    def lost(self) -> int | None:
+        """How many of its ticks were not read; None if that is not known.
+
+        It is known at the end of `stream`.
+        """
+        if self.whole:
+            return 0
+        total = self.total
+        return None if total is None else total - self.ticks
+
     def damage(self) -> str:
         """What is missing, in words; empty if nothing is. It is known at the end of `stream`."""
         found = []
         if self.breaks_off:
             place = "at its beginning" if self.last_tick is None else f"after tick {self.last_tick}"
-            found.append(f"breaks off or is damaged {place}; what follows is missing")
+            lost = self.lost
+            gone = "what follows is" if lost is None else f"{lost:,} of {self.total:,} ticks are"
+            found.append(f"breaks off or is damaged {place}; {gone} missing")
         if self.left_out:
             more = f", and {self.left_out - 1} more" if self.left_out > 1 else ""
             found.append(f"{self.first_left_out} is left out{more}")
         return f"{self.path}: " + "; ".join(found) if found else ""
 
-    def stream(self) -> Iterator[Event | Record]:
+    def stream(self, *, past_damage: bool = False) -> Iterator[Event | Record]:
         """Events and records in the order in which they came, as far as they can be read.
+
+        Args:
+            past_damage: Whether to go on behind damaged places. Each has an event `lost` then.
 
         Returns:
             An iterator of dictionaries (events) and Records.
@@ -93,17 +117,48 @@ class LogFile:
         """
         self._begin()
         topics: dict[int, str] = {}
-        items = self._items()
+        items = self._items(past_damage)
+        behind = False  # whether a damaged place comes before the next message
+        # A damaged record may look like one that other programs wrote: then only the ticks show it.
+        doubtful = past_damage and not self._is_intact()
         try:
             for item in items:
-                if isinstance(item, Channel):
+                if isinstance(item, Damage):
+                    behind = True
+                elif isinstance(item, Channel):
                     topics[item.id] = item.topic
                 elif isinstance(item, Message):
-                    yield from self._take(topics[item.channel_id], json.loads(item.data))
+                    message = json.loads(item.data)
+                    if past_damage and item.channel_id not in topics:  # its channel is lost
+                        topics[item.channel_id] = EVENTS if "event" in message else TICKS
+                    topic = topics[item.channel_id]
+                    if doubtful and topic in (TICKS, EVENTS):
+                        yield from self._mark_gap(message, behind)
+                        behind = False
+                    yield from self._take(topic, message)
         except DAMAGE:
             self.breaks_off = True
         finally:
             items.close()
+
+    def _mark_gap(self, message: dict[str, Any], behind: bool) -> Iterator[Event]:
+        """Yield the events for a damaged place before a message; none if no tick was in it."""
+        tick, name = message["tick"], message.get("event", "")
+        first = message["from"] if name == "lost" else tick
+        due = first if self._due is None else self._due
+        if name == "restart" or first < due:  # the robot's program has started again
+            if behind or name != "restart":
+                yield lost_event(due, due)
+            if name != "restart":
+                yield {"event": "restart", "tick": first, "reason": _DAMAGED}
+        elif first > due or (behind and self._due is None):
+            self.skipped += first - due
+            yield lost_event(due, first)
+        self._due = tick if name else tick + 1
+
+    def _is_intact(self) -> bool:
+        index = read_index(self.path)
+        return index is not None and index.intact
 
     def _take(self, topic: str, message: dict[str, Any]) -> Iterator[Event | Record]:
         """Yield the event or the record of a message; nothing for a topic of others."""
@@ -111,6 +166,7 @@ class LogFile:
             record = _record(message)
             if all(map(isfinite, record)):
                 self.last_tick = record.tick
+                self.ticks += 1
                 yield record
             else:
                 self._leave_out("tick", message)
@@ -126,8 +182,8 @@ class LogFile:
             cause = f"{_not_finite(message)} is no finite number"
             self.first_left_out = f"{what} {message['tick']} ({cause})"
 
-    def _items(self) -> Any:
-        """Yield what is in the file, as mcap's reader gives it, and note if it breaks off."""
+    def _items(self, past_damage: bool = False) -> Any:
+        """Yield what is in the file, as `read_items` does, and note if it breaks off."""
         try:
             if self.path.exists() and not self.path.is_file() and not self.path.is_dir():
                 raise LogError(
@@ -139,17 +195,21 @@ class LogFile:
                     raise LogError(f"{self.path} is not an MCAP file", _GIVE_OURS)
                 file.seek(0)
                 size = self.path.stat().st_size
-                try:
-                    yield from StreamReader(
-                        file, validate_crcs=True, record_size_limit=size
-                    ).records
-                except DAMAGE:
-                    self.breaks_off = True
+                for item in read_items(file, size, past_damage=past_damage):
+                    if isinstance(item, Damage):
+                        self.breaks_off = True
+                        self.open_end = item.last
+                    yield item
         except OSError as error:
             raise LogError(
                 f"{self.path} cannot be read: {error.strerror}",
                 "'kickctl log list' shows the logs there are",
             ) from None
+
+
+def lost_event(first: int, end: int) -> Event:
+    """The event of a gap in a log, as the robot sends it: ticks first to end - 1 are lost."""
+    return {"event": "lost", "tick": end, "from": first, "reason": _DAMAGED}
 
 
 def play(path: str | Path, tap: Tap) -> tuple[dict[str, Any], bool]:

@@ -51,7 +51,8 @@ class ReplayResult:
         compared: How many ticks were compared in every channel.
         not_comparable: How many ticks gave their potentials to the replay, because the log does not
             say what these were before: the first tick of the log, the first after a gap or a
-            restart, and ticks in which a motor failed.
+            restart, and ticks in which a motor failed; or because parameters and kicks may have
+            changed in a gap, and no snapshot follows it that says so.
         missing: How many ticks are not in the log.
         first: The first channel that differs in any bit.
         beyond: The first channel that differs by more than the tolerance.
@@ -188,6 +189,7 @@ def replay(log: Log | LogFile) -> ReplayResult:
     controller = _Controller()
     known_before: int | None = None  # the tick before which the potentials are known
     failed = False
+    followed = True  # whether parameters and kicks are known
     gaps = Gaps()
     for item in log.stream():
         gaps.take(item)
@@ -197,9 +199,11 @@ def replay(log: Log | LogFile) -> ReplayResult:
                 known_before = item["tick"]
             elif item["event"] == "restart":
                 known_before = None
+            elif item["event"] in ("lost", "snapshot"):
+                followed = item["event"] == "snapshot"
             failed = failed or item["event"] == "fault"
             continue
-        known = item.tick == known_before and not (failed and item.state == FAULT)
+        known = item.tick == known_before and followed and not (failed and item.state == FAULT)
         controller.step(item)
         if not known:
             controller.adopt(item)

@@ -33,6 +33,13 @@ def cut(log):
     return path
 
 
+def with_a_damaged_place(log):
+    path, data = Path("flip.mcap"), bytearray(log.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    path.write_bytes(data)
+    return path
+
+
 def with_nonsense(log):
     """The log as an older release might have written it, with numbers that are not finite."""
     whole, path = Log.load(log), Path("it's old.mcap")
@@ -85,6 +92,48 @@ def test_whoever_reads_a_damaged_log_says_what_is_missing(kickctl, log, damage, 
     assert (status, "recover" in err, "damage" in err) == (0, False, False)
 
 
+def test_recover_goes_on_behind_a_damaged_place_and_says_how_much_is_lost(kickctl, log):
+    path, ticks = with_a_damaged_place(log), len(Log.load(log))
+    status, answer, err = kickctl("log", "recover", path.name, "--json")
+    facts = json.loads(answer)
+    back = Log.load(facts["log"])
+    assert status == 1
+    assert (facts["ticks"], facts["total"]) == (len(back), ticks)
+    assert facts["lost"] == ticks - len(back) > 0
+    assert back.records[-1] == Log.load(log).records[-1]
+    status, answer, err = kickctl("log", "recover", path.name)
+    assert status == 1
+    assert f"{len(back)} of {ticks} ticks of {path}, {facts['lost']} lost, are in" in answer
+    assert f"{facts['lost']} ticks of {path} cannot be read" in err
+    replayed = json.loads(kickctl("log", "replay", facts["log"], "--json")[1])
+    assert replayed["missing"] == facts["lost"]
+    assert replayed["compared"] + replayed["not_comparable"] == len(back)
+    assert replayed["not_comparable"] > len(back) // 4
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_whoever_stops_at_a_damaged_place_says_the_loss_in_numbers(kickctl, log, reader):
+    path, (action, *more) = with_a_damaged_place(log), READERS[reader]
+    status, _, err = kickctl("log", action, str(path), *more)
+    read, ticks = Log.load(path), len(Log.load(log))
+    kept = len(read)
+    assert status == 1
+    assert f"after tick {read.records[-1].tick}; {ticks - kept} of {ticks} ticks are missing" in err
+    assert "kickctl log recover" in err
+
+
+def test_a_list_marks_a_log_with_a_damaged_place(kickctl, log):
+    path = with_a_damaged_place(log)
+    kept, ticks = len(Log.load(path)), len(Log.load(log))
+    path.rename(log.with_name(path.name))
+    status, answer, err = kickctl("log", "list")
+    assert status == 0
+    (line,) = [line for line in answer.splitlines() if path.name in line]
+    assert f"{kept} ticks" in line
+    assert f"damaged: {ticks - kept} of {ticks} ticks are missing" in line
+    assert f"kickctl log recover logs/{path.name}" in err
+
+
 def test_what_cannot_be_right_is_left_out_and_the_rest_is_read(kickctl, log):
     old = with_nonsense(log)
     expected = [record for record in Log.load(log).records if record.tick % 40 != 9]
@@ -94,8 +143,10 @@ def test_what_cannot_be_right_is_left_out_and_the_rest_is_read(kickctl, log):
     assert read.info["battery_v"] is None
     assert read.missing() != []
     status, answer, _ = kickctl("log", "recover", str(old), "--json")
-    assert (status, json.loads(answer)["was_whole"]) == (0, False)
-    recovered = json.loads(answer)["log"]
+    facts = json.loads(answer)
+    assert (status, facts["was_whole"]) == (1, False)
+    assert facts["lost"] == len(Log.load(log)) - len(expected)
+    recovered = facts["log"]
     assert "truncated" not in Log.load(recovered).info
     assert kickctl("log", "export", recovered)[0] == 0
 

@@ -20,8 +20,8 @@ BYTES_PER_TICK = 60
 _MEASURE = """
 import re, sys
 from pathlib import Path
-from host.logs.log_folder import recover
 from host.logs.mcap_reading import LogFile
+from host.logs.recovery import recover
 from host.logs.replay import replay
 from host.logs.tables import save_csv, save_npz
 

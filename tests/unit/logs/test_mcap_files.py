@@ -373,7 +373,7 @@ def test_the_list_of_logs_separates_whole_broken_and_foreign_files(tmp_path):
 
 def test_a_finished_log_is_listed_without_being_read(tmp_path, monkeypatch):
     running(100).save(tmp_path / "a.mcap")
-    monkeypatch.setattr(log_folder, "play", None)
+    monkeypatch.setattr(log_folder, "LogFile", None)
     assert list_logs(tmp_path)[0].ticks == 100
 
 

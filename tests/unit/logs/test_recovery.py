@@ -7,8 +7,9 @@ from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.stream_reader import StreamReader
 
 from host.logs.log import Log
-from host.logs.log_folder import list_logs, recover
+from host.logs.log_folder import list_logs
 from host.logs.mcap_files import LogError, McapTap
+from host.logs.recovery import recover
 from tests.unit.logs.test_mcap_files import INFO, bits, running
 
 
