@@ -272,36 +272,40 @@ class Log:
         """Write a table, one row for each tick, in the columns of host.logs.tables.
 
         Args:
-            path: The file; what it held is replaced, unless that is a log.
+            path: The file, which ends in .csv. A file of this name is replaced without a question,
+                because cells of a notebook run more than once; a log never is.
 
         Returns:
             The file's path.
 
         Raises:
-            LogError: The file is a log, or its ending is that of another format.
+            LogError: The file is a log, or has another ending.
             OSError: It cannot be written.
         """
-        from host.logs.tables import save_csv
+        from host.logs.tables import require_ending, save_csv
 
-        save_csv(self.stream(), need_path("path", path))
+        require_ending(need_path("path", path), "csv")
+        save_csv(self.stream(), path)
         return Path(path)
 
     def to_npz(self, path: str | Path) -> Path:
         """Write the table's columns as numpy arrays, and `info` and `events` as JSON text.
 
         Args:
-            path: The file; what it held is replaced, unless that is a log.
+            path: The file, which ends in .npz. A file of this name is replaced without a question,
+                because cells of a notebook run more than once; a log never is.
 
         Returns:
             The file's path.
 
         Raises:
-            LogError: The file is a log, or its ending is that of another format.
+            LogError: The file is a log, or has another ending.
             OSError: It cannot be written.
         """
-        from host.logs.tables import save_npz
+        from host.logs.tables import require_ending, save_npz
 
-        save_npz(self.stream(), self.info, need_path("path", path))
+        require_ending(need_path("path", path), "npz")
+        save_npz(self.stream(), self.info, path)
         return Path(path)
 
     def __len__(self) -> int:

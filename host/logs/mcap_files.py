@@ -23,7 +23,7 @@ from mcap.writer import CompressionType, Writer
 from host.errors import WrongUse
 from host.logs.tap import Event
 from host.util.interrupts import uninterrupted
-from host.util.whole_files import FileTaken, is_stream, naming, whole_file
+from host.util.whole_files import FileTaken, is_stream, naming, require_text, whole_file
 from robot import __version__
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 
@@ -50,7 +50,11 @@ class NameTaken(LogError):
 
 
 def require_new_log(path: Path) -> None:
-    """Raise LogError if no log can have this name: it is taken, or that of another kind of file."""
+    """Raise LogError if no log can have this name: it is taken, or that of another kind of file.
+
+    Raise WrongUse if its name cannot be typed.
+    """
+    require_text(path)
     if path.suffix.lower() in _OTHER_ENDINGS:
         raise LogError(
             f"{path} would be a log, an MCAP file, under the name of another kind of file",

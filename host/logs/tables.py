@@ -22,7 +22,7 @@ from typing import IO, Any, TextIO
 from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import require_no_log
 from host.logs.tap import Event
-from host.util.whole_files import naming, whole_file
+from host.util.whole_files import is_stream, naming, whole_file
 from robot.kicks import WHEELS
 from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 
@@ -76,6 +76,23 @@ def format_of(path: str | Path, wanted: str | None = None) -> str:
             f"end its name with .{' or .'.join(FORMATS)}, or say --format",
         )
     return wanted or "csv"
+
+
+def require_ending(path: str | Path, form: str) -> None:
+    """Raise LogError if a file's ending says that it is no table of this format.
+
+    A name without an ending says nothing, and neither does that of a device.
+
+    Args:
+        path: The file.
+        form: One of FORMATS.
+    """
+    ending = Path(path).suffix
+    if ending and ending.lower() != "." + form and not is_stream(path):
+        raise LogError(
+            f"{path} would be a table of the kind .{form} under the ending {ending}",
+            f"end its name with .{form}",
+        )
 
 
 def save_csv(

@@ -78,12 +78,24 @@ def whole_file(path: str | Path, *, new: bool = False) -> Iterator[Path]:
 def require_free(path: str | Path, *, replace: bool = False) -> None:
     """Raise FileTaken if there is a file of this name, unless it may be replaced.
 
-    Raise WrongUse if it is a folder.
+    Raise WrongUse if it is a folder, or if its name cannot be typed.
     """
+    require_text(path)
     if Path(path).is_dir():
         raise WrongUse(f"{path} is a folder", "name a file")
     if not replace and os.path.lexists(path) and not is_stream(path):
         raise FileTaken(path)
+
+
+def require_text(path: str | Path) -> None:
+    """Raise WrongUse if a file's name has bytes that are no text: no message could show it."""
+    try:
+        Path(path).name.encode()
+    except UnicodeEncodeError:
+        raise WrongUse(
+            f"the name {path} has bytes that are no text in UTF-8, so that nobody could type it",
+            "choose another name",
+        ) from None
 
 
 def require_folder(path: str | Path) -> None:

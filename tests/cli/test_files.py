@@ -238,3 +238,35 @@ def test_a_film_that_fails_leaves_the_one_before(tmp_path):
         fail()
     assert path.read_bytes() == before
     assert [file.name for file in tmp_path.glob("*film*")] == ["film.gif"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        ("record", "1", "--out", "NAME.mcap"),
+        ("log", "recover", "LOG", "--out", "NAME.mcap"),
+        ("log", "pull", "--out", "NAME.mcap"),
+        ("log", "export", "LOG", "--out", "NAME.csv"),
+        ("log", "plot", "LOG", "--out", "NAME.png"),
+        ("log", "film", "LOG", "--out", "NAME.gif"),
+        ("body", "car", "--model", "NAME.xml"),
+    ],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("form", [(), ("--json",)], ids=["words", "json"])
+def test_a_name_that_nobody_can_type_is_refused(kickctl, log, line, form):
+    before = sorted(Path().rglob("*"))
+    name = os.fsdecode(b"n\xff\xfe")
+    words = [word.replace("NAME", name).replace("LOG", str(log)) for word in line]
+    status, _, err = kickctl(*words, *form)
+    assert status == 2
+    assert "no text in UTF-8" in err
+    assert "choose another name" in err
+    assert sorted(Path().rglob("*")) == before
+
+
+def test_a_log_with_such_a_name_is_still_read(kickctl, log):
+    path = Path(os.fsdecode(b"n\xff.mcap"))
+    path.write_bytes(log.read_bytes())
+    assert kickctl("log", "replay", str(path))[0] == 0
+    assert kickctl("log", "export", str(path), "--out", "a.csv")[0] == 0

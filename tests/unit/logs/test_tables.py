@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from host.logs.mcap_files import LogError
 from host.logs.tables import COLUMNS
 from robot.record import KICK_NAMES, STATES
 from tests.fakes import eventful
@@ -66,3 +67,17 @@ def test_a_log_without_ticks_has_its_names(log, tmp_path):
     assert empty.to_csv(tmp_path / "log.csv").read_text() == PROMISED + "\n"
     with np.load(empty.to_npz(tmp_path / "log.npz")) as table:
         assert len(table["left_x1"]) == 0
+
+
+def test_a_table_has_the_ending_of_its_kind(log, tmp_path):
+    """Also one that is written from Python; without an ending, or in capitals, it is accepted."""
+    for write, ending in ((log.to_csv, "csv"), (log.to_npz, "npz")):
+        for name in ("a.txt", "a.csv" if ending == "npz" else "a.npz", "a.xlsx", "a.v2"):
+            with pytest.raises(LogError, match=rf"end its name with \.{ending}"):
+                write(tmp_path / name)
+        assert list(tmp_path.iterdir()) == []
+        for name in ("a", f"a.{ending.upper()}", f"a.v2.{ending}"):
+            assert write(tmp_path / name).stat().st_size > 0
+            assert write(tmp_path / name).stat().st_size > 0  # a cell that runs twice
+        for path in tmp_path.iterdir():
+            path.unlink()
