@@ -106,7 +106,7 @@ def test_two_exports_to_one_name_make_one(kickctl, log, monkeypatch):
         (("--json",), "name a file with --out"),
         (("--json", "--out", "/dev/stdout"), "name a file with --out"),
         (("--out", "logs"), "is a folder"),
-        (("--out", "nowhere/a.csv"), "No such file"),
+        (("--out", "nowhere/a.csv"), "there is no folder nowhere"),
     ],
 )
 def test_an_export_that_nobody_can_mean_is_refused(kickctl, log, words, reason):
