@@ -99,6 +99,7 @@ def test_help_names_all_scenes(kickctl):
         (("--kick", "mode=phase"), "time"),
         (("--angle", "0.2"), "slopes"),
         (("--cars", "3"), "one car"),
+        (("--cars", "201"), "a whole number of cars, from 1 to 200"),
         (("--scene", "/nowhere/scene.xml"), "scene.xml"),
     ],
 )
@@ -107,3 +108,13 @@ def test_wrong_use_is_refused_in_words_and_leaves_nothing(kickctl, tmp_path, wor
     assert (status, out) == (2, "")
     assert reason in err
     assert not (tmp_path / "results").exists()
+
+
+def test_a_long_train_says_how_long_it_takes_to_build(kickctl, monkeypatch):
+    def interrupted(request):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("host.bodies.build.build_scene", interrupted)
+    status, _, err = kickctl("body", "train", "--cars", "100")
+    assert status == 130
+    assert "building a train of 100 cars, which takes about 5 s" in err
