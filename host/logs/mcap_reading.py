@@ -17,6 +17,8 @@ from host.logs.tap import Event, Tap
 from host.util.whole_files import is_stream
 from robot.record import NAMES, Record
 
+# MCAP has times of 64 bits, in ns.
+_LATEST_S = 2**63 / 1e9
 _DAMAGED = "the log's file was damaged here"
 _GIVE_OURS = "give a log that kickctl recorded; 'kickctl log list' shows those in ./logs"
 
@@ -259,7 +261,12 @@ def _info(path: Path, metadata: dict[str, str]) -> dict[str, Any]:
             f"{path} has log format {metadata.get('format')}, not {FORMAT}",
             "read it with the release that wrote it",
         )
-    return {name: _from_text(text) for name, text in metadata.items() if name != "format"}
+    info = {name: _from_text(text) for name, text in metadata.items() if name != "format"}
+    # No checksum of its own protects this record, and what is written again needs a time.
+    zero_s = info.get("clock_zero_s", 0.0)
+    if not isinstance(zero_s, (int, float)) or not 0 <= zero_s < _LATEST_S:
+        del info["clock_zero_s"]
+    return info
 
 
 def _from_text(text: str) -> Any:

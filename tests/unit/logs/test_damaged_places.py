@@ -223,3 +223,14 @@ def test_an_index_that_is_damaged_itself_says_nothing(tmp_path, whole):
     path = damaged(tmp_path, whole)
     index = read_index(path)
     assert (index.ticks, index.intact) == (TICKS, True)
+
+
+@pytest.mark.parametrize("text", [b"x", b'"', b"-", b"["])
+def test_a_log_with_a_damaged_clock_is_recovered(tmp_path, log, whole, text):
+    """The information about the log has no checksum of its own."""
+    at = whole.index(str(INFO["clock_zero_s"]).encode())
+    found = recover(damaged(tmp_path, whole, (at, text)))
+    assert (found.was_whole, found.lost) == (False, 0)
+    back = Log.load(found.path)
+    assert bits(back) == bits(log)
+    assert "clock_zero_s" not in back.info
