@@ -15,7 +15,7 @@ from pathlib import Path
 
 from tests.bench_io import reads_and_writes
 from tests.bench_starts import starts
-from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell
+from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell, stop_of_all
 from tests.bench_storm import many_hosts
 
 REAL_TIME_S = 30.0
@@ -35,6 +35,7 @@ def main() -> None:
         real_time,
         stop_beside_a_blocked_request,
         stop_from_a_shell,
+        stop_of_all,
         many_hosts,
     ):
         measure()

@@ -1,4 +1,4 @@
-"""How long a stop takes while another thread of the same program waits for an answer."""
+"""How long a stop takes: beside a request that waits, from a shell, and for three robots."""
 
 import os
 import statistics
@@ -7,11 +7,14 @@ import sys
 import tempfile
 import threading
 import time
-from contextlib import ExitStack, suppress
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from host.client.robot import Robot, connect
 from host.errors import KickctlError
+from host.logs.log import Log
+from robot.record import STATES, Record
 from tests.cli.test_desk import desk_robot
 
 STOPS = 40
@@ -19,6 +22,12 @@ TICK_S = 0.03
 AT_MOST_S = TICK_S + 0.02
 SHELL_RUNS = 10
 SHELL_S = 0.3
+STOPS_OF_ALL = 20
+CLOCK_READINGS = 20
+RUNNING = STATES.index("running")
+APART_S = TICK_S + 0.05
+NAMES = ("anna", "bert", "carl")
+STOP = (sys.executable, "-m", "host", "stop")
 
 
 def stop_beside_a_blocked_request() -> None:
@@ -46,19 +55,10 @@ def stop_beside_a_blocked_request() -> None:
 
 def stop_from_a_shell() -> None:
     """Print how long `kickctl stop` takes for three robots, beside Python's start."""
-    with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
-        folder = Path(name)
-        lines = []
-        for robot in ("anna", "bert", "carl"):
-            (folder / robot).mkdir()
-            uri, _ = stack.enter_context(desk_robot(folder / robot, "--tick", str(TICK_S)))
-            lines.append(f'[{robot}]\naddress = "{uri}"\n')
-        (folder / "kickctl").mkdir()
-        (folder / "kickctl" / "robots.toml").write_text("".join(lines), encoding="utf-8")
-        environment = {**os.environ, "XDG_CONFIG_HOME": name}
-        environment.pop("KICK_BRICK", None)
-        python, stop = ((sys.executable, *words) for words in (("-c", ""), ("-m", "host", "stop")))
-        start_s, stop_s = (_shortest(command, environment) for command in (python, stop))
+    with _three_robots() as (_, environment):
+        start_s, stop_s = (
+            _shortest(command, environment) for command in ((sys.executable, "-c", ""), STOP)
+        )
     more_s = stop_s - start_s
     print(
         f"kickctl stop from a shell, three robots on loopback: {stop_s:.2f} s, of that Python's"
@@ -66,6 +66,74 @@ def stop_from_a_shell() -> None:
         " more)",
         flush=True,
     )
+
+
+def stop_of_all() -> None:
+    """Print how far apart three robots are stopped by one `kickctl stop`.
+
+    The time of a robot's stop is that of its first tick with the motors off, on this machine's
+    clock.
+    """
+    with _three_robots() as (tokens, environment), ExitStack() as stack:
+        robots = [stack.enter_context(connect(uri, token=token)) for uri, token in tokens.items()]
+        zeros = [_clock_zero(robot) for robot in robots]
+        logs = [stack.enter_context(robot.recording()) for robot in robots]
+        apart = []
+        for _ in range(STOPS_OF_ALL):
+            for robot, log in zip(robots, logs, strict=True):
+                _wait_until(robot, log, running=True)
+            subprocess.run(STOP, env=environment, check=True, stdout=subprocess.DEVNULL)
+            off = []
+            for zero_s, robot, log in zip(zeros, robots, logs, strict=True):
+                _wait_until(robot, log, running=False)
+                off.append(zero_s + _first_tick_off(log).t_s)
+                robot.start()
+            apart.append(max(off) - min(off))
+    verdict = "PASS" if max(apart) <= APART_S else "FAIL"
+    print(
+        f"kickctl stop for three robots on loopback: their first ticks with the motors off are"
+        f" median {1000 * statistics.median(apart):.1f} ms apart, at most"
+        f" {1000 * max(apart):.1f} ms ({verdict}: at most one tick + 50 ms ="
+        f" {1000 * APART_S:.0f} ms; {STOPS_OF_ALL} stops)",
+        flush=True,
+    )
+
+
+@contextmanager
+def _three_robots() -> Iterator[tuple[dict[str, str], dict[str, str]]]:
+    """Three running robots: {address: token file}, and the environment of a shell."""
+    with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
+        folder, lines, tokens = Path(name), [], {}
+        for robot in NAMES:
+            (folder / robot).mkdir()
+            uri, _ = stack.enter_context(desk_robot(folder / robot, "--tick", str(TICK_S)))
+            lines.append(f'[{robot}]\naddress = "{uri}"\n')
+            tokens[uri] = str(folder / robot / "token")
+        (folder / "kickctl").mkdir()
+        (folder / "kickctl" / "robots.toml").write_text("".join(lines), encoding="utf-8")
+        environment = {**os.environ, "XDG_CONFIG_HOME": name}
+        environment.pop("KICK_BRICK", None)
+        yield tokens, environment
+
+
+def _clock_zero(robot: Robot) -> float:
+    """When the robot's clock was at zero, in Unix seconds: what delays an answer only adds."""
+    return min(time.time() - robot.status()["clock_s"] for _ in range(CLOCK_READINGS))
+
+
+def _wait_until(robot: Robot, log: Log, *, running: bool) -> None:
+    """Wait until the newest record says that the robot runs, or that it does not."""
+
+    def arrived() -> bool:
+        return bool(log.records) and (log.records[-1].state == RUNNING) == running
+
+    robot.wait(float("inf"), until=arrived)
+
+
+def _first_tick_off(log: Log) -> Record:
+    """The first record of the stop that the log ends with."""
+    last = max(place for place, record in enumerate(log.records) if record.state == RUNNING)
+    return log.records[last + 1]
 
 
 def _shortest(command: tuple[str, ...], environment: dict[str, str]) -> float:
@@ -99,4 +167,5 @@ def _measure(robot: Robot) -> list[float]:
 
 if __name__ == "__main__":
     stop_from_a_shell()
+    stop_of_all()
     stop_beside_a_blocked_request()

@@ -1,12 +1,11 @@
 """Three robots with names, each a process of its own with its own token, and who may do what."""
 
 import json
-import os
+import re
 import subprocess
 import sys
 import time
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
 
@@ -14,59 +13,23 @@ from host.cli import main
 from host.client.robot import connect
 from host.errors import RefusedByRobot
 from tests.cli.test_desk import desk_robot
+from tests.laptop import Laptop
 
 NAMES = ("anna", "bert", "carl")
 
 
-class Laptop:
-    """A user's folder with names and tokens of robots, and kickctl there."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        self.config = folder / "config" / "kickctl"
-        folder.mkdir(exist_ok=True)
-
-    def knows(self, name, address, token=None):
-        """Write a robot into the file of robots."""
-        self.config.mkdir(parents=True, exist_ok=True)
-        more = "" if token is None else f'token = "{token}"\n'
-        with (self.config / "robots.toml").open("a", encoding="utf-8") as file:
-            file.write(f'[{name}]\naddress = "{address}"\n{more}')
-
-    def environment(self, **more):
-        kept = {key: value for key, value in os.environ.items() if not key.startswith("KICK_")}
-        root = Path(__file__).resolve().parents[2]
-        config = str(self.folder / "config")
-        return {**kept, "XDG_CONFIG_HOME": config, "PYTHONPATH": str(root), **more}
-
-    def run(self, *arguments, **more):
-        """Run kickctl: (exit status, standard output, standard error)."""
-        done = subprocess.run(
-            [sys.executable, "-m", "host", *arguments],
-            env=self.environment(**more),
-            cwd=self.folder,
-            capture_output=True,
-            text=True,
-            timeout=100,
-            check=False,
-        )
-        return done.returncode, done.stdout, done.stderr
-
-    def each(self, *arguments, **more):
-        """Run kickctl with --json on several robots: (exit status, {name: result})."""
-        status, out, err = self.run(*arguments, "--json", **more)
-        assert out, err
-        return status, json.loads(out)["robots"]
-
-
 @pytest.fixture
 def robots(tmp_path):
-    """Three running robots: {name: address}. Their tokens are the files NAME/token."""
+    """Three running robots: {name: address}. Their tokens are the files NAME/token.
+
+    They bear with drivers that a busy machine keeps silent.
+    """
     with ExitStack() as stack:
         found = {}
         for name in NAMES:
             (tmp_path / name).mkdir()
-            found[name] = stack.enter_context(desk_robot(tmp_path / name))[0]
+            robot = desk_robot(tmp_path / name, "--set", "link_loss_s=10")
+            found[name] = stack.enter_context(robot)[0]
         yield found
 
 
@@ -138,6 +101,38 @@ def test_a_pupil_with_another_robots_token_looks_and_stops_but_moves_nothing(pup
     assert pupil.run("--brick", "bert", "stop")[0] == 0
     status, found = pupil.each("--brick", "all", "status")
     assert [one["state"] for one in found.values()] == ["running", "stopped", "running"]
+
+
+def test_a_teacher_takes_over_from_a_pupil_and_then_stops_all(teacher, robots, tmp_path):
+    laptop = Laptop(tmp_path / "laptop")
+    laptop.knows("bert", robots["bert"], tmp_path / "bert" / "token")
+    kick = ("--name", "teacher@lab-1", "--brick", "bert", "kick", "--mode", "phase")
+    with laptop.driving("bert", "pupil@lab-3") as pupil:
+        status, out, err = teacher.run(*kick)
+        assert (status, out) == (4, "")
+        assert re.search(r"driven by 'pupil@lab-3' for \d+ ", err), err
+        assert "--take-over" in err
+        assert not list(teacher.folder.rglob("*.mcap"))
+        # Nothing has changed for anybody.
+        _, found = teacher.each("--brick", "all", "status")
+        assert [one["controller"] for one in found.values()] == [None, "pupil@lab-3", None]
+
+        status, out, err = teacher.run(*kick, "--take-over", "--json")
+        assert status == 0, err
+        assert json.loads(out)["reversed"] is True
+        said = pupil.communicate(timeout=60)[0]
+    assert pupil.returncode == 0
+    warning, refusal = said.splitlines()
+    assert "'teacher@lab-1' has taken over the robot" in warning
+    assert "'teacher@lab-1' has taken over" in refusal
+    # Neither the take-over nor the end of both programs stops a robot.
+    status, found = teacher.each("--brick", "all", "status")
+    assert {one["state"] for one in found.values()} == {"running"}
+    assert {one["controller"] for one in found.values()} == {None}
+
+    assert teacher.run("stop")[0] == 0
+    _, found = teacher.each("--brick", "all", "status")
+    assert [one["state"] for one in found.values()] == ["stopped"] * 3
 
 
 def test_stop_without_a_name_stops_every_robot_and_says_which_it_did_not_reach(
