@@ -73,11 +73,19 @@ def print_answer(failure: KickctlError | None) -> None:
 
 def print_result(text: str, essentials: str = "") -> None:
     """Print a result. If nobody takes it, the error has a note with the essentials."""
+    with essential(essentials):
+        print(text)
+
+
+@contextmanager
+def essential(words: str) -> Iterator[None]:
+    """Print a result in the block. If nobody takes it, the error has a note with these words."""
     try:
-        print(text, flush=True)
+        yield
+        sys.stdout.flush()
     except OSError as error:
-        if essentials:
-            error.add_note(essentials)
+        if words:
+            error.add_note(words)
         raise
 
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from host.commands._terminal import show
+from host.commands._terminal import essential, show
 from host.errors import NoLink
 from host.link.names import save
 from host.util.numbers import Number
@@ -40,17 +40,21 @@ def run(options: argparse.Namespace) -> int:
 
     found = look_around(options.seconds)
     saved = save((robot.name, robot.uri) for robot in found) if options.save else {}
+    named = [
+        f"{name} is {address} from now on: kickctl --brick {name} status"
+        for name, address in saved.items()
+    ]
     if options.json:
         more = {"saved": saved} if options.save else {}
-        show({"robots": [robot.as_dict() for robot in found], **more})
-    for robot in found:
-        if not options.json:
-            print(f"{robot.uri}  ({robot.name}: {robot.kind})")
-    if options.save and not options.json:
-        for name, address in saved.items():
-            print(f"{name} is {address} from now on: kickctl --brick {name} status")
-        if found and not saved:
-            print("all of them have names already: kickctl robots list")
+        show({"robots": [robot.as_dict() for robot in found], **more}, "\n".join(named))
+    else:
+        if options.save and found and not saved:
+            named = ["all of them have names already: kickctl robots list"]
+        with essential("\n".join(named)):
+            for robot in found:
+                print(f"{robot.uri}  ({robot.name}: {robot.kind})")
+            for line in named:
+                print(line)
     if not found:
         raise NoLink("no robot has answered", WHAT_TO_TRY)
     return 0

@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from host.commands._terminal import print_table, say, show
+from host.commands._terminal import essential, print_table, say, show
 from host.errors import NotDone
 
 if TYPE_CHECKING:
@@ -36,17 +36,16 @@ def run(options: argparse.Namespace) -> int:
     done = reproduce(
         options.brick, options.seed, only, token=options.token, out=options.out, say=say
     )
+    page = done.page and str(done.page)
+    essentials = f"report {page}" if page else ""
     if options.json:
         claims = [claim.as_dict() for claim in done.claims]
-        page = done.page and str(done.page)
-        show(
-            {"claims": claims, "skipped": done.skipped, "report": page},
-            f"report {page}" if page else "",
-        )
+        show({"claims": claims, "skipped": done.skipped, "report": page}, essentials)
     else:
-        _print(done.claims, done.skipped)
-        if done.page is not None:
-            print(f"report {done.page}")
+        with essential(essentials):
+            _print(done.claims, done.skipped)
+            if page:
+                print(essentials)
     if done.page is None:
         raise NotDone("the report is not written", "make room, and run the same command again")
     return 0

@@ -4,11 +4,13 @@ import errno
 import json
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from host.commands._streams import OUTPUT
 
+REPRODUCED = ("reproduce", "report results/report.html")
 DONE = {
     "kick --mode phase --seed 1": ("reversed the robot", "logs/"),
     "drive forward --seed 1": ("reached forward", "logs/"),
@@ -50,6 +52,23 @@ def test_what_was_done_is_said_where_it_can_be(kickctl, monkeypatch, line, numbe
     assert "standard output cannot be written" in err
     for words in DONE[line]:
         assert words in err
+
+
+@pytest.mark.parametrize("json_too", [(), ("--json",)], ids=["words", "json"])
+@pytest.mark.parametrize(
+    ("line", "words"), [("discover --save", "anna is tcp://h:5425 from now on"), REPRODUCED]
+)
+def test_what_was_saved_is_said_too(kickctl, monkeypatch, line, words, json_too):
+    found = [SimpleNamespace(name="anna", uri="tcp://h:5425", kind="robot", as_dict=dict)]
+    done = SimpleNamespace(claims=[], skipped={}, page=Path("results/report.html"))
+    with monkeypatch.context() as patch:
+        patch.setenv("XDG_CONFIG_HOME", str(kickctl.folder))
+        patch.setattr("host.link.discovery.look_around", lambda seconds: found)
+        patch.setattr("host.perform.reproduce.reproduce", lambda *_, **__: done)
+        patch.setattr(sys, "stdout", Unwritable(errno.ENOSPC))
+        status, _, err = kickctl(*line.split(), *json_too)
+    assert status == 1
+    assert words in err
 
 
 @pytest.mark.parametrize("line", ["status", "params list", "log list", "plan --to forward"])
