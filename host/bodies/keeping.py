@@ -149,5 +149,8 @@ class _File:
             work()
         except OSError as error:
             self.failure = error
+            with suppress(OSError):
+                if self._states is not None:
+                    self._states.finish()
             with suppress(OSError):  # remove the draft; this also has the error name the file
                 self._draft.__exit__(OSError, error, error.__traceback__)

@@ -121,7 +121,7 @@ def short(monkeypatch):
     monkeypatch.setattr(
         Robot, "wait", lambda self, seconds, until=None: wait(self, min(seconds, 0.1), until)
     )
-    monkeypatch.setattr("host.commands.watch.REFRESH_S", 0.03)
+    monkeypatch.setattr("host.commands._watch_lines.REFRESH_S", 0.03)
 
 
 @pytest.fixture

@@ -104,5 +104,6 @@ def test_deploy_brings_the_robot_of_the_package_to_a_brick(run, tmp_path):
     finally:
         brick.shut_down()
     # With the settings that this command had, as typed by hand.
-    own = r"KICK_SSH_OPTIONS=.+ KICK_TOKEN=\S+"
-    assert re.search(rf"\n  {own} kickctl --brick '?ssh://brick\?port=\d+'? start\n", shown), shown
+    # Its name, by which it is known now, stands for its address and its token.
+    own = "KICK_SSH_OPTIONS=.+"
+    assert re.search(rf"\n  {own} kickctl --brick brick start\n", shown), shown
