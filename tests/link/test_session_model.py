@@ -123,14 +123,14 @@ class SessionMachine(RuleBasedStateMachine):
 
     @rule(name=names)
     def take_over(self, name):
-        events = len(self.rig.events)
         if self._tell(name, "lease", allowed=True, take_over=True) is not None:
             loser = self.holder if self.holder != name else None
             self._gain(name)
             if loser is not None:
                 self.lost = {loser: name}
                 reason = f"'{name}' has taken over from '{loser}'"
-                assert self.rig.events[events]["reason"] == reason
+                event = self.rig.events[-1]
+                assert (event["tick"], event["reason"]) == (self.tick, reason)
 
     @rule(name=names)
     def a_refusal_says_who_drives(self, name):
