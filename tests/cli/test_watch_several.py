@@ -47,7 +47,7 @@ def test_keys_kick_and_stop_all_of_them_while_one_does_not_answer(laptop):
         screen.wait_for(FOOT)
         screen.wait_for("│ anna  │ running".encode())
         screen.wait_for("│ bert  │ running".encode())
-        screen.wait_for("│ mute  │ no record yet".encode())
+        screen.wait_for("│ mute  │ no record".encode())
         screen.type(b"1")
         screen.wait_for(b"anna: tick ")
         for name in (b"anna", b"bert"):
