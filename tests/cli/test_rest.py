@@ -1,4 +1,4 @@
-"""What people are told of wheels that rest although the robot runs."""
+"""What the host says of wheels that rest although the robot runs."""
 
 from host.commands._rest import explain_rest
 from kickctl import connect

@@ -12,7 +12,7 @@ from sim_motor.constants import load
 
 
 class Talker:
-    """A robot of which only the hello matters."""
+    """A robot that does nothing but say hello."""
 
     def __init__(self, **hello):
         self.hello = hello

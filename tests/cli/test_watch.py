@@ -1,4 +1,4 @@
-"""`kickctl watch`: every tick and event counts; what is seen is told apart from how it is drawn."""
+"""`kickctl watch`: no tick and no event is missed. What it shows is tested without the drawing."""
 
 import io
 import json

@@ -14,7 +14,7 @@ from robot import server, wire
 from robot.record import STATES
 from robot.session import Session
 from tests.link.machines import RigLink
-from tests.rig import Clock
+from tests.rig import BusyClock
 
 WATCHERS = 25
 MINUTE_TICKS = 2000
@@ -23,18 +23,6 @@ MINUTE_TICKS = 2000
 LOOK_TICKS, ASK_TICKS, KICK_TICKS = 2, 33, 17
 # What the brick takes for a hello or a proof, another frame, and a frame of records (s).
 GREETING_S, FRAME_S, STREAM_S = 0.025, 0.0015, 0.0003
-
-
-class WorkingClock(Clock):
-    """Time passes with the work that is done, and by itself where there is none."""
-
-    def wait(self, deadline, serve):
-        while self.time < deadline:
-            before = self.time
-            serve(deadline - before)
-            if self.time == before:
-                self.time = deadline
-        serve(0.0)
 
 
 class Classroom:
@@ -87,7 +75,7 @@ class Classroom:
 
 @pytest.fixture
 def room(monkeypatch):
-    monkeypatch.setattr("tests.link.machines.Clock", WorkingClock)
+    monkeypatch.setattr("tests.link.machines.Clock", BusyClock)
     monkeypatch.setattr("host.client.neighbours.client_id", lambda: uuid4().hex)
     # Nobody waits in real time for what comes in virtual time.
     quick = SimpleNamespace(**{**vars(server.select), "select": lambda *_: ((), (), ())})

@@ -15,7 +15,7 @@ from robot.record import STATES
 from robot.server import DEAF_S, PLACES, SPARE_PLACES, STRANGERS, STREAMS_PER_TICK
 from robot.session import Session
 from tests.link.desk import FRAME, STOP, Desk, open_files
-from tests.rig import Clock
+from tests.rig import BusyClock
 
 MOST = PLACES + SPARE_PLACES + STRANGERS
 
@@ -160,18 +160,6 @@ def test_a_stop_among_simultaneous_strangers_is_heard(desk):
     strangers[0].send(STOP)
     desk.run(1)
     assert STATES[desk.last.state] == "stopped"
-
-
-class BusyClock(Clock):
-    """Time passes with the work that is done, and by itself where there is none."""
-
-    def wait(self, deadline, serve):
-        while self.time < deadline:
-            before = self.time
-            serve(deadline - before)
-            if self.time == before:
-                self.time = deadline
-        serve(0.0)
 
 
 @pytest.fixture

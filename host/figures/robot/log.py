@@ -17,7 +17,7 @@ from robot.kicks import WHEELS
 
 # More points of a curve than that cannot be told apart: each takes less than a pixel.
 POINTS = 3000
-# Up to so many kicks have names; more names would cover each other.
+# A figure names at most this many kicks; more names would cover each other.
 NAMED_KICKS = 6
 # Longer logs than this (s) are drawn over minutes.
 MINUTES_S = 600.0

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from host.figures.robot.kick import kick_words
+from host.figures.robot.moving_pictures import moving_pictures
 from host.figures.robot.rod_machine import KICK, RodMachine, explain
 from host.figures.style import styled
 from host.films.log_course import Frame
@@ -32,7 +31,6 @@ def pictures(frames: Iterable[Frame], slower: float) -> Iterator[NDArray[np.uint
     """
     with styled():
         figure = Figure(figsize=(SIZE[0] / _DPI, SIZE[1] / _DPI), dpi=_DPI)
-        canvas: Any = FigureCanvasAgg(figure)
         machines = {}
         for number, side in enumerate(WHEELS):
             axes = figure.add_axes((0.5 * number, 0.0, 0.5, 0.89))
@@ -45,17 +43,12 @@ def pictures(frames: Iterable[Frame], slower: float) -> Iterator[NDArray[np.uint
         clock = figure.text(0.02, 0.95, "", fontsize=16, va="center", family="monospace")
         event = figure.text(0.22, 0.95, "", fontsize=16, va="center", weight="bold")
         moving = [clock, event, *(part for one in machines.values() for part in one.moving)]
-        for artist in moving:
-            artist.set_animated(True)
-        canvas.draw()
-        still = canvas.copy_from_bbox(figure.bbox)
-        for frame in frames:
+
+        def show(frame: Frame) -> None:
             for side, machine in machines.items():
                 machine.show(*frame.wheels[side])
             clock.set_text(f"{frame.t_s:7.2f} s")
             event.set_text(frame.word if frame.kick is None else kick_words(frame.kick))
             event.set_color("black" if frame.kick is None else KICK)
-            canvas.restore_region(still)
-            for artist in moving:
-                figure.draw_artist(artist)
-            yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+        yield from moving_pictures(figure, moving, frames, show)

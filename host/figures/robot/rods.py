@@ -6,15 +6,14 @@ Potentials and torque are beside them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from host.figures.robot.moving_pictures import moving_pictures
 from host.figures.robot.rod_machine import KICK, RodMachine, explain
 from host.figures.style import COLOURS, styled
 from host.films.rod_course import Course
@@ -36,7 +35,6 @@ def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
     """
     with styled():
         figure = Figure(figsize=(SIZE[0] / _DPI, SIZE[1] / _DPI), dpi=_DPI)
-        canvas: Any = FigureCanvasAgg(figure)
         wheel = figure.add_axes((0.0, 0.0, 0.5, 1.0))
         neurons = figure.add_axes((0.585, 0.52, 0.395, 0.36))
         torque = figure.add_axes((0.585, 0.13, 0.395, 0.29))
@@ -47,11 +45,8 @@ def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
         figure.text(0.585, 0.955, f"{slower:g} times slower than life", fontsize=12, va="center")
         way = figure.text(0.98, 0.955, "", fontsize=13, va="center", ha="right", weight="bold")
         moving = [way, *machine.moving, *(part for line, dot, _ in curves for part in (line, dot))]
-        for artist in moving:
-            artist.set_animated(True)
-        canvas.draw()
-        still = canvas.copy_from_bbox(figure.bbox)
-        for number, now_s in enumerate(course.t_s):
+
+        def show(number: int) -> None:
             machine.show(
                 float(course.phi[number]),
                 course.actual[:, number],
@@ -60,15 +55,13 @@ def pictures(course: Course, slower: float) -> Iterator[NDArray[np.uint8]]:
             )
             for line, dot, values in curves:
                 line.set_data(course.t_s[: number + 1], values[: number + 1])
-                dot.set_data([now_s], [values[number]])
-            acts = 0.0 <= now_s < course.kick_s
+                dot.set_data([course.t_s[number]], [values[number]])
+            acts = 0.0 <= course.t_s[number] < course.kick_s
             heading = "forward" if turning[number] > 0.0 else "backward"
             way.set_text(f"{course.kick} kick" if acts else heading)
             way.set_color(KICK if acts else "black")
-            canvas.restore_region(still)
-            for artist in moving:
-                figure.draw_artist(artist)
-            yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+        yield from moving_pictures(figure, moving, range(len(course.t_s)), show)
 
 
 def _curves(
