@@ -11,23 +11,11 @@ from host.commands._terminal import say
 from host.errors import NotDone, WrongUse
 from host.experiments.efforts import EFFORTS, QUICK_MINUTES, in_words, quick_minutes, size
 from host.runs.registry import Entry
+from host.util.numbers import Number
 
 # A real robot is busy for longer than this only after somebody has agreed.
 ASK_S = 60.0
 LONGEST_MINUTES = 10080.0  # a week
-
-
-def _minutes(text: str) -> float:
-    try:
-        minutes = float(text)
-    except ValueError:
-        minutes = 0.0
-    if not 0.0 < minutes <= LONGEST_MINUTES:
-        raise argparse.ArgumentTypeError(
-            f"cannot be '{text}'; give a number of minutes, more than 0 and at most"
-            f" {LONGEST_MINUTES:g}"
-        )
-    return minutes
 
 
 def add_effort(parser: argparse.ArgumentParser, name: str, entry: Entry) -> None:
@@ -42,7 +30,7 @@ def add_effort(parser: argparse.ArgumentParser, name: str, entry: Entry) -> None
     if option != "minutes":
         times.add_argument(
             "--minutes",
-            type=_minutes,
+            type=Number("minutes", 0.001, LONGEST_MINUTES),
             metavar="N",
             help=f"choose {option} so that it takes N minutes on a robot",
         )

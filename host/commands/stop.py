@@ -20,6 +20,10 @@ HELP = (
     "stop the motors; needs no token, and no robot that understands anything else. Without --brick:"
     " of every robot that has a name"
 )
+_NAME_ONE = (
+    "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back button on the"
+    " brick"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -50,8 +54,7 @@ def _all_known() -> list[str]:
     except WrongUse as error:
         raise WrongUse(
             f"none has been stopped, since no robot is named here: {error.message}",
-            "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back"
-            f" button on the brick. {error.hint}",
+            f"{_NAME_ONE}. {error.hint}",
         ) from error
 
 
@@ -61,8 +64,7 @@ def _stop(robot: Chosen, seed: int | None) -> Stopped:
         raise WrongUse(
             "no robot of its own is named, so none has been stopped: a simulated robot is embedded"
             " in each command, and ends with it",
-            "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back"
-            " button on the brick",
+            _NAME_ONE,
         )
     return stop_robot(make_link(robot.address, seed))
 

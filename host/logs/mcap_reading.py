@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import cached_property
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from mcap.records import Channel, Message, Metadata
 
 from host.logs.mcap_chunks import Damage, read_items
 from host.logs.mcap_files import EVENTS, FORMAT, METADATA, NAMED, TICKS, LogError
-from host.logs.mcap_index import DAMAGE, MAGIC, read_index
+from host.logs.mcap_index import DAMAGE, MAGIC, Index, read_index
 from host.logs.tap import Event, Tap
 from host.util.whole_files import is_stream
 from robot.record import NAMES, Record
@@ -61,6 +62,7 @@ class LogFile:
         self._begin()
 
     def _begin(self) -> None:
+        self.__dict__.pop("_index", None)
         self.breaks_off = False
         self.left_out = 0
         self.first_left_out = ""
@@ -78,8 +80,7 @@ class LogFile:
     @property
     def total(self) -> int | None:
         """How many ticks the file was closed with; None if it has no index that says so."""
-        index = read_index(self.path)
-        return None if index is None else index.ticks
+        return None if self._index is None else self._index.ticks
 
     @property
     def lost(self) -> int | None:
@@ -122,7 +123,7 @@ class LogFile:
         items = self._items(past_damage)
         behind = False  # whether a damaged place comes before the next message
         # A damaged record may look like one that other programs wrote: then only the ticks show it.
-        doubtful = past_damage and not self._is_intact()
+        doubtful = past_damage and not (self._index and self._index.intact)
         try:
             for item in items:
                 if isinstance(item, Damage):
@@ -158,9 +159,10 @@ class LogFile:
             yield lost_event(due, first)
         self._due = tick if name else tick + 1
 
-    def _is_intact(self) -> bool:
-        index = read_index(self.path)
-        return index is not None and index.intact
+    @cached_property
+    def _index(self) -> Index | None:
+        """The file's index, read once for each stream: that takes all of the file."""
+        return read_index(self.path)
 
     def _take(self, topic: str, message: dict[str, Any]) -> Iterator[Event | Record]:
         """Yield the event or the record of a message; nothing for a topic of others."""
