@@ -259,5 +259,5 @@ class Live:
                 self.robot.pump(0.0)
             return [item["reason"] for item in self.log.events[since:] if item["event"] == event]
 
-        wait_until(found, f"the host is told '{event}'", lambda: self.log.events[since:])
+        wait_until(found, f"the host gets the event '{event}'", lambda: self.log.events[since:])
         return found()[0]

@@ -104,11 +104,12 @@ def watch_several(options: argparse.Namespace, robots: list[Chosen]) -> int:
 
     def press(key: str) -> None:
         nonlocal helps
-        for row in rows:
-            row.actions.press(key)
         if key == HELP_KEY:
             helps = not helps
             screen.change_foot(HELP_FOOT if helps else foot)
+            return
+        for row in rows:
+            row.actions.press(key)
 
     with ExitStack() as stack:
         if not options.json:

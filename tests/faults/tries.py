@@ -37,7 +37,7 @@ def attempt(row, folder, scratch, tries, chance):
                 done += 1
                 try:
                     seconds, reason = row.attempt(live, chance)
-                    assert row.words in reason, f"the host is told '{reason}'"
+                    assert row.words in reason, f"the host got another reason: '{reason}'"
                     result.seconds.append(seconds)
                     result = result._replace(reason=result.reason or reason)
                 except (AssertionError, KickctlError, OSError, subprocess.SubprocessError) as error:
