@@ -26,6 +26,8 @@ _ROWS = {
     "phi_rad": "phi (rad)",
 }
 _HAPPENINGS = 5
+# A stop takes three lines for each robot: it was sent, what the robot answered, and the event.
+_STOP_LINES = 3
 _DRAW_S = 0.1
 
 
@@ -37,11 +39,12 @@ class Screen(ABC):
 
     Args:
         foot: The lines below all others, which say what keys do.
+        happenings: How many lines of what has happened are shown.
     """
 
-    def __init__(self, foot: list[str]) -> None:
+    def __init__(self, foot: list[str], happenings: int = _HAPPENINGS) -> None:
         self._foot = foot
-        self._happened: deque[str] = deque(maxlen=_HAPPENINGS)
+        self._happened: deque[str] = deque(maxlen=happenings)
         self._lock = threading.Lock()
         self._live: Live | None = None
         self._ended = threading.Event()
@@ -146,7 +149,7 @@ class SeveralRobots(Screen):
     """
 
     def __init__(self, names: list[str], foot: list[str]) -> None:
-        super().__init__(foot)
+        super().__init__(foot, max(_HAPPENINGS, _STOP_LINES * len(names)))
         self._lines: dict[str, dict[str, Any] | None] = dict.fromkeys(names)
 
     def take(self, name: str, line: dict[str, Any]) -> None:

@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from host.client.robot import connect
+from host.commands._watch_table import SeveralRobots
 from tests.cli.test_desk import desk_robot
 from tests.cli.test_watch_terminal import terminal
 from tests.link.test_robots_by_name import Laptop
@@ -79,3 +80,14 @@ def test_json_lines_name_their_robot_and_an_error_ends_only_its_own(laptop):
         assert ticks == sorted(ticks)
         assert len(ticks) >= 3
     assert "kickctl: gone: no robot's program runs at" in err
+
+
+def test_what_each_of_several_robots_says_of_a_stop_is_seen():
+    """All of it may come between two drawings."""
+    names = ["anna", "bert", "carl"]
+    screen = SeveralRobots(names, ["keys"])
+    words = [f"{name}: {said}" for said in ("sent", "answered", "stopped") for name in names]
+    for line in words:
+        screen.add(line)
+    shown = [str(part) for part in screen.render().renderables]
+    assert [line for line in words if line not in shown] == []
