@@ -5,6 +5,7 @@ real time are marked.
 """
 
 import os
+import signal
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -54,6 +55,9 @@ REAL_TIME = (
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "realtime: runs in real time, see REAL_TIME in conftest.py")
+    # Whoever runs the tests in a shell's background has ^C ignored, and so have their children.
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 # Before `-m` chooses by the marks.
