@@ -1,0 +1,234 @@
+/**
+ * A phase plane: where the robot's state has been, the older the fainter, and where it is now.
+ *
+ * An axis may be wrapped, as an angle is: a trace leaves at one edge and enters at the other. What
+ * jumps, such as the potentials in a membrane kick, is joined by dots.
+ */
+
+// In how many shades a trace fades.
+const SHADES = 8;
+
+/**
+ * @typedef {Object} Axis
+ * @property {string} symbol the quantity, such as 'φ' or 'ω/2π'
+ * @property {string} unit such as 'rad' or '1/s'; empty if it has none
+ * @property {number} minimum of the axis, in its unit
+ * @property {number} maximum of the axis, in its unit
+ * @property {boolean} pi whether its numbers are multiples of pi
+ * @property {boolean} wrap whether its ends are the same place
+ */
+
+/**
+ * @typedef {Object} Trace
+ * @property {Float64Array|Float32Array} x ring, in the unit of the x axis times `scale_x`
+ * @property {Float64Array|Float32Array} y ring, in the unit of the y axis times `scale_y`
+ * @property {number} scale_x what x is multiplied by, 1 if missing
+ * @property {number} scale_y what y is multiplied by, 1 if missing
+ * @property {?Uint8Array} jumped ring; not 0 where a kick made the state jump in this record
+ * @property {string} colour its name in the theme
+ * @property {boolean} dashed whether its line is dashed
+ * @property {?{x: number, y: number}} ghost where a quenched kick lets the state seem to be, in the
+ *     axes' units; null without one
+ */
+
+/**
+ * @typedef {Object} PlaneState
+ * @property {Axis} x the horizontal axis
+ * @property {Axis} y the vertical axis
+ * @property {Trace[]} traces rings of equal length; NaN interrupts a trace
+ * @property {number} start index of the oldest record in the rings
+ * @property {number} count how many records to draw
+ * @property {boolean} equal whether a unit is as long on both axes
+ * @property {string} title for people
+ * @property {string} note for people, such as 'a slice of four dimensions'
+ * @property {boolean} stale whether this is no longer up to date
+ */
+
+/**
+ * Draw a phase plane.
+ *
+ * @param {HTMLCanvasElement} canvas its width and height are device pixels
+ * @param {PlaneState} state what is not known may be missing
+ * @param {Object} theme see theme.js
+ */
+export function draw(canvas, state, theme) {
+    const { ctx, width, height, colours } = theme.start(canvas, state.stale);
+    const pen = { ctx, colours, theme };
+    const [x, y] = [range(state.x), range(state.y)];
+    const box = layout(state, theme, width, height, x, y);
+    axes(pen, state, box, x, y);
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(box.left, box.top, box.width, box.height);
+    ctx.clip();
+    for (const trace of state.traces ?? []) course(pen, state, trace, box, x, y);
+    ctx.restore();
+    for (const trace of state.traces ?? []) present(pen, state, trace, box, x, y);
+}
+
+function range(axis) {
+    const [low, high] = [axis?.minimum ?? -1, axis?.maximum ?? 1];
+    return { low, high, long: high - low, wrap: Boolean(axis?.wrap), pi: Boolean(axis?.pi) };
+}
+
+function layout(state, theme, width, height, x, y) {
+    const text = theme.text;
+    const left = 3.4 * text;
+    const top = state.title || state.note ? 1.9 * text : 0.8 * text;
+    const box = { left, top, width: width - left - text, height: height - top - 2.9 * text };
+    if (state.equal) {
+        const unit = Math.min(box.width / x.long, box.height / y.long);
+        box.left += (box.width - unit * x.long) / 2;
+        box.top += (box.height - unit * y.long) / 2;
+        box.width = unit * x.long;
+        box.height = unit * y.long;
+    }
+    return box;
+}
+
+function axes({ ctx, colours, theme }, state, box, x, y) {
+    const text = theme.text;
+    const bottom = box.top + box.height;
+    const right = box.left + box.width;
+    const how = { colour: colours.faint, size: 0.85, align: "center" };
+    for (const value of theme.ticks(x.low, x.high, box.width / (3 * text), x.pi ? Math.PI : 1)) {
+        const at = box.left + ((value - x.low) / x.long) * box.width;
+        ctx.fillStyle = colours.grid;
+        ctx.fillRect(at - 0.5, box.top, 1, box.height);
+        theme.write(ctx, label(theme, value, x.pi), at, bottom + 0.8 * text, how);
+    }
+    how.align = "right";
+    for (const value of theme.ticks(y.low, y.high, box.height / (2 * text), y.pi ? Math.PI : 1)) {
+        const at = bottom - ((value - y.low) / y.long) * box.height;
+        ctx.fillStyle = colours.grid;
+        ctx.fillRect(box.left, at - 0.5, box.width, 1);
+        theme.write(ctx, label(theme, value, y.pi), box.left - 0.4 * text, at, how);
+    }
+    ctx.strokeStyle = colours.axis;
+    ctx.lineWidth = 0.6 * theme.line;
+    ctx.strokeRect(box.left, box.top, box.width, box.height);
+    quantity({ ctx, colours, theme }, state.x, right, bottom + 2 * text, "right");
+    quantity({ ctx, colours, theme }, state.y, 0.5 * text, box.top - 0.9 * text, "left");
+    const note = { colour: colours.faint, size: 0.85, align: "right" };
+    theme.write(ctx, state.note ?? "", right, box.top - 0.9 * text, note);
+    const title = { colour: colours.ink, bold: true };
+    theme.write(ctx, state.title ?? "", box.left, bottom + 2 * text, title);
+}
+
+function quantity({ ctx, colours, theme }, axis, x, y, align) {
+    if (!axis) return;
+    const unit = axis.unit ? " / " + axis.unit : "";
+    const how = { colour: colours.ink, align, symbol: true, bold: true };
+    theme.write(ctx, (axis.symbol ?? "") + unit, x, y, how);
+}
+
+function label(theme, value, pi) {
+    if (!pi) return theme.number(value, Math.abs(value % 1) > 1e-9 ? 1 : 0);
+    const quarters = Math.round((value / Math.PI) * 4);
+    if (!quarters) return "0";
+    const sign = quarters < 0 ? "−" : "";
+    const size = Math.abs(quarters);
+    const below = size % 4 ? (size % 2 ? 4 : 2) : 1;
+    const above = (size * below) / 4;
+    return sign + (above === 1 ? "" : above) + "π" + (below === 1 ? "" : "/" + below);
+}
+
+/** A value within an axis; a wrapped one comes back at the other end. */
+function within(value, axis) {
+    if (!axis.wrap) return value;
+    const turns = (value - axis.low) / axis.long;
+    return axis.low + (turns - Math.floor(turns)) * axis.long;
+}
+
+/** How many times an axis is left between two places, -1, 0 or 1: the shorter way counts. */
+function crossing(from, to, axis) {
+    if (!axis.wrap || Math.abs(to - from) <= axis.long / 2) return 0;
+    return to < from ? 1 : -1;
+}
+
+function course(pen, state, trace, box, x, y) {
+    const { ctx, colours, theme } = pen;
+    const { start = 0, count = 0 } = state;
+    if (!trace.x || !trace.y) return;
+    const colour = colours[trace.colour] ?? colours.ink;
+    const bottom = box.top + box.height;
+    const horizontal = (value) => box.left + ((value - x.low) / x.long) * box.width;
+    const vertical = (value) => bottom - ((value - y.low) / y.long) * box.height;
+    const jumps = [];
+    let [px, py] = [NaN, NaN];
+    let shade = 0;
+    ctx.beginPath();
+    for (let n = 0; n < count; n++) {
+        const index = (start + n) % trace.x.length;
+        const vx = within(trace.x[index] * (trace.scale_x ?? 1), x);
+        const vy = within(trace.y[index] * (trace.scale_y ?? 1), y);
+        if (trace.jumped?.[index]) jumps.push(px, py, vx, vy);
+        else if (Number.isFinite(px + py + vx + vy)) {
+            const [cx, cy] = [crossing(px, vx, x) * x.long, crossing(py, vy, y) * y.long];
+            ctx.moveTo(horizontal(px), vertical(py));
+            ctx.lineTo(horizontal(vx + cx), vertical(vy + cy));
+            if (cx || cy) {
+                ctx.moveTo(horizontal(px - cx), vertical(py - cy));
+                ctx.lineTo(horizontal(vx), vertical(vy));
+            }
+        }
+        [px, py] = [vx, vy];
+        if (n + 1 >= ((shade + 1) * count) / SHADES) {
+            shade++;
+            ctx.globalAlpha = 0.12 + (0.88 * shade * shade) / (SHADES * SHADES);
+            line(ctx, colour, theme, trace.dashed);
+            ctx.beginPath();
+        }
+    }
+    ctx.globalAlpha = 1;
+    ctx.beginPath();
+    for (let n = 0; n < jumps.length; n += 4) {
+        if (!Number.isFinite(jumps[n] + jumps[n + 1] + jumps[n + 2] + jumps[n + 3])) continue;
+        ctx.moveTo(horizontal(jumps[n]), vertical(jumps[n + 1]));
+        ctx.lineTo(horizontal(jumps[n + 2]), vertical(jumps[n + 3]));
+    }
+    ctx.setLineDash([0.1, 2.5 * theme.line]);
+    line(ctx, colours.kick, theme, false);
+    ctx.setLineDash([]);
+}
+
+function line(ctx, colour, theme, dashed) {
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = theme.line;
+    if (dashed) ctx.setLineDash([3 * theme.line, 2 * theme.line]);
+    ctx.stroke();
+    if (dashed) ctx.setLineDash([]);
+}
+
+/** Where the state is now, and where a quenched kick lets it seem to be. */
+function present({ ctx, colours, theme }, state, trace, box, x, y) {
+    const { start = 0, count = 0 } = state;
+    if (!trace.x || !trace.y || !(count > 0)) return;
+    const index = (start + count - 1) % trace.x.length;
+    const vx = within(trace.x[index] * (trace.scale_x ?? 1), x);
+    const vy = within(trace.y[index] * (trace.scale_y ?? 1), y);
+    const at = (u, v) => [
+        box.left + ((u - x.low) / x.long) * box.width,
+        box.top + box.height - ((v - y.low) / y.long) * box.height,
+    ];
+    if (!Number.isFinite(vx + vy)) return;
+    ctx.beginPath();
+    ctx.arc(...at(vx, vy), 0.42 * theme.text, 0, 2 * Math.PI);
+    ctx.fillStyle = colours.actual;
+    ctx.fill();
+    ctx.strokeStyle = colours.paper;
+    ctx.lineWidth = theme.line;
+    ctx.stroke();
+    if (!trace.ghost) return;
+    const [gx, gy] = [within(trace.ghost.x, x), within(trace.ghost.y, y)];
+    if (!Number.isFinite(gx + gy)) return;
+    ctx.beginPath();
+    ctx.arc(...at(gx, gy), 0.5 * theme.text, 0, 2 * Math.PI);
+    ctx.setLineDash([0.25 * theme.text, 0.2 * theme.text]);
+    ctx.lineCap = "butt";
+    ctx.strokeStyle = colours.actual;
+    ctx.lineWidth = 1.2 * theme.line;
+    ctx.stroke();
+    ctx.setLineDash([]);
+    ctx.lineCap = "round";
+}

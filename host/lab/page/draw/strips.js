@@ -1,0 +1,300 @@
+/**
+ * Strips: how the robot's channels went in the last seconds, newest at the right edge.
+ *
+ * From above: membrane potentials of both wheels, torques M with the stall band, angular
+ * velocities, and delta t with the control period. The left wheel's lines are solid, the right
+ * wheel's dashed. Kicks are bands with their names. Where many records share a pixel column, their
+ * least and greatest value are drawn, so that a spike of one tick stays visible.
+ */
+
+// A line does not bridge a longer gap, s: there, records are lost.
+const GAP_S = 0.25;
+const ROWS = [
+    {
+        symbol: "x",
+        unit: "",
+        weight: 1.5,
+        factor: 1,
+        limits: [1, 2, 5, 10, 20],
+        signed: true,
+        lines: [
+            { column: "left_x1", colour: "left1", name: "x₁" },
+            { column: "left_x2", colour: "left2", name: "x₂" },
+            { column: "right_x1", colour: "right1", name: "x₁", right: true },
+            { column: "right_x2", colour: "right2", name: "x₂", right: true },
+        ],
+    },
+    {
+        symbol: "M",
+        unit: "",
+        weight: 1,
+        factor: 1,
+        limits: [1],
+        signed: true,
+        lines: [
+            { column: "left_torque", colour: "left", name: "" },
+            { column: "right_torque", colour: "right", name: "", right: true },
+        ],
+    },
+    {
+        symbol: "ω",
+        unit: "rad/s",
+        weight: 1,
+        factor: 1,
+        limits: [5, 10, 20, 50, 100],
+        signed: true,
+        lines: [
+            { column: "left_omega_rad_s", colour: "left", name: "" },
+            { column: "right_omega_rad_s", colour: "right", name: "", right: true },
+        ],
+    },
+    {
+        symbol: "Δt",
+        unit: "ms",
+        weight: 0.7,
+        factor: 1000,
+        limits: [20, 50, 100, 200, 500, 1000],
+        signed: false,
+        lines: [{ column: "dt_s", colour: "left", name: "" }],
+    },
+];
+
+/**
+ * @typedef {Object} Kick
+ * @property {number} begin_s when it begins, s of the robot's clock
+ * @property {number} end_s when it ends, s of the robot's clock; null while it acts
+ * @property {string} name for people
+ */
+
+/**
+ * @typedef {Object} StripsState
+ * @property {Object<string, Float64Array|Float32Array>} columns rings of equal length by name of
+ *     the channel: t_s (ascending), dt_s, and with `left_` and `right_` in front x1, x2, torque,
+ *     omega_rad_s. Units as the robot's table says: s, 1, rad/s. One that is missing is not drawn.
+ * @property {number} start index of the oldest record in the rings
+ * @property {number} count how many records the rings hold
+ * @property {number} now_s the time at the right edge, s of the robot's clock
+ * @property {number} seconds how much the strips show, s
+ * @property {?number} tick_s the control period, s
+ * @property {?number} stall the least |M| that moves a wheel from rest, 1; null if unknown
+ * @property {Kick[]} kicks oldest first
+ * @property {boolean} stale whether this is no longer up to date
+ * @property {{left: string, right: string, stall: string, period: string}} labels words: 'left',
+ *     'right', 'stalls', 'control period'
+ */
+
+/**
+ * Draw the strips.
+ *
+ * @param {HTMLCanvasElement} canvas its width and height are device pixels
+ * @param {StripsState} state what is not known may be missing
+ * @param {Object} theme see theme.js
+ */
+export function draw(canvas, state, theme) {
+    const { ctx, width, height, colours } = theme.start(canvas, state.stale);
+    const text = theme.text;
+    const seconds = state.seconds > 0 ? state.seconds : 10;
+    const now = Number.isFinite(state.now_s) ? state.now_s : 0;
+    const left = 3 * text;
+    const right = width - 0.6 * text;
+    const top = state.kicks?.length ? 1.5 * text : 0.3 * text;
+    const bottom = height - 1.7 * text;
+    const view = { ctx, colours, theme, left, right, now, pixels: (right - left) / seconds };
+    const window = recent(state, now - seconds);
+    const weights = ROWS.reduce((sum, row) => sum + row.weight, 0);
+    const header = 1.5 * text;
+    let y = top;
+    const share = (bottom - top - ROWS.length * header) / weights;
+    times(view, state, seconds, top, bottom);
+    for (const row of ROWS) {
+        const box = { top: y + header, bottom: y + header + share * row.weight };
+        legend(view, row, state, y + header / 2);
+        strip(view, row, state, window, box);
+        y = box.bottom;
+    }
+}
+
+/** The part of the rings from a time on, as the first record's number and one behind the last. */
+function recent({ columns, start = 0, count = 0 }, from_s) {
+    const t = columns?.t_s;
+    if (!t || !(count > 0)) return { first: 0, last: 0 };
+    let low = 0;
+    let high = count;
+    while (low < high) {
+        const middle = (low + high) >> 1;
+        if (t[(start + middle) % t.length] < from_s) low = middle + 1;
+        else high = middle;
+    }
+    return { first: Math.max(0, low - 1), last: count };
+}
+
+/** Lines of time, and kicks as bands with their names. */
+function times({ ctx, colours, theme, left, right, now, pixels }, state, seconds, top, bottom) {
+    const text = theme.text;
+    for (const ago of theme.ticks(0, seconds, Math.floor((right - left) / (4.5 * text)))) {
+        const x = right - ago * pixels;
+        ctx.fillStyle = colours.grid;
+        ctx.fillRect(x - 0.5, top, 1, bottom - top);
+        const how = { colour: colours.faint, size: 0.9, align: ago ? "center" : "right" };
+        theme.write(ctx, theme.number(-ago, ago % 1 ? 1 : 0) + " s", x, bottom + text, how);
+    }
+    let free = right;
+    for (let n = (state.kicks ?? []).length - 1; n >= 0; n--) {
+        const kick = state.kicks[n];
+        const end = Math.min(right, right - (now - (kick.end_s ?? now)) * pixels);
+        const begin = Math.max(left, right - (now - kick.begin_s) * pixels);
+        if (!(end >= left && begin <= right)) continue;
+        const wide = Math.max(2, end - begin);
+        ctx.fillStyle = colours.kick;
+        ctx.globalAlpha = 0.22;
+        ctx.fillRect(begin, top, wide, bottom - top);
+        ctx.globalAlpha = 1;
+        ctx.fillRect(begin - 0.5, top - 0.2 * text, 1, bottom - top + 0.2 * text);
+        ctx.font = `${text}px sans-serif`;
+        const name = kick.name ?? "";
+        const long = ctx.measureText(name).width;
+        const x = Math.min(begin, right - long);
+        if (x + long > free) continue;
+        theme.write(ctx, name, x, top - 0.8 * text, { colour: colours.kick, bold: true });
+        free = x - text;
+    }
+}
+
+/** What a strip shows, above it. */
+function legend({ ctx, colours, theme, left, right }, row, state, y) {
+    const words = state.labels ?? {};
+    const text = theme.text;
+    theme.write(ctx, row.symbol, 0.4 * text, y, { colour: colours.ink, symbol: true, bold: true });
+    theme.write(ctx, row.unit, 1.9 * text, y, { colour: colours.faint, size: 0.9 });
+    let x = right;
+    for (let n = row.lines.length - 1; n >= 0 && row.lines.length > 1; n--) {
+        const line = row.lines[n];
+        const last = row.lines[n + 1]?.right !== line.right;
+        const side = line.right ? words.right : words.left;
+        const how = { colour: colours.faint, size: 0.9, align: "right" };
+        if (last && side) x -= theme.write(ctx, side, x, y, how) + 0.4 * text;
+        x -= theme.write(ctx, line.name, x, y, how) + (line.name ? 0.3 * text : 0);
+        ctx.beginPath();
+        ctx.moveTo(x - 1.6 * text, y);
+        ctx.lineTo(x, y);
+        ink(ctx, colours[line.colour], theme, line.right);
+        x -= 1.6 * text + 0.8 * text;
+    }
+}
+
+function ink(ctx, colour, theme, dashed) {
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = theme.line;
+    if (dashed) ctx.setLineDash([3 * theme.line, 2 * theme.line]);
+    ctx.stroke();
+    if (dashed) ctx.setLineDash([]);
+}
+
+function strip(view, row, state, window, box) {
+    const { ctx, colours, theme, left, right } = view;
+    const high = limit(row, state, window);
+    const low = row.signed ? -high : 0;
+    const margin = 0.06 * (high - low);
+    const unit = (box.bottom - box.top) / (high - low + 2 * margin);
+    const zero = box.bottom - (margin - low) * unit;
+    if (row.symbol === "M" && state.stall > 0) {
+        ctx.fillStyle = colours.band;
+        ctx.fillRect(left, zero - state.stall * unit, right - left, 2 * state.stall * unit);
+        const how = { colour: colours.faint, size: 0.8 };
+        theme.write(ctx, state.labels?.stall ?? "", left + 0.3 * theme.text, zero, how);
+    }
+    const most = Math.max(2, Math.floor((box.bottom - box.top) / (1.8 * theme.text)));
+    for (const value of theme.ticks(low, high, most)) {
+        const y = zero - value * unit;
+        ctx.fillStyle = value ? colours.grid : colours.axis;
+        ctx.fillRect(left, y - 0.5, right - left, 1);
+        const how = { colour: colours.faint, size: 0.85, align: "right" };
+        theme.write(ctx, theme.number(value, value % 1 ? 1 : 0), left - 0.4 * theme.text, y, how);
+    }
+    if (!row.signed && state.tick_s > 0) {
+        const y = zero - state.tick_s * row.factor * unit;
+        ctx.beginPath();
+        ctx.moveTo(left, y);
+        ctx.lineTo(right, y);
+        ink(ctx, colours.target, theme, true);
+        const how = { colour: colours.target, size: 0.85, align: "right", halo: colours.paper };
+        theme.write(ctx, state.labels?.period ?? "", right, y - 0.7 * theme.text, how);
+    }
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, box.top, right - left, box.bottom - box.top);
+    ctx.clip();
+    for (const line of row.lines) {
+        const data = state.columns?.[line.column];
+        if (!data) continue;
+        trace(view, state, window, data, zero, unit * row.factor);
+        ink(ctx, colours[line.colour], theme, line.right);
+    }
+    ctx.restore();
+}
+
+/** The least of a row's limits that holds all of its values. */
+function limit(row, state, { first, last }) {
+    let most = 0;
+    for (const { column } of row.lines) {
+        const data = state.columns?.[column];
+        if (!data) continue;
+        let index = (state.start + first) % data.length;
+        for (let n = first; n < last; n++) {
+            const size = Math.abs(data[index]);
+            if (size > most && size < Infinity) most = size;
+            if (++index === data.length) index = 0;
+        }
+    }
+    const fits = row.limits.find((value) => most * row.factor <= 1.05 * value);
+    return fits ?? row.limits[row.limits.length - 1];
+}
+
+/** The path of a channel: exact where records are few, least and greatest of a column otherwise. */
+function trace({ ctx, theme, right, now, pixels }, state, { first, last }, data, zero, unit) {
+    const t = state.columns.t_s;
+    const columns = pixels * theme.scale;
+    let index = (state.start + first) % data.length;
+    let column = NaN;
+    let before = NaN;
+    let least = 0;
+    let greatest = 0;
+    let rising = true;
+    let single = 0;
+    const flush = () => {
+        if (Number.isNaN(column)) return;
+        const x = least === greatest ? single : right - now * pixels + (column + 0.5) / theme.scale;
+        ctx.lineTo(x, zero - (rising ? least : greatest) * unit);
+        if (least !== greatest) ctx.lineTo(x, zero - (rising ? greatest : least) * unit);
+    };
+    ctx.beginPath();
+    for (let n = first; n < last; n++) {
+        const time = t[index];
+        const value = data[index];
+        if (++index === data.length) index = 0;
+        // A NaN in either is a gap.
+        if (!(time - before <= GAP_S) || Number.isNaN(value)) {
+            flush();
+            column = NaN;
+            before = NaN;
+            if (Number.isNaN(value)) continue;
+            ctx.moveTo(right - (now - time) * pixels, zero - value * unit);
+        }
+        before = time;
+        const here = Math.floor(time * columns);
+        if (here !== column) {
+            flush();
+            column = here;
+            least = greatest = value;
+            rising = true;
+            single = right - (now - time) * pixels;
+        } else if (value < least) {
+            least = value;
+            rising = false;
+        } else if (value > greatest) {
+            greatest = value;
+            rising = true;
+        }
+    }
+    flush();
+}

@@ -1,0 +1,205 @@
+/**
+ * What all drawings of the lab look like: colours, sizes, and the few tools that they share.
+ *
+ * A drawing imports nothing. It gets the theme as an argument, and with it everything else.
+ */
+
+// `rim`, `grid` and `band` are decoration. What carries meaning has a contrast of 3:1 to the paper,
+// what is read has 4.5:1.
+const LIGHT = {
+    paper: "#fdfcfa",
+    ink: "#1b1d20",
+    faint: "#585d64",
+    axis: "#7b8087",
+    grid: "#e4e2dc",
+    rim: "#efede7",
+    band: "#e9e4d4",
+    rod: "#74797f",
+    target: "#008060",
+    actual: "#c85a00",
+    memory: "#8e3fa8",
+    force: "#b0125b",
+    kick: "#c3122f",
+    left: "#1b1d20",
+    right: "#787d84",
+    left1: "#7d3f00",
+    left2: "#d07500",
+    right1: "#004f9e",
+    right2: "#008fb3",
+    reverses: "#b0125b",
+    continues: "#00628f",
+    stops: "#6b7077",
+};
+const DARK = {
+    paper: "#14171a",
+    ink: "#efede7",
+    faint: "#a9aeb5",
+    axis: "#858b93",
+    grid: "#2a2f35",
+    rim: "#22262b",
+    band: "#2f3036",
+    rod: "#9aa0a8",
+    target: "#34c794",
+    actual: "#ff9838",
+    memory: "#d796ee",
+    force: "#ff7fb4",
+    kick: "#ff6f80",
+    left: "#efede7",
+    right: "#9298a0",
+    left1: "#c98544",
+    left2: "#ffcf87",
+    right1: "#5b9dff",
+    right2: "#66dcea",
+    reverses: "#ff7fb4",
+    continues: "#5fb9ea",
+    stops: "#a9aeb5",
+};
+const DECORATION = ["paper", "grid", "rim", "band"];
+const FAMILY = '"Helvetica Neue", "Liberation Sans", Arial, "DejaVu Sans", sans-serif';
+const SYMBOLS = '"STIX Two Text", "Times New Roman", "Liberation Serif", "DejaVu Serif", serif';
+const TEXT = 13;
+// A text on a projector is read from the last row if it is this part of the screen's height.
+const PROJECTED = 1 / 40;
+
+/**
+ * How a page is shown.
+ *
+ * @typedef {Object} Media
+ * @property {boolean} dark whether on a dark ground
+ * @property {number} scale device pixels per CSS pixel
+ * @property {number} height of the window, CSS pixels
+ */
+
+/**
+ * @typedef {Object} Theme
+ * @property {Object<string, string>} colours by name, as `#rrggbb`
+ * @property {Object<string, string>} grey the same names, for what is no longer up to date
+ * @property {number} scale device pixels per CSS pixel
+ * @property {number} text height of the text, CSS pixels
+ * @property {number} line width of an ordinary line, CSS pixels
+ * @property {function} start see `start`
+ * @property {function} write see `write`
+ * @property {function} ticks see `ticks`
+ * @property {function} number see `number`
+ */
+
+/**
+ * How this window is shown.
+ *
+ * @param {Window} view the window
+ * @param {?string} choice `light`, `dark`, or null for what the system says
+ * @returns {Media}
+ */
+export function media(view, choice = null) {
+    return {
+        dark: choice ? choice === "dark" : view.matchMedia("(prefers-color-scheme: dark)").matches,
+        scale: view.devicePixelRatio || 1,
+        height: view.innerHeight,
+    };
+}
+
+/**
+ * Colours and sizes.
+ *
+ * @param {Media} media how the page is shown
+ * @param {boolean} projector whether people look at it from afar
+ * @returns {Theme}
+ */
+export function theme({ dark, scale, height }, projector = false) {
+    const colours = dark ? DARK : LIGHT;
+    const grey = {};
+    for (const [name, colour] of Object.entries(colours)) {
+        grey[name] = DECORATION.includes(name) ? colour : colours.faint;
+    }
+    const text = projector ? Math.max(TEXT, height * PROJECTED) : TEXT;
+    return { colours, grey, scale, text, line: text / 8, start, write, ticks, number };
+}
+
+/**
+ * Begin a drawing: an empty sheet in CSS pixels.
+ *
+ * @param {HTMLCanvasElement} canvas its width and height are device pixels
+ * @param {boolean} stale whether what it shows is no longer up to date
+ * @returns {{ctx: CanvasRenderingContext2D, width: number, height: number, colours: Object}}
+ *     width and height in CSS pixels
+ */
+function start(canvas, stale) {
+    const ctx = canvas.getContext("2d", { alpha: false });
+    const colours = stale ? this.grey : this.colours;
+    const width = canvas.width / this.scale;
+    const height = canvas.height / this.scale;
+    ctx.setTransform(this.scale, 0, 0, this.scale, 0, 0);
+    ctx.globalAlpha = 1;
+    ctx.setLineDash([]);
+    ctx.lineJoin = "round";
+    ctx.lineCap = "round";
+    ctx.fillStyle = colours.paper;
+    ctx.fillRect(0, 0, width, height);
+    return { ctx, width, height, colours };
+}
+
+/**
+ * Write a text.
+ *
+ * @param {CanvasRenderingContext2D} ctx where
+ * @param {string} text what
+ * @param {number} x where it is aligned, CSS pixels
+ * @param {number} y its middle, CSS pixels
+ * @param {Object} how colour; align: left, center or right; size: 1 is the theme's; bold; symbol:
+ *     italics for a quantity; halo: the colour of a rim around the letters
+ * @returns {number} its width, CSS pixels
+ */
+function write(ctx, text, x, y, how) {
+    const { colour, align = "left", size = 1, bold = false, symbol = false, halo = "" } = how;
+    const slant = symbol ? "italic " : "";
+    const height = size * this.text * (symbol ? 1.12 : 1);
+    ctx.font = `${slant}${bold ? "bold " : ""}${height}px ${symbol ? SYMBOLS : FAMILY}`;
+    ctx.textAlign = align;
+    ctx.textBaseline = "middle";
+    if (halo) {
+        ctx.strokeStyle = halo;
+        ctx.lineWidth = this.text / 3;
+        ctx.strokeText(text, x, y);
+    }
+    ctx.fillStyle = colour;
+    ctx.fillText(text, x, y);
+    return ctx.measureText(text).width;
+}
+
+/**
+ * Round numbers along an axis.
+ *
+ * @param {number} low its lower end
+ * @param {number} high its upper end
+ * @param {number} most how many at most
+ * @param {number} unit the step is a round number of this, such as pi
+ * @returns {number[]}
+ */
+function ticks(low, high, most, unit = 1) {
+    const least = (high - low) / unit / Math.max(1, most);
+    if (!(least > 0 && least < Infinity)) return [];
+    const power = 10 ** Math.floor(Math.log10(least));
+    const steps = unit === 1 ? [1, 2, 5, 10] : [1, 2.5, 5, 10];
+    const step = unit * power * steps.find((factor) => factor * power >= least * (1 - 1e-9));
+    const values = [];
+    for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n++) {
+        values.push(n * step);
+    }
+    return values;
+}
+
+/**
+ * A number as people write it.
+ *
+ * @param {number} value the number
+ * @param {number} digits behind the point
+ * @param {boolean} sign whether a positive one has its sign, too
+ * @returns {string} a dash if there is no number
+ */
+function number(value, digits = 0, sign = false) {
+    if (!Number.isFinite(value)) return "–";
+    const size = Math.abs(value).toFixed(digits);
+    const zero = Number(size) === 0;
+    if (value < 0 && !zero) return "−" + size;
+    return (sign && !zero ? "+" : "") + size;
+}
