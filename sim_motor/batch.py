@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from robot import kicks
 from robot.controller import actual_positions, step_wheel
-from robot.kicks import DIRECTION_TICKS, NO_KICK, Kick
+from robot.kicks import DIRECTION_TICKS, NO_ACTION, NO_KICK, Kick
 from robot.loop import clamp_step
 from robot.params import Params
 from robot.safety import limit_duty
@@ -34,7 +34,7 @@ _apply_kick, _seen_positions = compiled(kicks.apply_kick), compiled(kicks.seen_p
 _clamp_step = compiled(clamp_step)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
-ParamNumbers = tuple[float, float, float, int, float, float]
+ParamNumbers = tuple[float, float, float, int, float, float, float]
 KickNumbers = tuple[int, int, int, int, bool, float]
 PHASE_SHIFT = nan  # as a kick's value: the shift that reverses this wheel
 
@@ -46,10 +46,18 @@ class Start:
     Attributes:
         states: As in sim_motor.motor, (wheels, 6).
         potentials: Membrane potentials, (wheels, 2).
+        duties: The duty cycles in force, %, (wheels,), of wheels that run already; None for wheels
+            at rest. A kick may begin at once where wheels run already.
     """
 
     states: Array
     potentials: Array
+    duties: NDArray[np.int64] | None = None
+
+    def of(self, rows: slice) -> "Start":
+        """Where some of these wheels begin."""
+        duties = None if self.duties is None else self.duties[rows]
+        return Start(self.states[rows], self.potentials[rows], duties)
 
 
 @dataclass(frozen=True)
@@ -57,7 +65,8 @@ class Result:
     """What the wheels did.
 
     Attributes:
-        before: Each wheel's direction when the kick began, (wheels,).
+        before: Each wheel's direction when the kick began, (wheels,); 0 if it began in one of the
+            first DIRECTION_TICKS ticks, which do not tell.
         after: Each wheel's direction in the end, (wheels,).
         settled_s: When the wheel had settled after the kick's first tick, s, as sim_motor.settling
             defines it; NaN if it had not, (wheels,).
@@ -107,7 +116,7 @@ def run(
     params: Params | None = None,
     kick: Kick | None = None,
     motors: tuple[Constants, ...] | None = None,
-    battery_v: float | None = None,
+    battery_v: float | Array | None = None,
     start: Start | None = None,
     times: Array | None = None,
     record: int = 0,
@@ -123,7 +132,7 @@ def run(
             of the shift with the value PHASE_SHIFT gets for each wheel the sign that reverses it.
         motors: Wheel number i has motors[i % len(motors)]; the default motor if None. Battery and
             latency are those of the first.
-        battery_v: Open-circuit voltage, V.
+        battery_v: Open-circuit voltage, V; one for all or (wheels,).
         start: Where the wheels begin; random if None.
         times: When ticks begin, s, (1 or wheels, ticks); random if None.
         record: How many wheels to record, from the first.
@@ -147,8 +156,11 @@ def run(
         or times.shape not in {(1, ticks), (wheels, ticks)}
     ):
         raise ValueError(f"start and times do not fit {wheels} wheels and {ticks} ticks")
-    volts = motors[0].battery_v if battery_v is None else battery_v
-    if not all(np.isfinite(part).all() for part in (*vars(start).values(), times, volts)):
+    volts = np.broadcast_to(
+        np.asarray(motors[0].battery_v if battery_v is None else battery_v, dtype=float), (wheels,)
+    )
+    duties = np.zeros(wheels, dtype=np.int64) if start.duties is None else start.duties
+    if not all(np.isfinite(part).all() for part in (start.states, start.potentials, times, volts)):
         raise ValueError("start, times and battery must be finite numbers")
     if ticks <= DIRECTION_TICKS:
         raise ValueError(
@@ -159,7 +171,9 @@ def run(
             f"a duty acts {latency_s} s after it is written, which is past the next tick: use"
             " longer ticks"
         )
-    if kick is not None and not DIRECTION_TICKS < kick.begin < ticks - DIRECTION_TICKS:
+    at_once = start.duties is not None and kick is not None and not isnan(kick.numbers(0)[-1])
+    earliest = 0 if at_once else DIRECTION_TICKS + 1
+    if kick is not None and not earliest <= kick.begin < ticks - DIRECTION_TICKS:
         raise ValueError(
             f"a kick in tick {kick.begin} of {ticks} leaves no {DIRECTION_TICKS} ticks before or"
             " after it to tell directions"
@@ -175,16 +189,22 @@ def run(
     _run_all(
         start.states,
         start.potentials,
+        duties,
         times,
-        (params.a, params.tau_s, params.k, params.rods, params.max_duty_pct, params.tick_s),
+        (
+            params.a,
+            params.tau_s,
+            params.k,
+            params.rods,
+            params.duty_scale,
+            params.max_duty_pct,
+            params.tick_s,
+        ),
         NO_KICK if kick is None else kick.numbers(0),
         tables(motors),
         np.stack([motor.scalars() for motor in motors]),
-        (
-            volts,
-            latency_s,
-            motors[0].encoder_counts,
-        ),
+        np.ascontiguousarray(volts),
+        (latency_s, motors[0].encoder_counts),
         result.before,
         result.after,
         result.settled_s,
@@ -207,12 +227,14 @@ def _run_wheel(
     start: Array,
     x1: float,
     x2: float,
+    duty: int,
     times: Array,
     params: ParamNumbers,
     kick: KickNumbers,
     table: Array,
     scalars: Array,
-    hardware: tuple[float, float, float],
+    battery_v: float,
+    hardware: tuple[float, float],
     record: Array,
 ) -> None:
     """Run one wheel.
@@ -220,12 +242,12 @@ def _run_wheel(
     Its angle (rad) in each tick goes into `phis`, and its CHANNELS into `record` unless that is
     empty.
     """
-    a_set, tau_set, k_set, rods, max_duty_pct, tick_s = params
+    a_set, tau_set, k_set, rods, duty_scale, max_duty_pct, tick_s = params
     action, begin, ticks, pulse, smooth, value = kick
-    battery_v, latency_s, counts = hardware
+    latency_s, counts = hardware
     state = (start[0], start[1], start[2], start[3], start[4], start[5])
-    substep, duty = 0, 0
-    turn, next_duty = 0, 0  # the duty that was written last, and the substep from which it acts
+    substep = 0
+    turn, next_duty = 0, duty  # the duty that was written last, and the substep from which it acts
     for tick in range(len(times)):
         now = times[tick]
         present = substep_at(now)
@@ -245,7 +267,7 @@ def _run_wheel(
         x1, x2, force, torque = _step_wheel(
             x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods
         )
-        next_duty = _limit_duty(torque, max_duty_pct)
+        next_duty = _limit_duty(duty_scale * torque, max_duty_pct)
         turn = substep_from(now + latency_s)
         if len(record):
             record[tick, 0], record[tick, 1], record[tick, 2] = phi, x1, x2
@@ -256,12 +278,14 @@ def _run_wheel(
 def _run_all(
     states: Array,
     potentials: Array,
+    duties: NDArray[np.int64],
     times: Array,
     params: ParamNumbers,
     kick: KickNumbers,
     tables: Array,
     scalars: Array,
-    hardware: tuple[float, float, float],
+    volts: Array,
+    hardware: tuple[float, float],
     before: NDArray[np.int64],
     after: NDArray[np.int64],
     settled_s: Array,
@@ -269,7 +293,7 @@ def _run_all(
     records: Array,
 ) -> None:
     ticks = times.shape[1]
-    begin = kick[1]
+    kicked, begin = kick[0] != NO_ACTION, kick[1]
     for wheel in prange(len(states)):
         phis = np.empty(ticks)
         when = times[wheel % len(times)]
@@ -281,16 +305,19 @@ def _run_all(
             states[wheel],
             x1,
             x2,
+            duties[wheel],
             when,
             params,
             kick,
             tables[variant],
             scalars[variant],
+            volts[wheel],
             hardware,
             record,
         )
         after[wheel] = _direction(_travel(phis, ticks - 1))
-        if begin:
-            before[wheel] = _direction(_travel(phis, begin - 1))
+        if kicked:
+            if begin > DIRECTION_TICKS:
+                before[wheel] = _direction(_travel(phis, begin - 1))
             settled_s[wheel] = _settling_s(phis, when, when[begin])
             kick_phi_rad[wheel] = phis[begin]
