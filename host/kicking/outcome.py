@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -21,6 +22,19 @@ JUDGED_S = 2 * WINDOW_S + 0.1
 FORWARD, BACKWARD, STOPPED = (HEADINGS[way] for way in (1, -1, 0))
 OPPOSITE = {FORWARD: BACKWARD, BACKWARD: FORWARD}
 DIRECTIONS = {word: way for way, word in HEADINGS.items() if way}
+RESULTS = REVERSES, CONTINUES, STOPS = "reverses", "continues", "stops"
+
+
+def compare(before: str, after: str) -> str:
+    """What a wheel did: one of RESULTS.
+
+    It continues if its heading stays; a wheel at rest continues if it stays at rest. It stops if it
+    rests afterwards, but not before. Else it reverses: it goes another way than before, which for a
+    wheel from rest is either way.
+    """
+    if after == before:
+        return CONTINUES
+    return STOPS if after == STOPPED else REVERSES
 
 
 @dataclass(frozen=True)
@@ -49,6 +63,11 @@ class Outcome:
     after: dict[str, str]
     reversed: bool
     settling_s: float | None
+
+    @property
+    def results(self) -> dict[str, str]:
+        """What each wheel did, in the words of RESULTS."""
+        return {side: compare(self.before[side], self.after[side]) for side in WHEELS}
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data, as the command line answers it."""
@@ -136,23 +155,43 @@ def kick_and_watch(
     if robot.newest is not None and robot.newest.state != 1:
         require_running(robot)
     last = log.records[-1].tick
-    before = {side: heading(log, side, tick - 1) for side in WHEELS}
-    after = {side: heading(log, side, last) for side in WHEELS}
-    times = [settling_s(log, side, tick) for side in kick["wheels"]]
-    return Outcome(
-        mode=mode,
-        ticks=kick["ticks"],
-        shift_rad=_shift(kick),
-        wheel=wheel,
-        applied_tick=tick,
-        before=before,
-        after=after,
-        reversed=all(after[side] == OPPOSITE.get(before[side]) for side in kick["wheels"]),
-        settling_s=None if None in times else max(time for time in times if time is not None),
+    return judge(
+        kick,
+        before={side: heading(log, side, tick - 1) for side in WHEELS},
+        after={side: heading(log, side, last) for side in WHEELS},
+        settling_s=[settling_s(log, side, tick) for side in kick["wheels"]],
     )
 
 
-def _shift(kick: dict[str, Any]) -> float | dict[str, float] | None:
+def judge(
+    kick: Mapping[str, Any],
+    before: dict[str, str],
+    after: dict[str, str],
+    settling_s: Sequence[float | None],
+) -> Outcome:
+    """The outcome of a kick.
+
+    Args:
+        kick: The kick as the robot's event gives it.
+        before: The heading of each wheel before the kick.
+        after: The heading of each wheel afterwards.
+        settling_s: How long each kicked wheel took to settle, s; None if it has not.
+    """
+    times = [time for time in settling_s if time is not None]
+    return Outcome(
+        mode=kick["mode"],
+        ticks=kick["ticks"],
+        shift_rad=_shift(kick),
+        wheel="both" if len(kick["wheels"]) == len(WHEELS) else kick["wheels"][0],
+        applied_tick=kick["begin"],
+        before=before,
+        after=after,
+        reversed=all(after[side] == OPPOSITE.get(before[side]) for side in kick["wheels"]),
+        settling_s=max(times) if len(times) == len(settling_s) else None,
+    )
+
+
+def _shift(kick: Mapping[str, Any]) -> float | dict[str, float] | None:
     if kick["mode"] != PHASE and kick["pulse"] != PULSED["shift_rad"]:
         return None
     shifts = {side: float(kick["values"][WHEELS.index(side)]) for side in kick["wheels"]}
