@@ -32,6 +32,7 @@ VERBS = (
     "params",
     "record",
     "watch",
+    "lab",
     "log",
     "doctor",
     "discover",
@@ -44,9 +45,9 @@ VERBS = (
     "reproduce",
 )
 
-# `stop` waits for nothing and `watch` has one table, so they have ways of their own with several
-# robots; `deploy` says itself that it has no robot.
-_OWN_WAYS = ("stop", "watch", "deploy")
+# `stop` waits for nothing, `watch` has one table and `lab` one page, so they have ways of their own
+# with several robots; `deploy` says itself that it has no robot.
+_OWN_WAYS = ("stop", "watch", "lab", "deploy")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.

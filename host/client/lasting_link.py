@@ -48,6 +48,8 @@ class LastingLink:
         hello: What the robot has said of itself.
         stream: What it sends to who subscribes.
         on_trouble: Called with words for people when the link breaks.
+        attended: Whether somebody is there for whom this program drives the robot. While it says
+            no, no heartbeats are sent, and the robot soon takes this host for lost.
         answer_s: How long the robot may take to answer.
         silence_s: How long a link on which something is due may carry nothing.
         reconnect_s: How long a lost robot is looked for.
@@ -64,6 +66,7 @@ class LastingLink:
         self.name = name
         self.stream = Stream()
         self.on_trouble: Callable[[str], None] = lambda words: None
+        self.attended: Callable[[], bool] = lambda: True
         self._talk = Conversation(token, name, client=neighbours.client_id())
         self._lock = threading.RLock()
         self._sending = threading.Lock()
@@ -223,7 +226,7 @@ class LastingLink:
             self._silence.ask(self.link.now())
 
     def _send_what_is_due(self, now: float) -> None:
-        if self._control.held and now >= self._heartbeat_due:
+        if self._control.held and now >= self._heartbeat_due and self.attended():
             self._heartbeat_due = now + HEARTBEAT_S
             self._send(self._talk.request("heartbeat", {}, sealed=True)[1])
         tick = self.stream.tick_to_ask_for(now)

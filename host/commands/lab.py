@@ -1,0 +1,157 @@
+"""kickctl lab."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import threading
+import webbrowser
+from contextlib import ExitStack, suppress
+from typing import TYPE_CHECKING
+
+from host.commands._terminal import print_result, say, show_next
+from host.errors import WrongUse
+from host.link.addresses import SIM, sim_options, with_params
+from host.link.names import Chosen, chosen, is_several, named, several
+from host.util.interrupts import uninterrupted
+from host.util.numbers import Number
+
+if TYPE_CHECKING:
+    from host.lab.live_station import LiveStation
+    from host.lab.server import Lab
+
+HELP = (
+    "open a page on which you watch running robots, kick them, and see their attractors. Without"
+    " --brick it is a simulated robot. ^C ends the lab, and the exit status is 0"
+)
+# How long a robot may take to answer before the command says that it is not there yet (s).
+_FIND_S = 3.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Where to serve, and what happens to a robot to which nobody attends."""
+    parser.add_argument(
+        "--port",
+        type=Number(least=0, most=65535, whole=True),
+        default=5426,
+        metavar="N",
+        help="TCP port of the page, a whole number; 0 for any that is free (default %(default)s)",
+    )
+    parser.add_argument(
+        "--host",
+        metavar="ADDRESS",
+        help="an address of this computer in its network: others may watch there, but not drive"
+        " (default: this computer only)",
+    )
+    parser.add_argument("--no-open", action="store_true", help="open no browser")
+    parser.add_argument(
+        "--unattended",
+        choices=("stop", "continue"),
+        help="what a robot does when the page that drives it is hidden, closed or asleep for 1 s"
+        " (default: real robots stop, simulated ones continue)",
+    )
+    parser.add_argument(
+        "--walls",
+        type=Number("m", 0.3, 100.0),
+        metavar="M",
+        help="put the simulated robot between two walls at this distance, in m",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve the page until ^C. Raises KickctlError if that cannot begin."""
+    from host.lab.server import Lab
+
+    with ExitStack() as stack:
+        stations = [_station(robot, options, stack) for robot in _robots(options)]
+        lab = stack.enter_context(Lab(stations, options.port, options.host))
+        with suppress(KeyboardInterrupt):
+            _tell(lab, stations, options)
+            threading.Event().wait()
+    return 0
+
+
+def _robots(options: argparse.Namespace) -> list[Chosen]:
+    text = named(options.brick)
+    robots = several(text) if text is not None and is_several(text) else [chosen(text)]
+    simulated = [robot for robot in robots if sim_options(robot.address) is not None]
+    if len(simulated) < len(robots):
+        if options.walls is not None:
+            raise WrongUse("--walls is for the simulated robot", "leave it or --brick out")
+        if options.seed is not None:
+            raise WrongUse(
+                f"--seed fixes the chances of {SIM} only",
+                "a robot elsewhere has the seed that it was started with",
+            )
+    return robots
+
+
+def _station(robot: Chosen, options: argparse.Namespace, stack: ExitStack) -> LiveStation:
+    """The station of a robot. A simulated one is started for it."""
+    from host.lab.desk_robot import DeskRobot, child_options
+    from host.lab.live_station import LiveStation
+    from host.lab.station import CONTINUE, STOP
+
+    if sim_options(robot.address) is None:
+        token = options.token or robot.token
+        station = LiveStation(
+            robot.name, robot.address, options.unattended or STOP, "real", token=token
+        )
+    else:
+        address = robot.address
+        if options.walls is not None:
+            address = with_params(address, [f"walls={options.walls:g}"])
+        walls = (sim_options(address) or {}).get("walls")
+        desk = stack.enter_context(DeskRobot(child_options(address, options.seed)))
+        name = "simulated" if robot.name == robot.address else robot.name
+        station = LiveStation(
+            name,
+            desk.uri,
+            options.unattended or CONTINUE,
+            "simulated",
+            walls_m=None if walls is None else float(walls),
+            token=desk.token,
+        )
+        desk.on_end = station.say_end
+    stack.callback(_end, station)
+    station.start()
+    return station
+
+
+def _end(station: LiveStation) -> None:
+    with uninterrupted():
+        words = station.end()
+        if words:
+            say(f"{station.name}: {words}")
+
+
+def _tell(lab: Lab, stations: list[LiveStation], options: argparse.Namespace) -> None:
+    """Say where the page is, open it, and say which robots are not there."""
+    if options.json:
+        robots = [
+            {"name": station.name, "uri": station.uri, "unattended": station.rule}
+            for station in stations
+        ]
+        show_next({"drive": lab.drive_url, "view": lab.view_url, "robots": robots})
+    else:
+        print_result(f"drive {lab.drive_url}\nview  {lab.view_url}")
+    if options.host:
+        say(
+            f"others in this network may watch at {options.host} with the view address; the drive"
+            " address works on this computer only"
+        )
+    if not options.no_open:
+        _open(lab.drive_url)
+    for station in stations:
+        if not station.met.wait(_FIND_S):
+            say(
+                f"{station.name} is not there yet: {station.trouble or 'it does not answer'}\n"
+                "  the page shows it as lost, and finds it when it comes"
+            )
+
+
+def _open(url: str) -> None:
+    graphical = sys.platform != "linux" or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ)
+    if not graphical or not webbrowser.open(url):
+        say("no browser opens here: open the drive address yourself")

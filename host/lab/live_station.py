@@ -1,0 +1,291 @@
+"""A station on a robot in real time.
+
+It has a thread for each of the three things that must not wait for each other: to watch, to drive,
+and to stop.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from queue import SimpleQueue
+from typing import Any, NamedTuple
+
+from host.client.robot import Robot
+from host.client.stop import Stopped, stop_robot
+from host.errors import KickctlError, NoLink, NotDone
+from host.lab.station import STOP, Answer, Station, stop_words
+from host.link.addresses import make_link
+from host.util.own_name import own_name
+
+# How long somebody who drives counts as there without a new sign (s). Then heartbeats cease, and
+# the robot stops by its own dead-man: so it does if this program hangs.
+ATTENDED_S = 0.5
+STATUS_S = 1.0
+AGAIN_S = 0.5
+# A command that the robot has not answered by then is not repeated: a stop may have come since.
+ANSWER_S = 3.0
+# Commands that a stop leaves alone.
+_HARMLESS = ("identify", "record")
+
+
+class _Job(NamedTuple):
+    command: str
+    arguments: dict[str, Any]
+    answer: Answer
+    stops: int
+
+
+class LiveStation(Station):
+    """A robot that is reached by an address.
+
+    Args:
+        name: What people call the robot.
+        uri: Its address.
+        rule: What happens when nobody drives it any more: STOP or CONTINUE.
+        label: 'simulated' or 'real'.
+        walls_m: How far apart the walls are (m); None if there are none.
+        token: The path of its token file; None for the usual place.
+        pull: Pulls a wheel of a simulated robot: gets its name and the angle (rad) or None.
+
+    Attributes:
+        met: Set as soon as the robot has been found for the first time.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        uri: str,
+        rule: str,
+        label: str,
+        walls_m: float | None = None,
+        token: str | None = None,
+        pull: Callable[[str, float | None], None] | None = None,
+    ) -> None:
+        super().__init__(name, uri, rule, label, walls_m)
+        self.hand_possible = pull is not None
+        self._token = token
+        self._pull = pull
+        self.met = threading.Event()
+        self._is_line = make_link(uri).is_line
+        self._watcher: Robot | None = None
+        self._driver: Robot | None = None
+        self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
+        self._stops = 0
+        self._stop_wanted = threading.Event()
+        self._closed = threading.Event()
+        self._attended_until = 0.0
+        self._release_wanted = False
+        self._who = own_name()
+        self._busy = ""
+        self._threads = [
+            threading.Thread(target=work, name=f"lab {what} {name}", daemon=True)
+            for what, work in (
+                ("watch", self._watch),
+                ("drive", self._drive),
+                ("stop", self._stop_when_wanted),
+            )
+        ]
+
+    def start(self) -> None:
+        """Begin to look for the robot."""
+        for thread in self._threads:
+            thread.start()
+
+    def clock(self) -> float:
+        return time.monotonic()
+
+    # Watch.
+
+    def _watch(self) -> None:
+        while not self._closed.is_set():
+            try:
+                with self._connect(observe=not self._is_line) as robot:
+                    robot.on_trouble = self._note_trouble
+                    self._meet(robot)
+                    self._watcher = robot
+                    self.met.set()
+                    robot.add_tap(self)
+                    self._follow(robot)
+            except KickctlError as error:
+                self.trouble = f"{error.message}. {error.hint}" if error.hint else error.message
+            except Exception as error:  # whatever it is, the robot must be found again
+                logging.getLogger("kickctl").exception("the lab lost a robot")
+                self.trouble = f"the lab failed: {error!r}"
+            self._wake()
+            self._closed.wait(AGAIN_S)
+
+    def _follow(self, robot: Robot) -> None:
+        if self.recording is not None:
+            robot.add_tap(self.recording)
+        due = 0.0
+        while not self._closed.is_set():
+            robot.pump(0.2)
+            if self.clock() >= due:
+                due = self.clock() + STATUS_S
+                self._status = robot.status()
+                self.trouble = ""
+
+    def _connect(self, *, observe: bool) -> Robot:
+        token = None if observe else self._token
+        return Robot.connect(self.uri, token=token, name=self._who, observe=observe)
+
+    def _note_trouble(self, words: str) -> None:
+        self.trouble = words
+        self._wake()
+
+    # Drive.
+
+    def do(self, command: str, arguments: dict[str, Any], answer: Answer) -> None:
+        """Carry out a command in the drive thread; a stop that comes meanwhile cancels it."""
+        if self._busy and command not in _HARMLESS:
+            answer(NotDone(f"the robot is busy with {self._busy}", "wait, or stop it"))
+            return
+        self._jobs.put(_Job(command, arguments, answer, self._stops))
+
+    def attend(self) -> None:
+        """Keep heartbeats going for a moment."""
+        self._attended_until = self.clock() + ATTENDED_S
+
+    def _attended(self) -> bool:
+        return self.rule != STOP or self.clock() < self._attended_until
+
+    def abandon(self, why: str) -> None:
+        """By the rule, stop, and give the robot back once it has stopped; or give it back as it is.
+
+        Without a confirmed stop the robot is not given back: it misses the heartbeats and stops.
+        """
+        self._attended_until = 0.0
+        if self.rule == STOP:
+            self._release_wanted = True
+            self.stop(why)
+        else:
+            self._jobs.put(_Job("release", {}, lambda result: None, self._stops))
+
+    def _drive(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            self._work(job)
+            if job.stops != self._stops and job.command not in (*_HARMLESS, "release"):
+                # What was under way when the stop came may have moved the robot after it.
+                self._stop_wanted.set()
+        if self._driver is not None:
+            self._driver.close()
+
+    def _work(self, job: _Job) -> None:
+        result: dict[str, Any] | KickctlError
+        try:
+            result = self._result(job)
+        except KickctlError as error:
+            result = error
+        except OSError as error:
+            result = NotDone(f"the operating system refuses: {error}", "is the disk full?")
+        except Exception as error:  # the thread must go on
+            logging.getLogger("kickctl").exception("a command of the lab failed")
+            result = NotDone(f"the lab failed: {error!r}", "please report this")
+        if self.pages is not None:
+            self.pages.call(lambda: job.answer(result))
+
+    def _result(self, job: _Job) -> dict[str, Any]:
+        if job.command in _HARMLESS:
+            robot = self._watcher
+            if robot is None:
+                raise NoLink("the robot has not been found yet", self.trouble)
+            if job.command == "identify":
+                return robot.identify()
+            return self._record(robot, bool(job.arguments["on"]))
+        if job.stops != self._stops:
+            raise NotDone("the robot was stopped meanwhile", "try it again")
+        if job.command == "release":
+            if self._driver is not None and self._driver.may_drive:
+                self._driver.release()
+            return {}
+        return self._carry_out(self._driver_now(), job.command, job.arguments)
+
+    def _driver_now(self) -> Robot:
+        """The connection that drives, a new one if the one before is gone."""
+        if self._is_line:  # it has room for one connection
+            if self._watcher is None:
+                raise NoLink("the robot has not been found yet", self.trouble)
+            self._watcher.attended = self._attended
+            return self._watcher
+        driver = self._driver
+        if driver is None or not driver.may_drive:
+            if driver is not None:
+                self._driver = None
+                driver.close()
+            driver = self._connect(observe=False)
+            driver.answer_s, driver.reconnect_s = ANSWER_S, 0.0
+            driver.attended = self._attended
+            self._driver = driver
+        return driver
+
+    # Stop.
+
+    def stop(self, who: str) -> None:
+        """Have the stop's own thread stop the robot, and cancel the commands that wait."""
+        self._stops += 1
+        self._stop_wanted.set()
+
+    def _stop_when_wanted(self) -> None:
+        while True:
+            self._stop_wanted.wait()
+            if self._closed.is_set():
+                return
+            self._stop_wanted.clear()
+            release, self._release_wanted = self._release_wanted, False
+            try:
+                words = stop_words(self.stop_now())
+                if words:
+                    self._say(words)
+                if release:
+                    self._jobs.put(_Job("release", {}, lambda result: None, self._stops))
+            except KickctlError as error:
+                self._say_error(error)
+            except Exception as error:  # this thread must outlive everything
+                logging.getLogger("kickctl").exception("a stop of the lab failed")
+                self._say(f"the stop failed: {error!r}", "switch the robot off")
+
+    def stop_now(self) -> Stopped:
+        """Stop the robot, and wait until it has confirmed that. Raises KickctlError."""
+        watcher = self._watcher
+        if watcher is not None:
+            return watcher.stop_at_once()
+        return stop_robot(make_link(self.uri), self._who)
+
+    def hand(self, wheel: str, angle_rad: float | None) -> None:
+        if self._pull is not None:
+            self._pull(wheel, angle_rad)
+
+    def say_end(self, words: str) -> None:
+        """Say why a simulated robot has ended, and that this one does not come back."""
+        self._say(words, "end the lab with ^C, and start it again")
+
+    def end(self) -> str:
+        """Stop the robot if this lab drives it and the rule says so, and hang up.
+
+        Returns:
+            What a person has to know, in words; may be empty.
+        """
+        driver, words = self._driver, ""
+        if self.rule == STOP and driver is not None and driver.drives:
+            try:
+                words = self.stop_now().sentence()
+            except KickctlError as error:
+                words = f"{error.message}\n  {error.hint}"
+        self.close()
+        return words
+
+    def close(self) -> None:
+        """Hang up. The robot is given back as it is."""
+        self._closed.set()
+        self._stop_wanted.set()
+        self._jobs.put(None)
+        for thread in self._threads:
+            if thread.is_alive():
+                thread.join(2.0)
+        if self.recording is not None:
+            with suppress(OSError):
+                self.recording.close()

@@ -1,0 +1,67 @@
+"""A log that the lab records of one of its robots, into the folder logs/."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from host.logs.log_folder import in_folder
+from host.logs.mcap_files import McapTap
+from host.logs.tap import Event
+from robot.record import Record
+
+
+class Recording:
+    """A tap that writes a log. A disk that fails ends the log, never the lab.
+
+    Args:
+        info: What the log says of its origin, as in Log.
+        say: Gets what has gone wrong in words: a message and a hint.
+
+    Attributes:
+        path: The log's file.
+        whole: Whether it has its end.
+
+    Raises:
+        LogError: The file cannot be created.
+        OSError: The disk is full.
+    """
+
+    def __init__(self, info: dict[str, Any], say: Callable[[str, str], None]) -> None:
+        self._file = in_folder("lab", info, lambda path: McapTap(path, info))
+        # The folder in which the program works may change.
+        self.path: Path = self._file.path.absolute()
+        self.whole = False
+        self._failed = False
+        self._say = say
+
+    @property
+    def name(self) -> str:
+        """The file's name."""
+        return self.path.name
+
+    def take_records(self, records: list[Record]) -> None:
+        """Write records."""
+        self._try(lambda: self._file.take_records(records))
+
+    def take_event(self, event: Event) -> None:
+        """Write an event."""
+        self._try(lambda: self._file.take_event(event))
+
+    def close(self) -> None:
+        """End the log."""
+        self._try(self._file.close)
+        self.whole = True
+
+    def _try(self, write: Callable[[], None]) -> None:
+        if self._failed:
+            return
+        try:
+            write()
+        except OSError as error:
+            self._failed = True
+            self._say(
+                f"the log {self.name} ends here, since it cannot be written: {error.strerror}",
+                "is the disk full? The robot goes on",
+            )

@@ -1,0 +1,331 @@
+"""The lab's session, without any I/O: messages of pages in, messages for pages out.
+
+It knows keys, roles, the baton and the driver's beat. Robots are stations, which carry commands out
+by themselves and never make it wait.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotable
+from host.lab import requests
+from host.lab.baton import Baton
+from host.lab.keys import DRIVE, Keys
+from host.lab.page_end import Departed, Page
+from host.lab.presets import PRESETS, PRIMITIVES, describe_presets, describe_primitives
+from host.lab.station import STOP, Station
+
+MAX_PAGES = 64
+# How long a connection may take to join (s), and how often states are sent at least.
+JOIN_S = 5.0
+STATE_S = 1.0
+
+Message = dict[str, Any]
+
+
+class Session:
+    """Pages on one side, robots on the other.
+
+    Args:
+        keys: The lab's keys.
+        stations: The robots.
+
+    Attributes:
+        pages: The pages that have joined, by number.
+    """
+
+    def __init__(self, keys: Keys, stations: Iterable[Station]) -> None:
+        self.pages: dict[int, Page] = {}
+        self.stations = {station.name: station for station in stations}
+        self.baton = Baton()
+        self._keys = keys
+        self._strangers: list[Page] = []
+        self._departed: dict[int, Departed] = {}
+        self._numbers = 0
+        self._states: dict[str, Message] = {}
+        self._states_due = 0.0
+        self._counted = (0, 0)
+
+    # Connections.
+
+    def arrive(self, now: float, *, local: bool) -> Page:
+        """A connection has been opened.
+
+        Args:
+            now: The time (s).
+            local: Whether it comes from this computer.
+
+        Returns:
+            The page at its other end; it is refused already if there is no place for it.
+        """
+        page = Page(now, local)
+        if len(self.pages) + len(self._strangers) >= MAX_PAGES:
+            page.refuse(
+                f"all {MAX_PAGES} places for pages are taken", "close a page that nobody needs"
+            )
+        else:
+            self._strangers.append(page)
+        return page
+
+    def leave(self, page: Page, now: float) -> None:
+        """A connection is gone. If its page drove, it has a moment to come back."""
+        if page in self._strangers:
+            self._strangers.remove(page)
+        if self.pages.get(page.number) is page:
+            del self.pages[page.number]
+            self.baton.forget(page.number)
+            self._departed[page.number] = page.departed()
+            while len(self._departed) > MAX_PAGES:
+                del self._departed[next(iter(self._departed))]
+        page.closed = True
+        self._tell()
+
+    def receive(self, page: Page, text: str, now: float) -> None:
+        """Take in a message of a page. It never raises for what a page can send."""
+        if page.closed:
+            return
+        request = None
+        try:
+            message = requests.parse(text)
+            request = requests.request_of(message)
+            if message["type"] == "stop" and page.number:
+                self._stop(page, message)  # before anything that could be in its way
+            elif page.allowance.take(now):
+                self._handle(page, message, request, now)
+            else:
+                raise NotDone("this page sends too much", "wait a moment")
+        except KickctlError as error:
+            page.answer(request, error)
+        self._tell()
+
+    def tick(self, now: float) -> None:
+        """Let time pass; to be called about ten times a second."""
+        for page in [one for one in self._strangers if now - one.since > JOIN_S]:
+            page.refuse("this page has not said its key", requests.RELOAD)
+            self._strangers.remove(page)
+        if self.baton.expire(now):
+            self._abandon(self.baton.why)
+        if self.baton.driver is not None:
+            for station in self.stations.values():
+                station.attend()
+        due = now >= self._states_due
+        if due:
+            self._states_due = now + STATE_S
+        self.look(every=due)
+
+    def look(self, *, every: bool = False) -> None:
+        """Tell pages how the robots are, if that has changed; `every` also if it has not."""
+        for name, station in self.stations.items():
+            state = station.state()
+            before = self._states.get(name)
+            self._states[name] = state
+            if every or before is None or _without_time(state) != _without_time(before):
+                self.broadcast(state)
+        self._tell()
+
+    def broadcast(self, message: Message) -> None:
+        """Send a message to all pages."""
+        for page in self.pages.values():
+            page.send(message)
+
+    def close(self) -> None:
+        """The server ends: nobody drives any more."""
+        if self.baton.driver is not None:
+            self._abandon("the lab ends")
+
+    # Messages.
+
+    def _handle(self, page: Page, message: Message, request: int | None, now: float) -> None:
+        kind = message["type"]
+        if kind == "join":
+            self._join(page, message)
+        elif not page.number:
+            raise WrongUse("this page has not joined yet", requests.RELOAD)
+        elif kind == "beat":
+            self.baton.beat(page.number, now)
+        elif kind in ("ask", "take", "give", "leave"):
+            self._pass(kind, page, message, now)
+            page.answer(request, {})
+        elif kind == "do":
+            self._do(page, message, request, now)
+        elif kind == "hand":
+            self._hand(page, message, now)
+        elif kind == "logs":
+            page.answer(request, {"logs": self.logs()})
+        elif kind == "predict":
+            raise NotDone("this lab cannot predict kicks yet", "kick, and see what happens")
+        else:
+            raise WrongUse(f"there is no message '{quotable(kind)}'", requests.RELOAD)
+
+    def _join(self, page: Page, message: Message) -> None:
+        if page.number:
+            raise WrongUse("this page has joined already", requests.RELOAD)
+        role = self._keys.role(requests.text_of(message, "key"))
+        if role is None:
+            page.refuse(
+                "this key does not fit: the lab may have been started again since",
+                "use the address that the lab has printed last",
+            )
+        elif role == DRIVE and not page.local:
+            page.refuse(
+                "the drive key works only on the computer on which the lab runs",
+                "use the address for watching",
+            )
+        else:
+            self._strangers.remove(page)
+            self._admit(page, role, message.get("resume"))
+
+    def _admit(self, page: Page, role: str, resume: object) -> None:
+        before = None
+        if isinstance(resume, int):
+            before = self._departed.get(resume)
+        if before is not None and before.role == role:
+            page.resume(self._departed.pop(before.number))
+        else:
+            self._numbers += 1
+            page.number, page.role = self._numbers, role
+        self.pages[page.number] = page
+        for station in self.stations.values():
+            page.places[station.name] = station.ring.latest(page.history)
+        page.send(
+            {
+                "type": "welcome",
+                "page": page.number,
+                "role": role,
+                "robots": [station.description() for station in self.stations.values()],
+                "presets": describe_presets(),
+                "primitives": describe_primitives(),
+                "local_only": True,
+                "unattended": {name: one.rule for name, one in self.stations.items()},
+            }
+        )
+        for station in self.stations.values():
+            page.send(station.state())
+        page.send(self._baton_for(page))
+        self._counted = (-1, -1)  # the newcomer has to be told, too
+
+    def _stop(self, page: Page, message: Message) -> None:
+        name = message.get("robot")
+        stations = list(self.stations.values()) if name is None else [self._station(message)]
+        for station in stations:
+            station.stop(f"page {page.number}")
+
+    def _pass(self, kind: str, page: Page, message: Message, now: float) -> None:
+        """Pass the baton on."""
+        if kind == "ask":
+            self.baton.ask(page.number, page.role, now)
+        elif kind == "take":
+            self.baton.take(page.number, page.role, now)
+        elif kind == "give":
+            self.baton.give(page.number, requests.whole_of(message, "page"), now)
+        else:
+            self.baton.leave(page.number)
+            self._abandon(self.baton.why)
+
+    def _do(self, page: Page, message: Message, request: int | None, now: float) -> None:
+        station = self._station(message)
+        command = requests.text_of(message, "command")
+        fields = message.get("arguments") or {}
+        if not isinstance(fields, dict):
+            raise WrongUse("the arguments are no object", requests.RELOAD)
+        arguments = self._checked(station, command, fields)
+        self.baton.need(page.number, page.role, now)
+        station.attend()
+
+        def answered(result: Message | KickctlError) -> None:
+            page.answer(request, result)
+
+        station.do(command, arguments, answered)
+
+    def _checked(self, station: Station, command: str, fields: Message) -> Message:
+        """The arguments of a command as a station takes them. Raises KickctlError."""
+        if command == "preset":
+            return {"set": requests.chosen(fields, PRESETS).set}
+        if command == "primitive":
+            requests.chosen(fields, PRIMITIVES)
+            return {"name": fields["name"]}
+        if command not in requests.CHECKS:
+            raise WrongUse(f"there is no command '{quotable(command)}'", requests.RELOAD)
+        if command == "kick":
+            requests.guess_of(fields)
+        checked = requests.CHECKS[command](fields)
+        if station.rule == STOP and checked.get("set", {}).get("link_loss") == "continue":
+            raise RefusedByRobot(
+                "with link_loss = continue the robot would drive on when nobody attends to it, and"
+                " this lab is to stop it then",
+                "start the lab with --unattended continue if that is what you want",
+            )
+        return checked
+
+    def _hand(self, page: Page, message: Message, now: float) -> None:
+        station = self._station(message)
+        wheel, angle_rad = requests.wheel_of(message), requests.angle_of(message)
+        if self.baton.driver != page.number:
+            raise RefusedByRobot("only who drives may pull a wheel", "ask for the baton")
+        if not station.hand_possible:
+            raise NotDone(f"nobody can pull the wheels of {station.name} from here", "")
+        self.baton.beat(page.number, now)
+        station.hand(wheel, angle_rad)
+
+    def logs(self) -> list[Message]:
+        """The logs that this lab has recorded, as pages get them."""
+        return [
+            {"name": name, "robot": station.name, "whole": recording.whole}
+            for station in self.stations.values()
+            for name, recording in station.logs.items()
+        ]
+
+    def log(self, name: str) -> Path | None:
+        """The file of a log that this lab has recorded; None if there is none of this name."""
+        for station in self.stations.values():
+            if name in station.logs:
+                return station.logs[name].path
+        return None
+
+    def may_read(self, key: str, *, local: bool) -> bool:
+        """Whether a key opens the logs."""
+        role = self._keys.role(key)
+        return role is not None and (local or role != DRIVE)
+
+    def _station(self, message: Message) -> Station:
+        name = requests.text_of(message, "robot")
+        if name not in self.stations:
+            raise WrongUse(f"there is no robot '{quotable(name)}'", requests.RELOAD)
+        return self.stations[name]
+
+    # What all have to know.
+
+    def _abandon(self, why: str) -> None:
+        for station in self.stations.values():
+            station.abandon(why)
+
+    def _baton_for(self, page: Page) -> Message:
+        baton = self.baton
+        return {
+            "type": "baton",
+            "driver": baton.driver,
+            "you": baton.driver == page.number,
+            "asking": list(baton.asking),
+            "why": baton.why,
+        }
+
+    def _tell(self) -> None:
+        """Tell all pages who drives and how many there are, if that has changed."""
+        if self.baton.changed:
+            self.baton.changed = False
+            for page in self.pages.values():
+                page.send(self._baton_for(page))
+        driving = int(self.baton.driver in self.pages)
+        counted = driving, len(self.pages) - driving
+        if counted != self._counted:
+            self._counted = counted
+            self.broadcast({"type": "pages", "driving": driving, "watching": counted[1]})
+
+
+def _without_time(state: Message) -> Message:
+    """A state without what changes all the time."""
+    changing = ("since_s", "battery_v", "late", "missed", "overrun")
+    return {name: value for name, value in state.items() if name not in changing}

@@ -1,0 +1,280 @@
+"""One robot as the lab knows it: its latest records for the pages, its state, and its commands.
+
+This part does no I/O and knows no threads. `LiveStation` connects it to a robot in real time,
+`SteppedStation` to an embedded one whose time passes only when a test says so.
+"""
+
+from __future__ import annotations
+
+import struct
+import uuid
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from host.client.robot import Robot
+from host.client.stop import Stopped
+from host.client.watching import Watcher
+from host.errors import KickctlError, WrongUse, printable
+from host.lab import derived
+from host.lab.recording import Recording
+from host.lab.ring import Ring
+from host.logs.tap import Event
+from robot import __version__, params
+from robot.record import STATES, STRUCT, Record
+from robot.record import describe as own_channels
+
+STOP, CONTINUE = "stop", "continue"
+# A robot whose records have not come for so long counts as lost (s).
+LOST_S = 1.0
+# How many records a page gets of what was before it came.
+HISTORY = 600
+# A tick that begins later than this counts as late for people (s).
+LATE_S = 0.005
+_STATE_OF = {
+    "start": "running",
+    "resume": "running",
+    "stop": "stopped",
+    "clear": "stopped",
+    "hold": "held",
+    "fault": "fault",
+}
+_HINTS = {
+    "idle": "start it: the wheels will turn",
+    "stopped": "start it: the wheels will turn",
+    "held": "the robot waits for its driver: take the baton, then kick it or set a parameter",
+    "fault": "mend the cause, then clear the fault, then start",
+}
+_REMEDIES = {"idle": "start", "stopped": "start", "fault": "clear"}
+_DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
+
+Answer = Callable[[dict[str, Any] | KickctlError], None]
+
+
+class Pages(Protocol):
+    """Where a station's news goes. All of it may be called from any thread."""
+
+    def hear(self, message: dict[str, Any]) -> None:
+        """Give a message to all pages."""
+
+    def wake(self) -> None:
+        """There are new records, or the state has changed."""
+
+    def call(self, function: Callable[[], object]) -> None:
+        """Call a function where the session lives."""
+
+
+class Station:
+    """The part of a station that is the same for all robots; also a Tap of its stream.
+
+    Args:
+        name: What people call the robot.
+        uri: Its address.
+        rule: What happens when nobody drives it any more: STOP or CONTINUE.
+        label: 'simulated' or 'real'.
+        walls_m: How far apart the walls are (m); None if there are none.
+
+    Attributes:
+        ring: The latest records, packed with the derived channels.
+        pages: Where news goes.
+        recording: The log that is being written, or None.
+        logs: The logs that this lab has recorded, by the names of their files.
+        trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
+    """
+
+    hand_possible = False
+
+    def __init__(
+        self, name: str, uri: str, rule: str, label: str, walls_m: float | None = None
+    ) -> None:
+        self.name = name
+        self.uri = uri
+        self.rule = rule
+        self.ring = Ring(STRUCT.size + _DERIVED.size)
+        self.pages: Pages | None = None
+        self.recording: Recording | None = None
+        self.logs: dict[str, Recording] = {}
+        self._label = label
+        self._walls_m = walls_m
+        self._follower = derived.Follower()
+        self._hello: dict[str, Any] = {}
+        self._status: dict[str, Any] = {}
+        self._heard_at: float | None = None
+        self._began_at = self.clock()
+        self.trouble = ""
+        self._tick = 0
+
+    # What pages are told.
+
+    def description(self) -> dict[str, Any]:
+        """The robot's entry in the welcome."""
+        place = derived.body()
+        values = dict(self._follower.params)
+        return {
+            "name": self.name,
+            "uri": self.uri,
+            "label": self._label,
+            "software": str(self._hello.get("software", __version__)),
+            "motor": printable(str(self._hello.get("motor", ""))),
+            "channels": own_channels(),
+            "derived": derived.describe(),
+            "params": params.describe(),
+            "tick_s": values["tick_s"],
+            "stall": None,
+            "track_m": place.track_m,
+            "wheel_radius_m": place.wheel_radius_m,
+            "walls": self._walls_m,
+            "hand": self.hand_possible,
+            "events": {"event": "snapshot", "tick": self._tick, "params": values, "kick": None},
+            "history": self.ring.end - self.ring.latest(HISTORY),
+        }
+
+    def state(self) -> dict[str, Any]:
+        """What a `state` message says of the robot now."""
+        now = self.clock()
+        heard_at = self._began_at if self._heard_at is None else self._heard_at
+        lost = self._heard_at is None or now - heard_at > LOST_S
+        message: dict[str, Any] = {
+            "type": "state",
+            "robot": self.name,
+            "link": "lost" if lost else "up",
+            "since_s": round(now - heard_at, 1) if lost else 0.0,
+            "recording": self.recording.name if self.recording else None,
+        }
+        status = dict(self._status)
+        if lost and self.trouble:
+            message["hint"] = self.trouble
+        if not status:
+            return message
+        state = str(status["state"])
+        edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
+        hint = message.get("hint", _HINTS.get(state, ""))
+        return message | {
+            "state": state,
+            "reason": printable(str(status["reason"])),
+            "remedy": _REMEDIES.get(state),
+            "hint": hint,
+            "params": dict(self._follower.params),
+            "battery_v": status["battery_v"],
+            "controller": _text(status["controller"]),
+            "late": sum(n for edge, n in zip([0.0, *edges], counts, strict=True) if edge >= LATE_S),
+            "missed": status["missed"],
+            "overrun": status["overruns"],
+        }
+
+    # What the robot says.
+
+    def take_records(self, records: list[Record]) -> None:
+        """Keep records for the pages."""
+        for record in records:
+            values = self._follower.derive(record)
+            if values is not None:
+                self.ring.append(STRUCT.pack(*record) + _DERIVED.pack(*values))
+        if records:
+            self._tick = records[-1].tick + 1
+            self._take_state(STATES[records[-1].state])
+        self._heard_at = self.clock()
+        self._wake()
+
+    def take_event(self, event: Event) -> None:
+        """Follow what changes the robot's course, and tell the pages."""
+        self._follower.take_event(event)
+        if event["event"] in _STATE_OF and self._status:
+            self._status["state"] = _STATE_OF[event["event"]]
+            self._status["reason"] = event.get("reason", "")
+        self._hear({"type": "event", "robot": self.name, "event": event})
+        self._wake()
+
+    def _take_state(self, state: str) -> None:
+        if self._status:
+            self._status["state"] = state
+
+    def _meet(self, robot: Watcher) -> None:
+        """A connection to the robot has been opened."""
+        self._hello = dict(robot.hello)
+        self.trouble = ""
+        self._status = robot.status()
+        self._wake()
+
+    # What pages want.
+
+    def do(self, command: str, arguments: dict[str, Any], answer: Answer) -> None:
+        """Carry out a command of the driver.
+
+        Args:
+            command: One of the commands of MESSAGES.md.
+            arguments: What belongs to it, checked.
+            answer: Gets the result or the error, where the session lives.
+        """
+        raise NotImplementedError
+
+    def stop(self, who: str) -> None:
+        """Stop the motors. It returns at once and waits for nothing."""
+        raise NotImplementedError
+
+    def attend(self) -> None:
+        """Somebody drives and is there; said several times a second."""
+
+    def abandon(self, why: str) -> None:
+        """Nobody drives any more. By the rule the robot stops, or goes on as it is."""
+        raise NotImplementedError
+
+    def hand(self, wheel: str, angle_rad: float | None) -> None:
+        """Pull a wheel of a simulated robot to an angle (rad); None lets go."""
+
+    def close(self) -> None:
+        """Hang up."""
+
+    def clock(self) -> float:
+        """Seconds on the clock of this station."""
+        raise NotImplementedError
+
+    def _carry_out(self, robot: Robot, command: str, arguments: dict[str, Any]) -> dict[str, Any]:
+        """Have a robot that may be driven do a command. Raises KickctlError."""
+        if not robot.drives:
+            robot.lease()  # a person has asked for it, so also after somebody's take-over
+        if command in ("start", "clear"):
+            return {"tick": robot.command(command)}
+        if command in ("set", "preset"):
+            return {"tick": robot.command("set", set=arguments["set"])}
+        if command == "kick":
+            kick = {name: value for name, value in arguments.items() if value is not None}
+            kick["id"] = uuid.uuid4().hex
+            return {"tick": robot.command("kick", kick=kick), "kick_id": kick["id"]}
+        raise WrongUse(f"there is no command '{printable(command)}'", "reload the page")
+
+    def _record(self, robot: Watcher, on: bool) -> dict[str, Any]:
+        """Begin or end a log of the robot. Raises KickctlError or OSError."""
+        if on and self.recording is None:
+            recording = Recording(robot.info(), self._say)
+            self.logs[recording.name] = self.recording = recording
+            robot.add_tap(recording)
+        elif not on and self.recording is not None:
+            recording, self.recording = self.recording, None
+            robot.remove_tap(recording)
+            recording.close()
+        self._wake()
+        return {"log": self.recording.name if self.recording else None}
+
+    def _say(self, message: str, hint: str = "") -> None:
+        """Tell the pages what a person should know of this robot."""
+        self._hear({"type": "note", "message": f"{self.name}: {message}", "hint": hint})
+
+    def _say_error(self, error: KickctlError) -> None:
+        self._say(error.message, error.hint)
+
+    def _hear(self, message: dict[str, Any]) -> None:
+        if self.pages is not None:
+            self.pages.hear(message)
+
+    def _wake(self) -> None:
+        if self.pages is not None:
+            self.pages.wake()
+
+
+def stop_words(stopped: Stopped) -> str:
+    """What a robot has said about a stop, if a person has to know it; else empty."""
+    return stopped.sentence() if stopped.state != "stopped" else ""
+
+
+def _text(value: object) -> str | None:
+    return None if value is None else printable(str(value))

@@ -1,0 +1,73 @@
+"""A station on an embedded robot, whose time passes only when somebody steps it."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from host.client.robot import Robot
+from host.errors import KickctlError, NotDone
+from host.lab.station import STOP, Answer, Station
+from host.link.sim import SimLink
+
+
+class SteppedStation(Station):
+    """A robot on a sim:// link, for tests: the same steps give the same records.
+
+    Args:
+        uri: Its address, as in sim://?seed=1.
+        name: What people call the robot.
+        rule: What happens when nobody drives it any more: STOP or CONTINUE.
+    """
+
+    def __init__(self, uri: str = "sim://?seed=1", name: str = "sim", rule: str = STOP) -> None:
+        self._lock = threading.RLock()
+        self._robot = Robot.connect(uri)
+        assert isinstance(self._robot.link, SimLink)
+        self._link = self._robot.link
+        super().__init__(name, uri, rule, "simulated")
+        self._meet(self._robot)
+        self._robot.add_tap(self)
+
+    def step(self, seconds: float) -> None:
+        """Let the robot's time pass (s): as many ticks as begin in it."""
+        with self._lock:
+            for _ in range(round(seconds / float(self._follower.params["tick_s"]))):
+                self._link.run_tick()
+                self._robot.pump(0.0)
+            self._status = self._robot.status()
+        self._wake()
+
+    def clock(self) -> float:
+        return self._link.now()
+
+    def do(self, command: str, arguments: dict[str, Any], answer: Answer) -> None:
+        with self._lock:
+            result: dict[str, Any] | KickctlError
+            try:
+                if command == "identify":
+                    result = self._robot.identify()
+                elif command == "record":
+                    result = self._record(self._robot, bool(arguments["on"]))
+                else:
+                    result = self._carry_out(self._robot, command, arguments)
+            except KickctlError as error:
+                result = error
+            except OSError as error:
+                result = NotDone(f"the operating system refuses: {error}", "is the disk full?")
+        answer(result)
+
+    def stop(self, who: str) -> None:
+        with self._lock:
+            self._robot.stop_at_once()
+            self._robot.pump(0.0)
+
+    def abandon(self, why: str) -> None:
+        with self._lock:
+            if self.rule == STOP:
+                self.stop(why)
+            self._robot.release()
+
+    def close(self) -> None:
+        with self._lock:
+            self._robot.close()
