@@ -77,6 +77,7 @@ class KeyActions:
         say: Shows words; any thread may call it.
         change_foot: Shows other lines about keys.
         clock: The time in s.
+        take_over: Whether a kick takes control from another host, which hears of it.
     """
 
     def __init__(
@@ -85,12 +86,15 @@ class KeyActions:
         say: Callable[[str], None],
         change_foot: Callable[[list[str]], None],
         clock: Callable[[], float] = time.monotonic,
+        *,
+        take_over: bool = False,
     ) -> None:
         self.left = False
         self._stop_robot = stop
         self._say = say
         self._change_foot = change_foot
         self._clock = clock
+        self._take_over = take_over
         self._kicks: queue.SimpleQueue[tuple[float, KeyKick]] = queue.SimpleQueue()
         self._pressed = threading.Event()
         self._stopping: threading.Thread | None = None
@@ -144,6 +148,8 @@ class KeyActions:
     def _send(self, robot: Robot, kick: KeyKick) -> None:
         """Kick, and give control back, so that whoever only watches locks nobody out."""
         try:
+            if self._take_over:
+                robot.take_over()
             robot.kick(**kick.details)
         except KickctlError as refusal:
             self._say(f"kick {kick.title}: {in_a_line(refusal)}")

@@ -40,7 +40,9 @@ class _Row:
     ) -> None:
         self.name = robot.name
         self.error: BaseException | None = None
-        self.actions = KeyActions(self._stop, self._say, lambda foot: None)
+        self.actions = KeyActions(
+            self._stop, self._say, lambda foot: None, take_over=options.keys_take_over
+        )
         self._chosen = robot
         self._options = options
         self._take = take

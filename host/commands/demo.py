@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from host.commands._options import add_take_over
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of, say
 from host.errors import NotDone
@@ -25,16 +26,19 @@ INVERSIONS = 50
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The demo has no arguments of its own."""
+    """Add whether to take control from another host."""
+    add_take_over(parser)
 
 
 @contextmanager
 def _driven(options: argparse.Namespace) -> Iterator[Robot]:
-    """The robot, driven from here: who may not drive it gets no log of a demo."""
+    """The robot, driven from here: who cannot drive it gets no log of a demo."""
     from host.kicking.outcome import require_control
+    from host.kicking.robot_motor import motor_of
 
     with robot_of(options, moves=True, sends="kick") as robot:
         require_control(robot)
+        motor_of(robot)
         yield robot
 
 

@@ -3,9 +3,9 @@
 import argparse
 
 from host.commands._efforts import add_effort, question, sized
-from host.commands._options import common
+from host.commands._options import add_take_over, common
 from host.commands._terminal import finish, say
-from host.experiments.registry import TABLE
+from host.experiments.registry import ROBOT, TABLE
 from host.runs.registry import add_options, options_given
 
 HELP = "run one of the experiments: logs, a table, a figure, and the paper's claims, measured"
@@ -25,6 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         )
         add_options(own, entry)
         add_effort(own, name, entry)
+        if name in ROBOT:
+            add_take_over(own)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -40,6 +42,7 @@ def run(options: argparse.Namespace) -> int:
         token=options.token,
         out=options.out,
         scheduler=options.scheduler,
+        take_over=getattr(options, "take_over", False),
         say=say,
         ask=question(options),
         **arguments,

@@ -3,6 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
+from host.commands._options import add_take_over
 from host.commands._terminal import essential, print_table, say, show
 from host.errors import NotDone
 
@@ -18,7 +19,7 @@ USES = ("brick", "seed", "token", "name")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Which claims, and the folder."""
+    """Which claims, the folder, and whether to take control from another host."""
     parser.add_argument("--only", metavar="IDS", help="only these claims, such as R5,M7")
     parser.add_argument(
         "--out",
@@ -26,6 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FOLDER",
         help="folder for the results (default %(default)s)",
     )
+    add_take_over(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -34,7 +36,13 @@ def run(options: argparse.Namespace) -> int:
 
     only = [number.strip().upper() for number in options.only.split(",")] if options.only else []
     done = reproduce(
-        options.brick, options.seed, only, token=options.token, out=options.out, say=say
+        options.brick,
+        options.seed,
+        only,
+        token=options.token,
+        out=options.out,
+        take_over=options.take_over,
+        say=say,
     )
     page = done.page and str(done.page)
     essentials = f"report {page}" if page else ""

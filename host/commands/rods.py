@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from host.commands._options import add_take_over
 from host.commands._outputs import add_force, answer_beside, path_argument, require_place
 from host.commands._recording import recorded
 from host.commands._terminal import robot_of
@@ -11,7 +12,7 @@ HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverse
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Where the film goes."""
+    """Where the film goes, and whether to take control from another host."""
     parser.add_argument(
         "--out",
         type=path_argument,
@@ -20,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where the film goes, .mp4 or .gif (default %(default)s)",
     )
     add_force(parser)
+    add_take_over(parser)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -24,13 +24,19 @@ HELP = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add how long to watch."""
+    """Add how long to watch, and whether a kick takes control from another host."""
     parser.add_argument(
         "--seconds",
         type=Number("s", 0.001, 1e9),
         default=inf,
         metavar="S",
         help="how long to watch, in s of the robot's time (default: until q or ^C)",
+    )
+    parser.add_argument(
+        "--take-over",
+        action="store_true",
+        dest="keys_take_over",
+        help="keys kick also a robot that somebody else drives; they hear that you took control",
     )
 
 
@@ -44,26 +50,28 @@ def run(options: argparse.Namespace) -> int:
     with robot_of(options) as robot:
         show = _print_lines if options.json else _show_table
         with suppress(KeyboardInterrupt):
-            show(robot, options.seconds)
+            show(robot, options)
     return 0
 
 
-def _print_lines(robot: Robot, seconds: float) -> None:
-    for line in lines(robot, seconds, lambda: False, time.sleep):
+def _print_lines(robot: Robot, options: argparse.Namespace) -> None:
+    for line in lines(robot, options.seconds, lambda: False, time.sleep):
         show_next(line)
 
 
-def _show_table(robot: Robot, seconds: float) -> None:
+def _show_table(robot: Robot, options: argparse.Namespace) -> None:
     lacking = why_no_keys()
     screen = OneRobot(robot.link.uri, [f"no keys: {lacking}"] if lacking else FOOT)
-    actions = KeyActions(robot.stop_at_once, screen.add, screen.change_foot)
+    actions = KeyActions(
+        robot.stop_at_once, screen.add, screen.change_foot, take_over=options.keys_take_over
+    )
     with ExitStack() as stack:
         stack.enter_context(screen.shown())
         stack.callback(actions.close)
         if not lacking:
             robot.on_trouble = screen.add
             stack.enter_context(keys(actions.press, screen.close, screen.open))
-        for line in lines(robot, seconds, lambda: actions.waiting, actions.pause):
+        for line in lines(robot, options.seconds, lambda: actions.waiting, actions.pause):
             screen.take(line)
             actions.kick(robot)
             if actions.left:

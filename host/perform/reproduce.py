@@ -65,6 +65,7 @@ def reproduce(
     *,
     token: str | None = None,
     out: str | Path = RESULTS,
+    take_over: bool = False,
     say: Callable[[str], None] = lambda words: None,
 ) -> Reproduction:
     """Run what decides the claims, or resume it, and write a report.
@@ -76,6 +77,7 @@ def reproduce(
         token: The path of the robot's token file.
         out: The folder for results. The report is report.html there, or for some claims only a name
             such as report-R5-R6.html.
+        take_over: Take control of a real robot, also from another host, which hears of it.
         say: Called with messages for people.
 
     Raises:
@@ -106,7 +108,10 @@ def reproduce(
     def run(table: Mapping[str, Entry], uri: str | None) -> None:
         for name, entry in table.items():
             if any(number in wanted for number in entry.claims):
-                summaries.append(summary := perform(name, uri, seed, token=token, out=out, say=say))
+                summary = perform(
+                    name, uri, seed, token=token, out=out, take_over=take_over, say=say
+                )
+                summaries.append(summary)
                 found = [Claim.from_dict(claim) for claim in summary["claims"]]
                 claims.update(
                     (claim.id, claim)

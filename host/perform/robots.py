@@ -38,6 +38,8 @@ def robots(
     token: str | None,
     logs: Path,
     say: Callable[[str], None],
+    *,
+    take_over: bool = False,
 ) -> Iterator[Work]:
     """Yields a function that does a cell on a robot, and stops a real robot in the end.
 
@@ -50,6 +52,8 @@ def robots(
         with connect(uri, token=token) as robot:
             robot.on_trouble = say
             _require_same_sources(robot)
+            if take_over:
+                robot.take_over()
             require_control(robot)
             own = {name: robot.status()["params"][name] for name in PAPER}
             try:

@@ -39,6 +39,7 @@ def perform(
     token: str | None = None,
     out: str | Path = RESULTS,
     scheduler: str | None = None,
+    take_over: bool = False,
     say: Callable[[str], None] = lambda words: None,
     ask: Callable[[float], None] = lambda seconds: None,
     **arguments: Any,
@@ -53,6 +54,7 @@ def perform(
         out: The folder for results. Each combination of arguments and sources has its own folder
             there.
         scheduler: The address of a Dask scheduler that computes the cells.
+        take_over: Take control of a real robot, also from another host, which hears of it.
         say: Called with messages for people.
         ask: Called before a real robot begins, with about how long it will be busy, s. It raises a
             KickctlError if that is too long.
@@ -117,7 +119,8 @@ def perform(
                 busy_s = EFFORTS[name].seconds(options) * missing / len(cells)
                 say(f"{name}: about {in_words(busy_s)} on this robot")
                 ask(busy_s)
-            with robots(found.work, uri, setting, token, study.folder / "logs", say) as work:
+            logs = study.folder / "logs"
+            with robots(found.work, uri, setting, token, logs, say, take_over=take_over) as work:
                 do_cells(name, cells, study, work)
         rows = study.rows(cells)
         # The commit says where results come from. It is no part of their key: it also changes with

@@ -5,6 +5,7 @@ import logging
 import pytest
 
 from host.client.robot import Robot
+from host.commands._watch_keys import KeyActions
 from host.errors import LeaseLost, RefusedByRobot, WrongUse
 from host.util.own_name import NAME_LETTERS, choose, own_name
 from robot import commands
@@ -117,6 +118,22 @@ def test_connect_may_take_over_at_once(link, teacher):
         Robot.connect("sim://", observe=True, take_over=True)
     with Robot.connect("sim://", take_over=True) as robot:
         assert robot.drives
+
+
+def test_keys_of_a_watch_take_over_only_where_that_was_wished(link):
+    stranger(link, "pupil").tell("lease")
+    with Robot(link, link.token) as robot:
+        words = []
+        for take_over in (False, True):
+            actions = KeyActions(
+                robot.stop_at_once, words.append, words.append, take_over=take_over
+            )
+            actions.press("1")
+            actions.kick(robot)
+            assert link.loop.lease.holder == (None if take_over else "pupil")
+    assert len(words) == 1
+    assert "driven by 'pupil'" in words[0]
+    assert [event["event"] for event in link.events()] == ["start", "take_over", "kick"]
 
 
 def test_who_has_no_token_cannot_take_over(link, teacher):

@@ -6,6 +6,7 @@ import pytest
 
 from host.cli import main
 from host.client.robot import Robot
+from host.errors import NotDone
 from host.util.own_name import choose
 from robot.record import STATES
 from tests.link.machines import TcpRobot
@@ -51,8 +52,10 @@ DRIVING = [
     ("clear",),
     ("drive", "forward", "--motor", "pybricks"),
     ("demo",),
+    ("rods",),
     ("params", "set", "k=2"),
     ("experiment", "reliability", "--trials", "2", "--yes"),
+    ("reproduce", "--only", "R8"),
 ]
 
 
@@ -60,7 +63,7 @@ DRIVING = [
 def nobody_waits(monkeypatch):
     """Whoever waits for the wheels to settle fails."""
 
-    def wait(*_):
+    def wait(*_, **__):
         raise AssertionError("it waits before it is refused")
 
     monkeypatch.setattr(Robot, "wait", wait)
@@ -118,6 +121,22 @@ def test_take_over_drives_at_once_under_the_name_that_was_given(machine, kickctl
     assert anna.tell("heartbeat")["taken_over_by"] == "Ms Frizzle"
     assert STATES[machine.loop.safety.state] == "running"
     assert "stop it first" in json.loads(out)["error"]["hint"]
+
+
+@pytest.mark.parametrize("verb", DRIVING, ids=lambda verb: verb[0])
+def test_every_verb_that_drives_can_take_over(machine, kickctl, anna, monkeypatch, verb):
+    def wait(*_, **__):
+        raise NotDone("that is far enough")
+
+    monkeypatch.setattr(Robot, "wait", wait)
+    kickctl(*verb, "--take-over", "--name", "teacher")
+    assert anna.tell("heartbeat")["taken_over_by"] == "teacher"
+
+
+@pytest.mark.parametrize("verb", [("experiment", "train-wall"), ("status",), ("stop",)])
+def test_a_verb_that_takes_no_control_has_no_take_over(kickctl, verb):
+    status, _, err = kickctl(*verb, "--take-over")
+    assert (status, "has no option '--take-over'" in err) == (2, True)
 
 
 @pytest.mark.usefixtures("anna")
