@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 HELP = "list, export, replay, plot, film and recover logs, or pull one from the robot's black box"
 # As host.logs.tables has them; that is imported only when a table is written.
-FORMATS = ("csv", "npz")
+FORMATS = ("csv", "npz", "parquet")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--format",
         choices=FORMATS,
-        help="csv for spreadsheets, npz for numpy (default: what the ending of --out says, or csv)",
+        help="csv for spreadsheets, npz for numpy, parquet for pandas, polars, R and databases; it"
+        " needs kickctl[parquet] (default: what the ending of --out says, or csv)",
     )
     export.add_argument(
         "--excel",
@@ -69,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out",
         type=path_argument,
         metavar="FILE",
-        help="the table to write (default: csv to standard output, npz beside the log)",
+        help="the table to write (default: csv to standard output, others beside the log)",
     )
     add_force(export)
     reader("replay", "recompute the controller from a log's angles and delta t, compare exactly")
@@ -165,6 +166,7 @@ def _pull(options: argparse.Namespace) -> int:
 
 def _export(options: argparse.Namespace) -> int:
     from host.logs.mcap_reading import LogFile
+    from host.logs.parquet import save_parquet
     from host.logs.tables import format_of, save_csv, save_npz, write_csv
 
     log = LogFile(options.log)
@@ -172,8 +174,8 @@ def _export(options: argparse.Namespace) -> int:
     form = options.format or "csv" if out is None else format_of(out, options.format)
     if options.excel and form != "csv":
         raise WrongUse(f"--excel is a kind of csv, and this is {form}", "leave one of them out")
-    if out is None and form == "npz":
-        out = options.log.with_suffix(".npz")
+    if out is None and form != "csv":
+        out = options.log.with_suffix("." + form)
     if out is not None:
         require_place(options, out)
     elif options.json:
@@ -185,11 +187,12 @@ def _export(options: argparse.Namespace) -> int:
         write_csv(log.stream(), sys.stdout, excel=options.excel)
         return damage_status(log)
     new = not options.force
-    ticks = (
-        save_csv(log.stream(), out, new=new, excel=options.excel)
-        if form == "csv"
-        else save_npz(log.stream(), log.info, out, new=new)
-    )
+    if form == "csv":
+        ticks = save_csv(log.stream(), out, new=new, excel=options.excel)
+    elif form == "npz":
+        ticks = save_npz(log.stream(), log.info, out, new=new)
+    else:
+        ticks = save_parquet(log.stream(), log.info, out, new=new)
     facts = {"table": str(out), "ticks": ticks, **damage_facts(log)}
     answer_beside(options, out, facts, f"{ticks} ticks in {out}")
     return damage_status(log)

@@ -308,6 +308,28 @@ class Log:
         save_npz(self.stream(), self.info, path)
         return Path(path)
 
+    def to_parquet(self, path: str | Path) -> Path:
+        """Write the table as a Parquet file, with units, `info` and `events` in its metadata.
+
+        Args:
+            path: The file, which ends in .parquet. A file of this name is replaced without a
+                question, because cells of a notebook run more than once; a log never is.
+
+        Returns:
+            The file's path.
+
+        Raises:
+            WrongUse: pyarrow is not installed: it comes with `kickctl[parquet]`.
+            LogError: The file is a log, or has another ending.
+            OSError: It cannot be written.
+        """
+        from host.logs.parquet import save_parquet
+        from host.logs.tables import require_ending
+
+        require_ending(need_path("path", path), "parquet")
+        save_parquet(self.stream(), self.info, path)
+        return Path(path)
+
     def __len__(self) -> int:
         return len(self.records)
 

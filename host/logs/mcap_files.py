@@ -32,7 +32,10 @@ FORMAT = "1"
 TICKS, EVENTS = "/ticks", "/events"
 CHUNK_S = 1.0
 # Files of other kinds, which programs would try to read as such.
-_OTHER_ENDINGS = (".csv", ".npz", ".json", ".txt", ".tsv", ".xlsx", ".png", ".svg", ".gif", ".mp4")
+_OTHER_ENDINGS = (
+    *(".csv", ".npz", ".parquet", ".json", ".txt", ".tsv", ".xlsx"),
+    *(".png", ".svg", ".gif", ".mp4"),
+)
 NAMED = {"state": STATES, "kick": KICK_NAMES}
 
 

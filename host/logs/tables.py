@@ -38,13 +38,12 @@ _NAMED = {"kick": KICK_NAMES, "state": STATES}
 _PLACES = tuple([*NAMES, *(side + "_omega_rad_s" for side in WHEELS)].index(n) for n in COLUMNS)
 _ANGLES = tuple(NAMES.index(side + "_phi_rad") for side in WHEELS)
 _TIME = NAMES.index("t_s")
-# How many rows of an .npz file are converted at a time.
-_BLOCK = 4096
+# How many rows are converted at a time.
+BLOCK = 4096
 
 Row = tuple[Any, ...]
 
-
-FORMATS = ("csv", "npz")
+FORMATS = ("csv", "npz", "parquet")
 
 
 def format_of(path: str | Path, wanted: str | None = None) -> str:
@@ -134,7 +133,7 @@ def write_csv(stream: Iterable[Event | Record], out: TextIO, *, excel: bool = Fa
     writer = csv.writer(out, lineterminator="\n", delimiter=";" if excel else ",")
     writer.writerow(COLUMNS)
     count = 0
-    for row in _rows(stream):
+    for row in rows_of(stream):
         writer.writerow(map(_with_comma, row) if excel else row)
         count += 1
     return count
@@ -175,12 +174,13 @@ def save_npz(
         files = {
             name: stack.enter_context(tempfile.TemporaryFile(dir=draft.parent)) for name in COLUMNS
         }
-        count = _fill(files, _rows(_keep_events(stream, events)))
+        count = _fill(files, rows_of(keep_events(stream, events)))
         _write_archive(draft, files, count, {"info": info, "events": events})
     return count
 
 
-def _keep_events(stream: Iterable[Event | Record], events: list[Event]) -> Iterator[Event | Record]:
+def keep_events(stream: Iterable[Event | Record], events: list[Event]) -> Iterator[Event | Record]:
+    """Yield a log's events and records, and append the events to a list."""
     for item in stream:
         if isinstance(item, dict):
             events.append(item)
@@ -192,21 +192,27 @@ def _fill(files: Mapping[str, IO[bytes]], rows: Iterator[Row]) -> int:
     import numpy as np
 
     count = 0
-    while block := list(islice(rows, _BLOCK)):
+    while block := list(islice(rows, BLOCK)):
         count += len(block)
         for name, values in zip(COLUMNS, zip(*block, strict=True), strict=True):
             files[name].write(np.array(values, _dtype(name)).tobytes())
     return count
 
 
+def kind_of(name: str) -> type[str | int | float]:
+    """What a column's values are."""
+    if name in _NAMED:
+        return str
+    codes = {channel.name: channel.code for channel in CHANNELS}
+    return float if codes.get(name, "d") in "df" else int
+
+
 def _dtype(name: str) -> Any:
     """numpy's type of a column."""
     import numpy as np
 
-    if name in _NAMED:
-        return np.array(_NAMED[name]).dtype
-    codes = {channel.name: channel.code for channel in CHANNELS}
-    return np.dtype(np.float64 if codes.get(name, "d") in "df" else np.int64)
+    kind = kind_of(name)
+    return np.array(_NAMED[name]).dtype if kind is str else np.dtype(kind)
 
 
 def _write_archive(
@@ -233,7 +239,7 @@ def _write_archive(
                 form.write_array(member, np.array(json.dumps(value, allow_nan=False)))
 
 
-def _rows(stream: Iterable[Event | Record]) -> Iterator[Row]:
+def rows_of(stream: Iterable[Event | Record]) -> Iterator[Row]:
     """Yield the rows of a log's records, with state and kick as words; no kick is empty."""
     named = [(COLUMNS.index(name), words) for name, words in _NAMED.items()]
     for record, speeds in _with_speeds(stream):

@@ -25,5 +25,7 @@ def need(module: str, extra: str) -> None:
     ) as error:  # as mujoco does with a MUJOCO_GL that it cannot use
         raise NotDone(
             f"{module} cannot be loaded: {error}",
-            "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa",
+            "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa"
+            if module in ("mujoco", "glfw")
+            else f"install it anew: {install_command(extra)}",
         ) from error

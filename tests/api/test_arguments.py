@@ -109,7 +109,10 @@ TABLE = [
     ("Log.play", "tap", (*NO_TEXT, "tap")),
     ("Log.column", "name", (*NO_TEXT, "", "nosuch")),
     ("Log.omega", "side", (*NO_TEXT, "", "middle", "both")),
-    *((f"Log.{name}", "path", (*NO_PATH, None)) for name in ("save", "load", "to_csv", "to_npz")),
+    *(
+        (f"Log.{name}", "path", (*NO_PATH, None))
+        for name in ("save", "load", "to_csv", "to_npz", "to_parquet")
+    ),
 ]
 OTHERS = {
     "run_experiment": {"name": "timeline"},

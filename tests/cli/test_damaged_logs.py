@@ -14,6 +14,7 @@ from host.logs.mcap_files import EVENTS, METADATA, TICKS
 READERS = {
     "csv": ("export",),
     "npz": ("export", "--out", "table.npz"),
+    "parquet": ("export", "--out", "table.parquet"),
     "excel": ("export", "--excel"),
     "plot": ("plot", "--out", "figure.png"),
     "film": ("film", "--out", "film.gif", "--seconds", "0.1"),

@@ -27,6 +27,7 @@ def log(kickctl):
 WRITERS = (
     ("log", "export", "LOG", "--out", "OUT.csv"),
     ("log", "export", "LOG", "--out", "OUT.npz"),
+    ("log", "export", "LOG", "--out", "OUT.parquet"),
     ("log", "plot", "LOG", "--out", "OUT.png"),
     ("log", "film", "LOG", "--seconds", "0.1", "--out", "OUT.gif"),
     ("rods", "--out", "OUT.gif"),
@@ -145,7 +146,7 @@ def test_an_export_that_fails_leaves_the_old_table(kickctl, log, monkeypatch):
     def fail(*_):
         raise MemoryError
 
-    monkeypatch.setattr("host.logs.tables._rows", fail)
+    monkeypatch.setattr("host.logs.tables.rows_of", fail)
     status, _, err = kickctl("log", "export", str(log), "--out", str(table), "--force")
     assert status == 1
     assert "memory" in err

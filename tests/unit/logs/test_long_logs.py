@@ -23,6 +23,7 @@ from pathlib import Path
 from host.logs.mcap_reading import LogFile
 from host.logs.recovery import recover
 from host.logs.replay import replay
+from host.logs.parquet import save_parquet
 from host.logs.tables import save_csv, save_npz
 
 log, out = LogFile(sys.argv[2]), Path(sys.argv[3])
@@ -30,6 +31,7 @@ log, out = LogFile(sys.argv[2]), Path(sys.argv[3])
     "replay": lambda: replay(log),
     "csv": lambda: save_csv(log.stream(), out),
     "npz": lambda: save_npz(log.stream(), log.info, out),
+    "parquet": lambda: save_parquet(log.stream(), log.info, out),
     "recover": lambda: recover(log.path, out),
 }[sys.argv[1]]()
 print(re.search("VmHWM: *\\t* *([0-9]+) kB", Path("/proc/self/status").read_text())[1])
@@ -53,7 +55,7 @@ def logs(tmp_path_factory):
     return paths
 
 
-@pytest.mark.parametrize("work", ["replay", "csv", "npz", "recover"])
+@pytest.mark.parametrize("work", ["replay", "csv", "npz", "parquet", "recover"])
 def test_memory_does_not_grow_with_the_log(logs, tmp_path, work):
     peaks_kb = []
     for number, path in enumerate(logs):

@@ -71,7 +71,11 @@ def test_a_log_without_ticks_has_its_names(log, tmp_path):
 
 def test_a_table_has_the_ending_of_its_kind(log, tmp_path):
     """Also one that is written from Python; without an ending, or in capitals, it is accepted."""
-    for write, ending in ((log.to_csv, "csv"), (log.to_npz, "npz")):
+    for write, ending in (
+        (log.to_csv, "csv"),
+        (log.to_npz, "npz"),
+        (log.to_parquet, "parquet"),
+    ):
         for name in ("a.txt", "a.csv" if ending == "npz" else "a.npz", "a.xlsx", "a.v2"):
             with pytest.raises(LogError, match=rf"end its name with \.{ending}"):
                 write(tmp_path / name)
