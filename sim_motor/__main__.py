@@ -3,6 +3,9 @@
 python -m sim_motor --port 5425, and in another terminal: kickctl --brick tcp://127.0.0.1:5425 kick
 --mode phase
 
+With --hand, lines on standard input pull at its wheels, see sim_motor/hand.py; with --walls 2 it
+drives between two walls.
+
 With --sysfs it is only the brick's hardware, as files that the robot's program for the real brick
 can run on: python -m sim_motor --sysfs FOLDER, and in another terminal: python -m robot --sysfs
 FOLDER
@@ -15,7 +18,9 @@ from robot.motors import MonotonicClock
 from robot.program import choose_seed, parser, run, say
 from sim_motor.brick import SimBrick
 from sim_motor.clock import VirtualClock
+from sim_motor.hand import SILENCE_S, Hand
 from sim_motor.mount import serve
+from sim_motor.world import Scene
 
 
 def main() -> int:
@@ -33,21 +38,50 @@ def main() -> int:
         "--battery", type=float, metavar="V", help="open-circuit voltage of the battery"
     )
     arguments.add_argument(
+        "--walls",
+        type=float,
+        metavar="M",
+        help="put the robot halfway between two walls, M metres apart",
+    )
+    arguments.add_argument(
+        "--hand",
+        action="store_true",
+        help="let lines on standard input pull at the wheels: 'left 1.25' pulls the left wheel"
+        " towards the angle 1.25 rad, 'left -' lets go, as does silence of"
+        f" {SILENCE_S:g} s; the end of the input ends the program",
+    )
+    arguments.add_argument(
         "--sysfs",
         metavar="MOUNTPOINT",
         help="mount the motors' files there instead, without the robot's program",
     )
     options = arguments.parse_args()
+    if options.hand and options.sysfs:
+        arguments.error("--hand belongs to the robot's program, which --sysfs leaves out")
+    if options.hand and sys.stdin is None:
+        arguments.error("--hand reads standard input, and there is none: leave it open")
     seed = choose_seed(options)
     clock = VirtualClock(seed, jitter=False) if options.sysfs else MonotonicClock()
     try:
-        brick = SimBrick(seed, clock=clock, motor=options.motor, battery_v=options.battery)
+        brick = SimBrick(
+            seed,
+            clock=clock,
+            motor=options.motor,
+            battery_v=options.battery,
+            scene=None if options.walls is None else Scene(walls=options.walls),
+        )
     except ValueError as error:
         arguments.error(str(error))
     if options.sysfs:
         return serve(options.sysfs, brick)
-    announcer = Announcer(lambda text: say(text, sys.stderr))
-    return int(run(options, brick.motors, brick.battery, brick.clock, seed, (announcer,)))
+
+    def warn(text: str) -> None:
+        say(text, sys.stderr)
+
+    panels: list[Announcer | Hand] = [Announcer(warn)]
+    if options.hand:
+        panels.append(Hand(brick, sys.stdin.fileno(), warn))
+    return int(run(options, brick.motors, brick.battery, brick.clock, seed, panels))
 
 
 if __name__ == "__main__":

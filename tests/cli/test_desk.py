@@ -21,7 +21,12 @@ def desk_robot(folder, *arguments):
     environment = dict(os.environ, KICK_TOKEN=str(folder / "token"))
     command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "3", *arguments]
     with subprocess.Popen(
-        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command,
+        env=environment,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     ) as process:
         try:
             line = process.stdout.readline()
@@ -204,3 +209,26 @@ def test_a_port_in_use_is_told_in_words(tmp_path):
         assert done.returncode == 2
         assert "cannot listen" in done.stderr
         assert "Traceback" not in done.stderr
+
+
+def test_a_hand_on_standard_input_turns_a_wheel_between_walls_and_its_end_is_the_robots(tmp_path):
+    with desk_robot(tmp_path, "--hand", "--walls", "2", "--idle") as (uri, process):
+        with connect(uri, observe=True) as robot:
+            robot.wait(0.1)
+            goal = robot.newest.left_phi_rad + 1.0
+
+            def turned():
+                process.stdin.write(f"left {goal}\n")
+                process.stdin.flush()
+                return abs(robot.newest.left_phi_rad - goal) < 0.1
+
+            assert robot.wait(20.0, until=turned)
+        process.stdin.close()
+        assert process.wait(10) == 0
+
+
+def test_walls_without_room_for_the_robot_are_refused(tmp_path):
+    command = [sys.executable, "-m", "sim_motor", "--port", "0", "--walls", "0.1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert "give a number from 0.4 to 100 m" in done.stderr
