@@ -81,6 +81,11 @@ class Follower:
         """The parameters in force, by name."""
         return self._snapshot.params
 
+    def snapshot(self, tick: int) -> Event:
+        """What is in force from a tick on, as an event."""
+        event: Event = self._snapshot.as_event(tick)
+        return event
+
     def derive(self, record: Record) -> tuple[float, ...] | None:
         """The derived channels of the next record.
 

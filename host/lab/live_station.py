@@ -25,7 +25,8 @@ from host.util.own_name import own_name
 # the robot stops by its own dead-man: so it does if this program hangs.
 ATTENDED_S = 0.5
 STATUS_S = 1.0
-AGAIN_S = 0.5
+# How soon a robot is looked for again, and how often one that has said no is asked again (s).
+AGAIN_S, REFUSED_S = 0.5, 10.0
 # A command that the robot has not answered by then is not repeated: a stop may have come since.
 ANSWER_S = 3.0
 # Commands that a stop leaves alone.
@@ -102,6 +103,7 @@ class LiveStation(Station):
 
     def _watch(self) -> None:
         while not self._closed.is_set():
+            pause_s = AGAIN_S
             try:
                 with self._connect(observe=not self._is_line) as robot:
                     robot.on_trouble = self._note_trouble
@@ -111,12 +113,13 @@ class LiveStation(Station):
                     robot.add_tap(self)
                     self._follow(robot)
             except KickctlError as error:
+                pause_s = AGAIN_S if isinstance(error, NoLink) else REFUSED_S
                 self.trouble = f"{error.message}. {error.hint}" if error.hint else error.message
             except Exception as error:  # whatever it is, the robot must be found again
                 logging.getLogger("kickctl").exception("the lab lost a robot")
                 self.trouble = f"the lab failed: {error!r}"
             self._wake()
-            self._closed.wait(AGAIN_S)
+            self._closed.wait(pause_s)
 
     def _follow(self, robot: Robot) -> None:
         if self.recording is not None:
@@ -199,14 +202,20 @@ class LiveStation(Station):
         if job.stops != self._stops:
             raise NotDone("the robot was stopped meanwhile", "try it again")
         if job.command == "release":
-            if self._driver is not None and self._driver.may_drive:
-                self._driver.release()
+            driver = self._driving
+            if driver is not None and driver.may_drive:
+                driver.release()
             return {}
         return self._carry_out(self._driver_now(), job.command, job.arguments)
 
+    @property
+    def _driving(self) -> Robot | None:
+        """The connection that drives, if there is one. A serial line has room for one only."""
+        return self._watcher if self._is_line else self._driver
+
     def _driver_now(self) -> Robot:
         """The connection that drives, a new one if the one before is gone."""
-        if self._is_line:  # it has room for one connection
+        if self._is_line:
             if self._watcher is None:
                 raise NoLink("the robot has not been found yet", self.trouble)
             self._watcher.attended = self._attended
@@ -269,7 +278,7 @@ class LiveStation(Station):
         Returns:
             What a person has to know, in words; may be empty.
         """
-        driver, words = self._driver, ""
+        driver, words = self._driving, ""
         if self.rule == STOP and driver is not None and driver.drives:
             try:
                 words = self.stop_now().sentence()
@@ -281,6 +290,7 @@ class LiveStation(Station):
     def close(self) -> None:
         """Hang up. The robot is given back as it is."""
         self._closed.set()
+        self._stops += 1  # commands that still wait are not carried out
         self._stop_wanted.set()
         self._jobs.put(None)
         for thread in self._threads:

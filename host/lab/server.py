@@ -146,7 +146,6 @@ class Lab:
                 await asyncio.wait_for(self._end.wait(), TICK_S)
             except TimeoutError:
                 continue
-        self.session.close()
 
 
 def _written(host: str) -> str:

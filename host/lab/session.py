@@ -18,10 +18,14 @@ from host.lab.page_end import Departed, Page
 from host.lab.presets import PRESETS, PRIMITIVES, describe_presets, describe_primitives
 from host.lab.station import STOP, Station
 
-MAX_PAGES = 64
+# How many pages there may be; some of the places are kept for those that may drive.
+MAX_PAGES, KEPT_FOR_DRIVERS = 64, 4
+MAX_STRANGERS = 64
 # How long a connection may take to join (s), and how often states are sent at least.
 JOIN_S = 5.0
 STATE_S = 1.0
+# A hand that says nothing for so long lets go (s).
+HAND_S = 0.5
 
 Message = dict[str, Any]
 
@@ -48,6 +52,7 @@ class Session:
         self._states: dict[str, Message] = {}
         self._states_due = 0.0
         self._counted = (0, 0)
+        self._pulls: dict[tuple[str, str], float] = {}
 
     # Connections.
 
@@ -59,15 +64,12 @@ class Session:
             local: Whether it comes from this computer.
 
         Returns:
-            The page at its other end; it is refused already if there is no place for it.
+            The page at its other end.
         """
         page = Page(now, local)
-        if len(self.pages) + len(self._strangers) >= MAX_PAGES:
-            page.refuse(
-                f"all {MAX_PAGES} places for pages are taken", "close a page that nobody needs"
-            )
-        else:
-            self._strangers.append(page)
+        self._strangers.append(page)
+        if len(self._strangers) > MAX_STRANGERS:
+            self._strangers.pop(0).refuse("too many pages come at once", "try again in a moment")
         return page
 
     def leave(self, page: Page, now: float) -> None:
@@ -108,6 +110,9 @@ class Session:
             self._strangers.remove(page)
         if self.baton.expire(now):
             self._abandon(self.baton.why)
+        for (name, wheel), until in list(self._pulls.items()):
+            if now > until:
+                self._let_go(name, wheel)
         if self.baton.driver is not None:
             for station in self.stations.values():
                 station.attend()
@@ -130,11 +135,6 @@ class Session:
         """Send a message to all pages."""
         for page in self.pages.values():
             page.send(message)
-
-    def close(self) -> None:
-        """The server ends: nobody drives any more."""
-        if self.baton.driver is not None:
-            self._abandon("the lab ends")
 
     # Messages.
 
@@ -173,6 +173,11 @@ class Session:
             page.refuse(
                 "the drive key works only on the computer on which the lab runs",
                 "use the address for watching",
+            )
+        elif len(self.pages) >= MAX_PAGES - (0 if role == DRIVE else KEPT_FOR_DRIVERS):
+            page.refuse(
+                f"all places for pages are taken: {len(self.pages)} pages are open",
+                "close one that nobody needs",
             )
         else:
             self._strangers.remove(page)
@@ -268,7 +273,15 @@ class Session:
         if not station.hand_possible:
             raise NotDone(f"nobody can pull the wheels of {station.name} from here", "")
         self.baton.beat(page.number, now)
-        station.hand(wheel, angle_rad)
+        if angle_rad is None:
+            self._let_go(station.name, wheel)
+        else:
+            self._pulls[station.name, wheel] = now + HAND_S
+            station.hand(wheel, angle_rad)
+
+    def _let_go(self, name: str, wheel: str) -> None:
+        if self._pulls.pop((name, wheel), None) is not None:
+            self.stations[name].hand(wheel, None)
 
     def logs(self) -> list[Message]:
         """The logs that this lab has recorded, as pages get them."""
@@ -299,6 +312,8 @@ class Session:
     # What all have to know.
 
     def _abandon(self, why: str) -> None:
+        for name, wheel in list(self._pulls):
+            self._let_go(name, wheel)
         for station in self.stations.values():
             station.abandon(why)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 import uuid
+from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -28,6 +29,7 @@ STOP, CONTINUE = "stop", "continue"
 LOST_S = 1.0
 # How many records a page gets of what was before it came.
 HISTORY = 600
+EVENTS_KEPT = 100
 # A tick that begins later than this counts as late for people (s).
 LATE_S = 0.005
 _STATE_OF = {
@@ -102,6 +104,7 @@ class Station:
         self._began_at = self.clock()
         self.trouble = ""
         self._tick = 0
+        self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
 
     # What pages are told.
 
@@ -124,7 +127,7 @@ class Station:
             "wheel_radius_m": place.wheel_radius_m,
             "walls": self._walls_m,
             "hand": self.hand_possible,
-            "events": {"event": "snapshot", "tick": self._tick, "params": values, "kick": None},
+            "events": [*self._events, self._follower.snapshot(self._tick)],
             "history": self.ring.end - self.ring.latest(HISTORY),
         }
 
@@ -178,6 +181,9 @@ class Station:
     def take_event(self, event: Event) -> None:
         """Follow what changes the robot's course, and tell the pages."""
         self._follower.take_event(event)
+        if event["event"] == "restart":
+            self._events.clear()
+        self._events.append(event)
         if event["event"] in _STATE_OF and self._status:
             self._status["state"] = _STATE_OF[event["event"]]
             self._status["reason"] = event.get("reason", "")
