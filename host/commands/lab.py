@@ -112,6 +112,7 @@ def _station(robot: Chosen, options: argparse.Namespace, stack: ExitStack) -> Li
             "simulated",
             walls_m=None if walls is None else float(walls),
             token=desk.token,
+            pull=desk.pull,
         )
         desk.on_end = station.say_end
     stack.callback(_end, station)

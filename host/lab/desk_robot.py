@@ -9,9 +9,10 @@ import tempfile
 import threading
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Self
+from typing import Self
 
 from host.errors import NotDone, WrongUse, printable
 from host.link.addresses import make_link, sim_options
@@ -20,15 +21,6 @@ from robot.params import TABLE
 READY = "READY "
 _ENDING_S = 5.0
 _LINES_KEPT = 20
-# The system kills the child when the thread that has started it ends, however that happens. If the
-# parent is gone already, the child has another one.
-_CHILD = """
-import ctypes, os, runpy, signal, sys
-ctypes.CDLL(None).prctl(1, signal.SIGKILL)
-if os.getppid() != int(sys.argv.pop(1)):
-    sys.exit(1)
-runpy.run_module("sim_motor", run_name="__main__", alter_sys=True)
-"""
 _ROOM = str(Path(__file__).resolve().parents[2])
 
 
@@ -82,7 +74,11 @@ class DeskRobot:
         self._ends = False
         self._lines: deque[str] = deque(maxlen=_LINES_KEPT)
         self._process = self._begin(options)
-        self._input_lock = threading.Lock()
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._input, self._output = self._process.stdin, self._process.stdout
+        # A robot that hangs must not make the lab wait.
+        os.set_blocking(self._input.fileno(), False)
         self._reader = threading.Thread(target=self._read, name="lab desk robot", daemon=True)
         try:
             self._await_ready()
@@ -93,21 +89,17 @@ class DeskRobot:
     def _begin(self, options: list[str]) -> subprocess.Popen[str]:
         paths = [_ROOM, *filter(None, [os.environ.get("PYTHONPATH")])]
         return subprocess.Popen(
-            [sys.executable, "-c", _CHILD, str(os.getpid())]
+            # Nothing of the present folder, and --hand: the robot ends when this end of the pipe
+            # is closed, which the system does however this process ends.
+            [sys.executable, "-P", "-m", "sim_motor", "--hand"]
             + ["--port", "0", "--token", self.token, *options],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            bufsize=1,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
             start_new_session=True,  # ^C in the terminal is for the lab, which stops the robot
         )
-
-    @property
-    def _output(self) -> IO[str]:
-        assert self._process.stdout is not None
-        return self._process.stdout
 
     def _await_ready(self) -> None:
         for line in self._output:
@@ -132,13 +124,8 @@ class DeskRobot:
     def pull(self, wheel: str, angle_rad: float | None) -> None:
         """Pull a wheel to an angle (rad); None lets go. A robot that is gone feels nothing."""
         word = "-" if angle_rad is None else f"{angle_rad:.6g}"
-        with self._input_lock:
-            try:
-                assert self._process.stdin is not None
-                self._process.stdin.write(f"{wheel} {word}\n")
-                self._process.stdin.flush()
-            except (OSError, ValueError):
-                return
+        with suppress(OSError, ValueError):
+            os.write(self._input.fileno(), f"{wheel} {word}\n".encode())
 
     def close(self) -> None:
         """End the process, and forget its token."""
@@ -151,9 +138,8 @@ class DeskRobot:
             self._process.wait()
         if self._reader.is_alive():
             self._reader.join()
-        for end in (self._process.stdin, self._process.stdout):
-            if end is not None:
-                end.close()
+        self._input.close()
+        self._output.close()
         self._folder.cleanup()
 
     def __enter__(self) -> Self:

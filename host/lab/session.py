@@ -24,9 +24,6 @@ MAX_STRANGERS = 64
 # How long a connection may take to join (s), and how often states are sent at least.
 JOIN_S = 5.0
 STATE_S = 1.0
-# A hand that says nothing for so long lets go (s).
-HAND_S = 0.5
-
 Message = dict[str, Any]
 
 
@@ -52,7 +49,6 @@ class Session:
         self._states: dict[str, Message] = {}
         self._states_due = 0.0
         self._counted = (0, 0)
-        self._pulls: dict[tuple[str, str], float] = {}
 
     # Connections.
 
@@ -110,9 +106,6 @@ class Session:
             self._strangers.remove(page)
         if self.baton.expire(now):
             self._abandon(self.baton.why)
-        for (name, wheel), until in list(self._pulls.items()):
-            if now > until:
-                self._let_go(name, wheel)
         if self.baton.driver is not None:
             for station in self.stations.values():
                 station.attend()
@@ -273,15 +266,7 @@ class Session:
         if not station.hand_possible:
             raise NotDone(f"nobody can pull the wheels of {station.name} from here", "")
         self.baton.beat(page.number, now)
-        if angle_rad is None:
-            self._let_go(station.name, wheel)
-        else:
-            self._pulls[station.name, wheel] = now + HAND_S
-            station.hand(wheel, angle_rad)
-
-    def _let_go(self, name: str, wheel: str) -> None:
-        if self._pulls.pop((name, wheel), None) is not None:
-            self.stations[name].hand(wheel, None)
+        station.hand(wheel, angle_rad)
 
     def logs(self) -> list[Message]:
         """The logs that this lab has recorded, as pages get them."""
@@ -312,8 +297,6 @@ class Session:
     # What all have to know.
 
     def _abandon(self, why: str) -> None:
-        for name, wheel in list(self._pulls):
-            self._let_go(name, wheel)
         for station in self.stations.values():
             station.abandon(why)
 

@@ -264,17 +264,20 @@ def test_a_robot_that_may_go_on_may_also_be_told_to(lab):
     assert lab.bert.take() == [("set", change)]
 
 
-def test_a_hand_lets_go_when_it_falls_silent(lab):
-    visit = lab.driver()
+def test_only_the_driver_pulls_a_wheel(lab):
+    visit, other = lab.driver(), lab.driver()
     visit.send("ask", request=1)
-    visit.send("hand", robot="anna", wheel="left", angle_rad=1.5)
-    lab.wait(0.4, visit)
-    assert lab.anna.take() == [("hand", "left", 1.5)]
-    lab.wait(0.3, visit)
-    assert lab.anna.take() == [("hand", "left", None)]
     visit.send("hand", robot="anna", wheel="left", angle_rad=1.5)
     visit.send("hand", robot="anna", wheel="left", angle_rad=None)
     assert lab.anna.take() == [("hand", "left", 1.5), ("hand", "left", None)]
+    for fields in (
+        {"wheel": "up"},
+        {"wheel": "left", "angle_rad": "x"},
+        {"wheel": "left", "robot": 1},
+    ):
+        visit.send("hand", **{"robot": "anna", "angle_rad": 0.0, **fields})
+    other.send("hand", robot="anna", wheel="left", angle_rad=1.5)
+    assert lab.anna.take() == []
 
 
 def test_pages_hear_how_many_they_are(lab):

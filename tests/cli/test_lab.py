@@ -1,0 +1,147 @@
+"""`kickctl lab` as a person starts and ends it."""
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from contextlib import contextmanager
+
+import pytest
+
+from host.client.robot import connect
+from host.lab.desk_robot import DeskRobot, child_options
+from tests.lab.browser import browse
+from tests.live import wait_until
+from tests.sysfs.mount import ROOT
+
+
+@pytest.fixture(scope="module")
+def desk():
+    with DeskRobot(child_options("sim://?seed=1&idle=1")) as desk:
+        yield desk
+
+
+@pytest.fixture
+def observer(desk):
+    with connect(desk.uri, observe=True) as robot:
+        robot.stop()
+        yield robot
+
+
+@contextmanager
+def lab(*arguments):
+    """The process of the verb, and what it says of itself."""
+    with tempfile.TemporaryFile("w+") as errors:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "host", "lab", "--no-open", "--port", "0", "--json", *arguments],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            text=True,
+        )
+        try:
+            line = process.stdout.readline()
+            if not line:
+                errors.seek(0)
+                pytest.fail(f"the lab did not start: {errors.read()}")
+            process.said = lambda: (errors.seek(0), errors.read())[1]
+            yield process, json.loads(line)
+        finally:
+            process.kill()
+            process.wait()
+            process.stdout.close()
+
+
+def started(info):
+    """Start the first robot from a page; the page is closed, but nobody has noticed yet."""
+
+    async def scenario(browser):
+        tab = await browser.open(info["drive"])
+        name = info["robots"][0]["name"]
+        reply = await tab.ask("do", robot=name, command="start", arguments={})
+        assert "result" in reply, reply
+
+    browse(scenario)
+
+
+def test_a_lab_that_is_killed_lets_no_robot_drive_on(desk, observer):
+    with lab("--brick", desk.uri, "--token", desk.token) as (process, info):
+        assert info["robots"] == [{"name": desk.uri, "uri": desk.uri, "unattended": "stop"}]
+        with observer.recording() as log:
+            started(info)
+            process.kill()
+            observer.wait(20.0, until=lambda: observer.status()["state"] == "stopped")
+            observer.wait(0.1)
+    assert "link_loss" in [event["event"] for event in log.events]
+
+
+def test_an_interrupt_stops_what_it_drives_and_is_no_error(desk, observer):
+    with lab("--brick", desk.uri, "--token", desk.token) as (process, info):
+        started(info)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20.0) == 0
+        assert "Traceback" not in process.said()
+        assert observer.status()["state"] == "stopped"
+        assert process.stdout.read() == ""
+
+
+def test_an_interrupt_lets_a_robot_go_on_that_may(desk, observer):
+    arguments = ("--brick", desk.uri, "--token", desk.token, "--unattended", "continue")
+    with lab(*arguments) as (process, info):
+        started(info)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(20.0) == 0
+        status = observer.status()
+        assert (status["state"], status["controller"]) == ("running", None)
+
+
+def test_without_a_robot_it_simulates_one_between_walls_with_a_hand():
+    with lab("--seed", "3", "--set", "k=2.5", "--walls", "1.5") as (process, info):
+
+        async def scenario(browser):
+            tab = await browser.open(info["drive"])
+            welcome = await tab.latest("welcome")
+            await tab.until(lambda tab: tab.records)
+            return welcome["robots"][0]
+
+        robot = browse(scenario)
+        assert (robot["name"], robot["label"]) == ("simulated", "simulated")
+        assert (robot["walls"], robot["hand"]) == (1.5, True)
+        assert robot["events"][-1]["params"]["k"] == 2.5
+        with connect(robot["uri"], observe=True) as observer:
+            assert observer.hello["seed"] == 3
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20.0) == 0
+
+
+def test_a_robot_that_is_away_is_said_and_the_page_is_there():
+    with lab("--brick", "tcp://127.0.0.1:1") as (process, info):
+        wait_until(lambda: "is not there yet" in process.said(), "it says that the robot is away")
+
+        async def scenario(browser):
+            tab = await browser.open(info["view"])
+            return await tab.latest("state")
+
+        assert browse(scenario)["link"] == "lost"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (("--port", "{taken}"), 1, "is taken"),
+        (("--brick", "tcp://127.0.0.1:1", "--walls", "2"), 2, "--walls is for the simulated"),
+        (("--brick", "tcp://127.0.0.1:1", "--seed", "2"), 2, "--seed fixes"),
+        (("--brick", "sim://?grip=1"), 2, "walls"),
+        (("--host", "192.0.2.1"), 2, "cannot listen at 192.0.2.1"),
+        (("--set", "k=-1"), 2, "k cannot be"),
+    ],
+)
+def test_what_cannot_be_is_said_in_words(kickctl, arguments, status, words):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        arguments = [word.replace("{taken}", port) for word in arguments]
+        done, out, err = kickctl("lab", "--no-open", "--json", *arguments)
+    assert done == json.loads(out)["error"]["status"] == status
+    assert words in err
