@@ -18,7 +18,7 @@ const LIGHT = {
     target: "#008060",
     actual: "#c85a00",
     memory: "#8e3fa8",
-    force: "#b0125b",
+    force: "#0059b3",
     kick: "#c3122f",
     left: "#1b1d20",
     right: "#787d84",
@@ -42,7 +42,7 @@ const DARK = {
     target: "#34c794",
     actual: "#ff9838",
     memory: "#d796ee",
-    force: "#ff7fb4",
+    force: "#6db1ff",
     kick: "#ff6f80",
     left: "#efede7",
     right: "#9298a0",
@@ -79,6 +79,7 @@ const PROJECTED = 1 / 40;
  * @property {number} line width of an ordinary line, CSS pixels
  * @property {function} start see `start`
  * @property {function} write see `write`
+ * @property {function} arrowHead see `arrowHead`
  * @property {function} ticks see `ticks`
  * @property {function} number see `number`
  */
@@ -112,7 +113,7 @@ export function theme({ dark, scale, height }, projector = false) {
         grey[name] = DECORATION.includes(name) ? colour : colours.faint;
     }
     const text = projector ? Math.max(TEXT, height * PROJECTED) : TEXT;
-    return { colours, grey, scale, text, line: text / 8, start, write, ticks, number };
+    return { colours, grey, scale, text, line: text / 8, start, write, arrowHead, ticks, number };
 }
 
 /**
@@ -164,6 +165,27 @@ function write(ctx, text, x, y, how) {
     ctx.fillStyle = colour;
     ctx.fillText(text, x, y);
     return ctx.measureText(text).width;
+}
+
+/**
+ * Draw the head of an arrow.
+ *
+ * @param {CanvasRenderingContext2D} ctx where
+ * @param {number} x its tip, CSS pixels
+ * @param {number} y its tip, CSS pixels
+ * @param {number} right where it points: a unit vector on the screen
+ * @param {number} down where it points
+ * @param {number} long its length, CSS pixels
+ * @param {string} colour its colour
+ */
+function arrowHead(ctx, x, y, right, down, long, colour) {
+    const half = 0.45 * long;
+    ctx.beginPath();
+    ctx.moveTo(x, y);
+    ctx.lineTo(x - long * right + half * down, y - long * down - half * right);
+    ctx.lineTo(x - long * right - half * down, y - long * down + half * right);
+    ctx.fillStyle = colour;
+    ctx.fill();
 }
 
 /**

@@ -7,7 +7,7 @@
 // less than this part of it.
 const ROOM_M = 0.25;
 const NARROW = 0.4;
-const SPANS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+const SPANS_M = [1, 1.5, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 200, 500, 1000];
 // Outline of the robot, in tracks: ahead of and behind its axle.
 const AHEAD = 0.75;
 const BACK = 0.5;
@@ -37,8 +37,9 @@ const BACK = 0.5;
  */
 export function draw(canvas, state, theme) {
     const { ctx, width, height, colours } = theme.start(canvas, state.stale);
-    const view = look(state);
-    const unit = Math.min(width, height) / view.span;
+    const least = Math.min(width, height);
+    const view = look(state, width / least, height / least);
+    const unit = least / view.span;
     const x = (metres) => width / 2 + (metres - view.x) * unit;
     const y = (metres) => height / 2 - (metres - view.y) * unit;
     const sheet = { ctx, colours, theme, width, height, unit, x, y, view };
@@ -49,8 +50,11 @@ export function draw(canvas, state, theme) {
     bar(sheet);
 }
 
-/** What is in view: its middle and its least width, m. It changes seldom, and by steps. */
-function look(state) {
+/**
+ * What is in view: its middle and its shorter side, m; wide and high are the sides in shorter ones.
+ * It changes seldom, and by steps.
+ */
+function look(state, wide, high) {
     const { x_m: xs, y_m: ys, start = 0, count = 0, walls = null } = state;
     const half = walls > 0 ? walls / 2 : 0;
     let [west, east, south, north] = [-half, half, 0, 0];
@@ -61,15 +65,16 @@ function look(state) {
         if (ys[index] < south) south = ys[index];
         if (ys[index] > north) north = ys[index];
     }
-    const need = Math.max(east - west, north - south) + 2 * ROOM_M;
+    const need = Math.max((east - west) / wide, (north - south) / high) + 2 * ROOM_M;
     const view = state.view ?? {};
-    const edge = view.span / 2 - ROOM_M / 2;
+    const across = (view.span * wide - ROOM_M) / 2;
+    const along = (view.span * high - ROOM_M) / 2;
     const fits =
-        view.x - edge <= west && east <= view.x + edge &&
-        view.y - edge <= south && north <= view.y + edge;
+        view.x - across <= west && east <= view.x + across &&
+        view.y - along <= south && north <= view.y + along;
     if (fits && need >= NARROW * view.span) return view;
     view.span = SPANS_M.find((span) => span >= need) ?? need;
-    const step = view.span / 10;
+    const step = view.span / 20;
     view.x = Math.round((west + east) / 2 / step) * step;
     view.y = Math.round((south + north) / 2 / step) * step;
     return view;
@@ -127,7 +132,7 @@ function robot({ ctx, colours, theme, unit, x, y }, state) {
     const index = (start + count - 1) % xs.length;
     if (!Number.isFinite(xs[index] + ys[index] + headings[index])) return;
     // A robot that is too small to see is drawn larger.
-    const track = Math.max((state.track_m || 0.12) * unit, 1.4 * theme.text);
+    const track = Math.max((state.track_m || 0.12) * unit, 2 * theme.text);
     ctx.save();
     ctx.translate(x(xs[index]), y(ys[index]));
     ctx.rotate(-headings[index]);

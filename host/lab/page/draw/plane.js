@@ -27,6 +27,7 @@ const SHADES = 8;
  * @property {?Uint8Array} jumped ring; not 0 where a kick made the state jump in this record
  * @property {string} colour its name in the theme
  * @property {boolean} dashed whether its line is dashed
+ * @property {string} name the wheel's, for people, beside its present point
  * @property {?{x: number, y: number}} ghost where a quenched kick lets the state seem to be, in the
  *     axes' units; null without one
  */
@@ -74,7 +75,7 @@ function range(axis) {
 function layout(state, theme, width, height, x, y) {
     const text = theme.text;
     const left = 3.4 * text;
-    const top = state.title || state.note ? 1.9 * text : 0.8 * text;
+    const top = 2.2 * text;
     const box = { left, top, width: width - left - text, height: height - top - 2.9 * text };
     if (state.equal) {
         const unit = Math.min(box.width / x.long, box.height / y.long);
@@ -91,14 +92,14 @@ function axes({ ctx, colours, theme }, state, box, x, y) {
     const bottom = box.top + box.height;
     const right = box.left + box.width;
     const how = { colour: colours.faint, size: 0.85, align: "center" };
-    for (const value of theme.ticks(x.low, x.high, box.width / (3 * text), x.pi ? Math.PI : 1)) {
+    for (const value of theme.ticks(x.low, x.high, box.width / (4.5 * text), x.pi ? Math.PI : 1)) {
         const at = box.left + ((value - x.low) / x.long) * box.width;
         ctx.fillStyle = colours.grid;
         ctx.fillRect(at - 0.5, box.top, 1, box.height);
         theme.write(ctx, label(theme, value, x.pi), at, bottom + 0.8 * text, how);
     }
     how.align = "right";
-    for (const value of theme.ticks(y.low, y.high, box.height / (2 * text), y.pi ? Math.PI : 1)) {
+    for (const value of theme.ticks(y.low, y.high, box.height / (2.6 * text), y.pi ? Math.PI : 1)) {
         const at = bottom - ((value - y.low) / y.long) * box.height;
         ctx.fillStyle = colours.grid;
         ctx.fillRect(box.left, at - 0.5, box.width, 1);
@@ -108,18 +109,26 @@ function axes({ ctx, colours, theme }, state, box, x, y) {
     ctx.lineWidth = 0.6 * theme.line;
     ctx.strokeRect(box.left, box.top, box.width, box.height);
     quantity({ ctx, colours, theme }, state.x, right, bottom + 2 * text, "right");
-    quantity({ ctx, colours, theme }, state.y, 0.5 * text, box.top - 0.9 * text, "left");
+    quantity({ ctx, colours, theme }, state.y, 0.5 * text, box.top - 1.1 * text, "left");
     const note = { colour: colours.faint, size: 0.85, align: "right" };
-    theme.write(ctx, state.note ?? "", right, box.top - 0.9 * text, note);
+    theme.write(ctx, state.note ?? "", right, box.top - 1.1 * text, note);
     const title = { colour: colours.ink, bold: true };
     theme.write(ctx, state.title ?? "", box.left, bottom + 2 * text, title);
 }
 
+/** The name of a quantity and its unit, from x on or up to x. */
 function quantity({ ctx, colours, theme }, axis, x, y, align) {
-    if (!axis) return;
-    const unit = axis.unit ? " / " + axis.unit : "";
-    const how = { colour: colours.ink, align, symbol: true, bold: true };
-    theme.write(ctx, (axis.symbol ?? "") + unit, x, y, how);
+    const { symbol = "", unit = "" } = axis ?? {};
+    const name = { colour: colours.ink, align, symbol: true, bold: true };
+    const measure = { colour: colours.faint, align, size: 0.85 };
+    const gap = 0.4 * theme.text;
+    if (align === "left") {
+        x += theme.write(ctx, symbol, x, y, name) + gap;
+        theme.write(ctx, unit, x, y, measure);
+    } else {
+        if (unit) x -= theme.write(ctx, unit, x, y, measure) + gap;
+        theme.write(ctx, symbol, x, y, name);
+    }
 }
 
 function label(theme, value, pi) {
@@ -204,6 +213,7 @@ function line(ctx, colour, theme, dashed) {
 function present({ ctx, colours, theme }, state, trace, box, x, y) {
     const { start = 0, count = 0 } = state;
     if (!trace.x || !trace.y || !(count > 0)) return;
+    const text = theme.text;
     const index = (start + count - 1) % trace.x.length;
     const vx = within(trace.x[index] * (trace.scale_x ?? 1), x);
     const vy = within(trace.y[index] * (trace.scale_y ?? 1), y);
@@ -213,21 +223,25 @@ function present({ ctx, colours, theme }, state, trace, box, x, y) {
     ];
     if (!Number.isFinite(vx + vy)) return;
     ctx.beginPath();
-    ctx.arc(...at(vx, vy), 0.42 * theme.text, 0, 2 * Math.PI);
+    ctx.arc(...at(vx, vy), 0.42 * text, 0, 2 * Math.PI);
     ctx.fillStyle = colours.actual;
     ctx.fill();
-    ctx.strokeStyle = colours.paper;
+    ctx.strokeStyle = colours[trace.colour] ?? colours.ink;
     ctx.lineWidth = theme.line;
     ctx.stroke();
+    const [px, py] = at(vx, vy);
+    const far = px > box.left + box.width - 4 * text;
+    const how = { colour: ctx.strokeStyle, align: far ? "right" : "left", halo: colours.paper };
+    theme.write(ctx, trace.name ?? "", px + (far ? -0.7 : 0.7) * text, py, { ...how, size: 0.9 });
     if (!trace.ghost) return;
     const [gx, gy] = [within(trace.ghost.x, x), within(trace.ghost.y, y)];
     if (!Number.isFinite(gx + gy)) return;
     ctx.beginPath();
-    ctx.arc(...at(gx, gy), 0.5 * theme.text, 0, 2 * Math.PI);
-    ctx.setLineDash([0.25 * theme.text, 0.2 * theme.text]);
+    ctx.arc(...at(gx, gy), 0.5 * text, 0, 2 * Math.PI);
+    ctx.setLineDash([0.3 * text, 0.22 * text]);
     ctx.lineCap = "butt";
     ctx.strokeStyle = colours.actual;
-    ctx.lineWidth = 1.2 * theme.line;
+    ctx.lineWidth = 1.3 * theme.line;
     ctx.stroke();
     ctx.setLineDash([]);
     ctx.lineCap = "round";

@@ -42,7 +42,7 @@ export function draw(canvas, state, theme) {
     wheels.forEach((wheel, n) => {
         const y = top + (n + 0.5) * step;
         theme.write(ctx, wheel.name ?? "", 0.5 * text, y, { colour: colours.ink, bold: true });
-        bar(pen, state, wheel, y, Math.min(1.8 * text, 0.4 * step));
+        bar(pen, state, wheel, y, Math.min(1.8 * text, 0.35 * step));
     });
 }
 
@@ -52,8 +52,7 @@ function legend({ ctx, colours, theme }, state, y) {
     for (const kind of KINDS) {
         fill(ctx, colours, kind, x, y - 0.4 * text, 0.8 * text, 0.8 * text, theme.line);
         x += 1.1 * text;
-        const how = { colour: colours.ink, bold: state.guess === kind };
-        x += theme.write(ctx, state.labels?.[kind] ?? "", x, y, how) + text;
+        x += theme.write(ctx, state.labels?.[kind] ?? "", x, y, { colour: colours.ink }) + text;
     }
 }
 
@@ -79,7 +78,8 @@ function fill(ctx, colours, kind, x, y, wide, high, line) {
     ctx.strokeRect(x, y, wide, high);
 }
 
-function bar({ ctx, colours, theme, left, wide }, state, wheel, y, high) {
+function bar(pen, state, wheel, y, high) {
+    const { ctx, colours, theme, left, wide } = pen;
     const text = theme.text;
     const half = high / 2;
     ctx.strokeStyle = colours.axis;
@@ -95,18 +95,19 @@ function bar({ ctx, colours, theme, left, wide }, state, wheel, y, high) {
             const how = { colour: colours.ink, align: "center", bold: true, halo: colours.paper };
             if (share > 1.2 * text) theme.write(ctx, words, x + share / 2, y, how);
         }
-        if (wheel.outcome === kind) {
-            const at = x + share / 2;
-            ctx.fillStyle = colours.ink;
-            ctx.beginPath();
-            ctx.moveTo(at, y + half + 0.15 * text);
-            ctx.lineTo(at - 0.4 * text, y + half + 0.8 * text);
-            ctx.lineTo(at + 0.4 * text, y + half + 0.8 * text);
-            ctx.fill();
-            const middle = Math.max(left + 3 * text, Math.min(left + wide - 3 * text, at));
-            const how = { colour: colours.ink, align: "center", size: 0.9 };
-            theme.write(ctx, state.labels?.outcome ?? "", middle, y + half + 1.4 * text, how);
-        }
+        const middle = x + share / 2;
+        const { guess, outcome } = state.labels ?? {};
+        if (state.guess === kind) mark(pen, middle, y - half, -1, guess);
+        if (wheel.outcome === kind) mark(pen, middle, y + half, 1, outcome);
         x += share;
     }
+}
+
+/** A triangle that points at a bar's edge from outside, above (-1) or below (1), and what it says. */
+function mark({ ctx, colours, theme, left, wide }, x, edge, way, words = "") {
+    const text = theme.text;
+    theme.arrowHead(ctx, x, edge + 0.15 * way * text, 0, -way, 0.65 * text, colours.ink);
+    const middle = Math.max(left + 2.5 * text, Math.min(left + wide - 2.5 * text, x));
+    const how = { colour: colours.ink, align: "center", size: 0.9 };
+    theme.write(ctx, words, middle, edge + 1.4 * way * text, how);
 }

@@ -12,11 +12,8 @@ const GAP_S = 0.25;
 const ROWS = [
     {
         symbol: "x",
-        unit: "",
         weight: 1.5,
-        factor: 1,
         limits: [1, 2, 5, 10, 20],
-        signed: true,
         lines: [
             { column: "left_x1", colour: "left1", name: "x₁" },
             { column: "left_x2", colour: "left2", name: "x₂" },
@@ -24,29 +21,13 @@ const ROWS = [
             { column: "right_x2", colour: "right2", name: "x₂", right: true },
         ],
     },
-    {
-        symbol: "M",
-        unit: "",
-        weight: 1,
-        factor: 1,
-        limits: [1],
-        signed: true,
-        lines: [
-            { column: "left_torque", colour: "left", name: "" },
-            { column: "right_torque", colour: "right", name: "", right: true },
-        ],
-    },
+    { symbol: "M", weight: 1, limits: [1], lines: wheels("torque") },
     {
         symbol: "ω",
         unit: "rad/s",
         weight: 1,
-        factor: 1,
         limits: [5, 10, 20, 50, 100],
-        signed: true,
-        lines: [
-            { column: "left_omega_rad_s", colour: "left", name: "" },
-            { column: "right_omega_rad_s", colour: "right", name: "", right: true },
-        ],
+        lines: wheels("omega_rad_s"),
     },
     {
         symbol: "Δt",
@@ -54,10 +35,18 @@ const ROWS = [
         weight: 0.7,
         factor: 1000,
         limits: [20, 50, 100, 200, 500, 1000],
-        signed: false,
-        lines: [{ column: "dt_s", colour: "left", name: "" }],
+        positive: true,
+        lines: [{ column: "dt_s", colour: "left" }],
     },
 ];
+
+/** The lines of a channel of both wheels. */
+function wheels(name) {
+    return [
+        { column: "left_" + name, colour: "left" },
+        { column: "right_" + name, colour: "right", right: true },
+    ];
+}
 
 /**
  * @typedef {Object} Kick
@@ -108,7 +97,7 @@ export function draw(canvas, state, theme) {
     times(view, state, seconds, top, bottom);
     for (const row of ROWS) {
         const box = { top: y + header, bottom: y + header + share * row.weight };
-        legend(view, row, state, y + header / 2);
+        legend(view, row, state, y + 0.42 * header);
         strip(view, row, state, window, box);
         y = box.bottom;
     }
@@ -165,7 +154,7 @@ function legend({ ctx, colours, theme, left, right }, row, state, y) {
     const words = state.labels ?? {};
     const text = theme.text;
     theme.write(ctx, row.symbol, 0.4 * text, y, { colour: colours.ink, symbol: true, bold: true });
-    theme.write(ctx, row.unit, 1.9 * text, y, { colour: colours.faint, size: 0.9 });
+    theme.write(ctx, row.unit ?? "", left, y, { colour: colours.faint, size: 0.9 });
     let x = right;
     for (let n = row.lines.length - 1; n >= 0 && row.lines.length > 1; n--) {
         const line = row.lines[n];
@@ -173,7 +162,7 @@ function legend({ ctx, colours, theme, left, right }, row, state, y) {
         const side = line.right ? words.right : words.left;
         const how = { colour: colours.faint, size: 0.9, align: "right" };
         if (last && side) x -= theme.write(ctx, side, x, y, how) + 0.4 * text;
-        x -= theme.write(ctx, line.name, x, y, how) + (line.name ? 0.3 * text : 0);
+        if (line.name) x -= theme.write(ctx, line.name, x, y, how) + 0.3 * text;
         ctx.beginPath();
         ctx.moveTo(x - 1.6 * text, y);
         ctx.lineTo(x, y);
@@ -193,32 +182,38 @@ function ink(ctx, colour, theme, dashed) {
 function strip(view, row, state, window, box) {
     const { ctx, colours, theme, left, right } = view;
     const high = limit(row, state, window);
-    const low = row.signed ? -high : 0;
+    const low = row.positive ? 0 : -high;
     const margin = 0.06 * (high - low);
     const unit = (box.bottom - box.top) / (high - low + 2 * margin);
     const zero = box.bottom - (margin - low) * unit;
+    const roomy = box.bottom - box.top > 3 * theme.text;
+    const note = (words, y, colour) => {
+        const how = { colour, size: 0.85, align: "right", halo: colours.paper };
+        if (roomy && words) theme.write(ctx, words, right - 3, y - 0.65 * theme.text, how);
+    };
     if (row.symbol === "M" && state.stall > 0) {
         ctx.fillStyle = colours.band;
         ctx.fillRect(left, zero - state.stall * unit, right - left, 2 * state.stall * unit);
-        const how = { colour: colours.faint, size: 0.8 };
-        theme.write(ctx, state.labels?.stall ?? "", left + 0.3 * theme.text, zero, how);
+        note(state.labels?.stall, zero - state.stall * unit, colours.faint);
     }
     const most = Math.max(2, Math.floor((box.bottom - box.top) / (1.8 * theme.text)));
+    let free = Infinity;
     for (const value of theme.ticks(low, high, most)) {
         const y = zero - value * unit;
         ctx.fillStyle = value ? colours.grid : colours.axis;
         ctx.fillRect(left, y - 0.5, right - left, 1);
         const how = { colour: colours.faint, size: 0.85, align: "right" };
+        if (y > free) continue;
         theme.write(ctx, theme.number(value, value % 1 ? 1 : 0), left - 0.4 * theme.text, y, how);
+        free = y - theme.text;
     }
-    if (!row.signed && state.tick_s > 0) {
-        const y = zero - state.tick_s * row.factor * unit;
+    if (row.positive && state.tick_s > 0) {
+        const y = zero - state.tick_s * (row.factor ?? 1) * unit;
         ctx.beginPath();
         ctx.moveTo(left, y);
         ctx.lineTo(right, y);
         ink(ctx, colours.target, theme, true);
-        const how = { colour: colours.target, size: 0.85, align: "right", halo: colours.paper };
-        theme.write(ctx, state.labels?.period ?? "", right, y - 0.7 * theme.text, how);
+        note(state.labels?.period, y, colours.target);
     }
     ctx.save();
     ctx.beginPath();
@@ -227,7 +222,7 @@ function strip(view, row, state, window, box) {
     for (const line of row.lines) {
         const data = state.columns?.[line.column];
         if (!data) continue;
-        trace(view, state, window, data, zero, unit * row.factor);
+        trace(view, state, window, data, zero, unit * (row.factor ?? 1));
         ink(ctx, colours[line.colour], theme, line.right);
     }
     ctx.restore();
@@ -246,7 +241,7 @@ function limit(row, state, { first, last }) {
             if (++index === data.length) index = 0;
         }
     }
-    const fits = row.limits.find((value) => most * row.factor <= 1.05 * value);
+    const fits = row.limits.find((value) => most * (row.factor ?? 1) <= 1.05 * value);
     return fits ?? row.limits[row.limits.length - 1];
 }
 

@@ -8,17 +8,19 @@
  * quenched kick shows to the neurons.
  */
 
-// In radii of the wheel: from the axle to the middle of a rail, from a rail to its spring and to
-// its scale, and what is drawn left of and right of the axle.
-const RAIL = 2.55;
-const SPRING = 0.36;
+// In radii of the wheel: from the axle to the middle of a rail, from a rail aside to its spring and
+// to its scale, and what is drawn before and behind the axle.
+export const RAIL = 2.55;
+export const SPRING = 0.36;
 const SCALE = 0.68;
 const BEFORE = 1.45;
 const BEHIND = 3.9;
 const COILS = 6;
-// How long the arc is that shows the speed, rad for each rad/s.
+// The arc that shows the speed: its length in rad for each rad/s, and at most, rad.
 const ARC_S = 0.09;
 const LONGEST_ARC = 1.9;
+// The seen positions differ from the actual ones if they are farther away than rounding takes them.
+const ROUNDING = 1e-3;
 
 /**
  * @typedef {Object} WheelState
@@ -37,8 +39,8 @@ const LONGEST_ARC = 1.9;
  * @property {string} kick the name of the kick that acts now, for people; empty if none does
  * @property {string} title the wheel's name, for people
  * @property {boolean} stale whether this is no longer up to date
- * @property {{forward: string, backward: string, rest: string, duty: string, turns: string,
- *     stall: string}} labels words: 'forward', 'backward', 'at rest', 'duty', 'turns/s', 'stalls'
+ * @property {{forward: string, duty: string, turns: string}} labels words: 'forward', 'duty',
+ *     'turns/s'
  */
 
 /**
@@ -46,22 +48,14 @@ const LONGEST_ARC = 1.9;
  *
  * @param {HTMLCanvasElement} canvas the drawing's
  * @param {Object} theme see theme.js
- * @returns {{x: number, y: number, radius: number, rail: number, spring: number}} the axle and the
- *     wheel's radius, CSS pixels; then in radii, from the axle to the middle of a rail, and from a
- *     rail aside to the line of its spring and target
+ * @returns {{x: number, y: number, radius: number}} the axle and the wheel's radius, CSS pixels
  */
 export function layout(canvas, theme) {
     const width = canvas.width / theme.scale;
     const height = canvas.height / theme.scale;
-    const extent = BEFORE + BEHIND;
-    const radius = Math.min(width, height) / extent;
-    return {
-        x: (width - extent * radius) / 2 + BEFORE * radius,
-        y: (height - extent * radius) / 2 + BEFORE * radius,
-        radius,
-        rail: RAIL,
-        spring: SPRING,
-    };
+    const radius = Math.min(width, height) / (BEFORE + BEHIND);
+    const aside = ((BEFORE - BEHIND) * radius) / 2;
+    return { x: width / 2 + aside, y: height / 2 + aside, radius };
 }
 
 /**
@@ -89,25 +83,23 @@ export function angleAt(canvas, theme, x, y) {
  */
 export function draw(canvas, state, theme) {
     const { ctx, width, height, colours } = theme.start(canvas, state.stale);
-    const at = layout(canvas, theme);
-    const pen = { ctx, colours, theme, radius: at.radius, line: theme.line };
-    const known = Number.isFinite(state.phi_rad);
-    const pin = known ? [Math.cos(state.phi_rad), Math.sin(state.phi_rad)] : [NaN, NaN];
-    const seen = ghost(state, pin);
-    ctx.save();
-    ctx.translate(at.x, at.y);
-    ctx.scale(at.radius, -at.radius);
-    disc(pen);
-    scales(pen);
-    if (known) {
-        spokes(pen, state, pin);
-        rods(pen, state, pin);
-        if (seen) ghosts(pen, seen);
-        force(pen, state, pin);
+    const { x, y, radius } = layout(canvas, theme);
+    // Half the size of a mark, in radii.
+    const mark = Math.max(0.12, (0.36 * theme.text) / radius);
+    const sheet = { ctx, colours, theme, x, y, radius, mark, line: theme.line };
+    const pin = [Math.cos(state.phi_rad), Math.sin(state.phi_rad)];
+    dot(sheet, [0, 0], 1.1, colours.ink, colours.ink);
+    dot(sheet, [0, 0], 1.04, colours.rim, colours.ink);
+    for (const rod of [0, 1]) scale(sheet, rod);
+    directions(sheet, state);
+    if (Number.isFinite(state.phi_rad)) {
+        spokes(sheet, state, pin);
+        for (const rod of [0, 1]) rodAndSpring(sheet, state, rod, pin);
+        dot(sheet, pin, sheet.mark, colours.actual, colours.ink);
+        if (state.kick) ghosts(sheet, [state.seen1, state.seen2], pin);
+        force(sheet, state.torque, pin);
     }
-    ctx.restore();
-    directions(pen, at, state);
-    readout(pen, at, state, width, height);
+    readout(sheet, state, width);
     if (state.kick) {
         ctx.strokeStyle = colours.kick;
         ctx.lineWidth = 2 * theme.line;
@@ -115,245 +107,195 @@ export function draw(canvas, state, theme) {
     }
 }
 
-/** The seen positions if they are other than the actual ones, else null. */
-function ghost(state, pin) {
-    if (!state.kick || !Number.isFinite(state.seen1 + state.seen2)) return null;
-    const away = Math.hypot(state.seen1 - pin[0], state.seen2 - pin[1]);
-    return away > 1e-3 ? [state.seen1, state.seen2] : null;
-}
-
-/** Set the pen for a line of a width in CSS pixels, while the unit is the wheel's radius. */
-function stroke({ ctx, radius }, colour, width) {
-    ctx.strokeStyle = colour;
-    ctx.lineWidth = width / radius;
-    ctx.stroke();
-}
-
-function circle(ctx, x, y, r) {
-    ctx.beginPath();
-    ctx.arc(x, y, r, 0, 2 * Math.PI);
-}
-
-function path(ctx, ...points) {
-    ctx.beginPath();
-    for (const [x, y] of points) ctx.lineTo(x, y);
-}
-
 /** A point on or beside a rail: the first one lies right of the wheel, the second one below it. */
 function place(rod, along, aside) {
     return rod === 0 ? [RAIL + along, -aside] : [aside, along - RAIL];
 }
 
-function disc(pen) {
-    const { ctx, colours, line } = pen;
-    circle(ctx, 0, 0, 1.1);
-    ctx.fillStyle = colours.rim;
-    ctx.fill();
-    stroke(pen, colours.ink, 1.6 * line);
-    circle(ctx, 0, 0, 1);
-    stroke(pen, colours.axis, 0.5 * line);
-}
-
-function scales(pen) {
-    const { ctx, colours, theme, radius, line } = pen;
-    for (const rod of [0, 1]) {
-        path(ctx, place(rod, -1, SCALE), place(rod, 1, SCALE));
-        for (const value of [-1, 0, 1]) {
-            ctx.moveTo(...place(rod, value, SCALE));
-            ctx.lineTo(...place(rod, value, SCALE + 0.08));
-        }
-        stroke(pen, colours.axis, 0.6 * line);
-        ctx.save();
-        ctx.scale(1 / radius, -1 / radius);
-        for (const value of [-1, 0, 1]) {
-            const [x, y] = place(rod, value, SCALE + 0.12);
-            const how = { colour: colours.faint, size: 0.85, align: rod ? "left" : "center" };
-            const below = rod ? 0 : 0.5 * theme.text;
-            theme.write(ctx, theme.number(value), x * radius, below - y * radius, how);
-        }
-        ctx.restore();
-    }
-}
-
-function spokes(pen, state, pin) {
-    const { ctx, colours, line } = pen;
-    for (const turn of [1, 2]) {
-        const angle = state.phi_rad + (turn * 2 * Math.PI) / 3;
-        path(ctx, [0, 0], [Math.cos(angle), Math.sin(angle)]);
-        stroke(pen, colours.axis, 0.6 * line);
-    }
-    path(ctx, [0, 0], pin);
-    stroke(pen, colours.ink, 1.2 * line);
-    circle(ctx, 0, 0, 0.12);
-    ctx.fillStyle = colours.ink;
-    ctx.fill();
-    const reach = Math.hypot(state.x1, state.x2);
-    if (!Number.isFinite(reach)) return;
-    const short = Math.min(1, 1.35 / reach);
-    const [x, y] = [state.x1 * short, state.x2 * short];
-    path(ctx, [0, 0], [x, y]);
-    stroke(pen, colours.memory, line);
-    path(ctx, [x - 0.09, y], [x, y - 0.09], [x + 0.09, y], [x, y + 0.09]);
-    ctx.closePath();
-    ctx.fillStyle = colours.memory;
-    ctx.fill();
-}
-
-function rods(pen, state, pin) {
-    const { ctx, colours, radius, line } = pen;
-    const dot = Math.max(0.12, 4.5 / radius);
-    for (const rod of [0, 1]) {
-        const actual = pin[rod];
-        const target = rod ? state.target2 : state.target1;
-        const head = place(rod, actual, 0);
-        path(ctx, pin, head);
-        stroke(pen, colours.rod, 3 * line);
-        path(ctx, head, place(rod, actual, SPRING));
-        stroke(pen, colours.actual, 1.6 * line);
-        if (Number.isFinite(target)) {
-            spring(ctx, rod, actual, target);
-            stroke(pen, colours.ink, 0.7 * line);
-            const [x, y] = place(rod, target, SPRING);
-            ctx.fillStyle = colours.target;
-            ctx.fillRect(x - dot, y - dot, 2 * dot, 2 * dot);
-        }
-        circle(ctx, ...head, dot);
-        ctx.fillStyle = colours.actual;
-        ctx.fill();
-        stroke(pen, colours.paper, 0.5 * line);
-    }
-    circle(ctx, ...pin, dot);
-    ctx.fillStyle = colours.actual;
-    ctx.fill();
-    stroke(pen, colours.ink, 0.7 * line);
-}
-
-function spring(ctx, rod, begin, end) {
+/** A line through points, in radii from the axle; its width in CSS pixels. */
+function line({ ctx, x, y, radius }, points, colour, width) {
     ctx.beginPath();
-    const half = 2 * COILS;
-    for (let n = 0; n <= half; n++) {
-        const aside = n % half ? (n % 2 ? 0.1 : -0.1) : 0;
-        ctx.lineTo(...place(rod, begin + ((end - begin) * n) / half, SPRING + aside));
-    }
+    for (const [right, up] of points) ctx.lineTo(x + right * radius, y - up * radius);
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = width;
+    ctx.stroke();
 }
 
-function ghosts(pen, seen) {
-    const { ctx, colours, radius, line } = pen;
-    const dot = Math.max(0.16, 6 / radius);
-    ctx.setLineDash([0.08, 0.07]);
+/** A disc with an edge; its place and size in radii. */
+function dot({ ctx, x, y, radius, line: width }, [right, up], r, colour, edge) {
+    ctx.beginPath();
+    ctx.arc(x + right * radius, y - up * radius, r * radius, 0, 2 * Math.PI);
+    ctx.fillStyle = colour;
+    ctx.fill();
+    ctx.strokeStyle = edge;
+    ctx.lineWidth = 0.7 * width;
+    ctx.stroke();
+}
+
+function scale(sheet, rod) {
+    const { ctx, colours, theme, x, y, radius, line: width } = sheet;
+    line(sheet, [place(rod, -1, SCALE), place(rod, 1, SCALE)], colours.axis, 0.6 * width);
+    for (const value of [-1, 0, 1]) {
+        const [right, up] = place(rod, value, SCALE + 0.08);
+        line(sheet, [place(rod, value, SCALE), [right, up]], colours.axis, 0.6 * width);
+        const [aside, below] = rod ? [0.4, 0] : [0, 0.75];
+        const how = { colour: colours.faint, size: 0.85, align: rod ? "left" : "center" };
+        const [px, py] = [x + right * radius + aside * theme.text, y - up * radius];
+        theme.write(ctx, theme.number(value), px, py + below * theme.text, how);
+    }
+    const [right, up] = place(rod, 1.12, SCALE);
+    const how = { colour: colours.faint, symbol: true, align: rod ? "center" : "left" };
+    const above = rod ? 0.5 * theme.text : 0;
+    theme.write(ctx, rod ? "x₂" : "x₁", x + right * radius, y - up * radius - above, how);
+}
+
+/** The spoke to the pin, and the neurons' memory beside it. */
+function spokes(sheet, { phi_rad: phi, x1, x2 }, pin) {
+    const { ctx, colours, x, y, radius, line: width } = sheet;
+    for (const angle of [phi + (2 * Math.PI) / 3, phi - (2 * Math.PI) / 3]) {
+        line(sheet, [[0, 0], [Math.cos(angle), Math.sin(angle)]], colours.axis, 0.6 * width);
+    }
+    line(sheet, [[0, 0], pin], colours.ink, 1.3 * width);
+    const reach = Math.hypot(x1, x2);
+    if (Number.isFinite(reach)) {
+        const short = Math.min(1, 1.3 / reach);
+        const [mx, my] = [x + x1 * short * radius, y - x2 * short * radius];
+        line(sheet, [[0, 0], [x1 * short, x2 * short]], colours.memory, 1.3 * width);
+        const half = sheet.mark * radius;
+        ctx.beginPath();
+        for (const [right, up] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) {
+            ctx.lineTo(mx + right * half, my + up * half);
+        }
+        ctx.fillStyle = colours.memory;
+        ctx.fill();
+    }
+    dot(sheet, [0, 0], 0.08, colours.ink, colours.ink);
+}
+
+function rodAndSpring(sheet, state, rod, pin) {
+    const { ctx, colours, x, y, radius, line: width } = sheet;
+    const actual = pin[rod];
+    const target = rod ? state.target2 : state.target1;
+    const half = sheet.mark;
+    line(sheet, [pin, place(rod, actual, 0)], colours.rod, 2.6 * width);
+    line(sheet, [place(rod, actual, 0), place(rod, actual, SPRING)], colours.actual, 1.6 * width);
+    if (Number.isFinite(target)) {
+        const coil = [];
+        for (let n = 0; n <= 2 * COILS; n++) {
+            const aside = n % (2 * COILS) ? (n % 2 ? 0.1 : -0.1) : 0;
+            const along = actual + ((target - actual) * n) / (2 * COILS);
+            coil.push(place(rod, along, SPRING + aside));
+        }
+        line(sheet, coil, colours.ink, 0.7 * width);
+        const [right, up] = place(rod, target, SPRING);
+        const side = 2 * half * radius;
+        ctx.fillStyle = colours.target;
+        ctx.fillRect(x + (right - half) * radius, y - (up + half) * radius, side, side);
+    }
+    dot(sheet, place(rod, actual, 0), half, colours.actual, colours.ink);
+}
+
+/** What a quenched kick shows to the neurons, if it is not what is there. */
+function ghosts(sheet, seen, pin) {
+    const { ctx, colours, x, y, radius, theme } = sheet;
+    if (!(Math.hypot(seen[0] - pin[0], seen[1] - pin[1]) > ROUNDING)) return;
+    ctx.setLineDash([0.3 * theme.text, 0.22 * theme.text]);
     ctx.lineCap = "butt";
-    path(ctx, [0, 0], seen);
-    stroke(pen, colours.actual, line);
-    for (const [x, y] of [seen, place(0, seen[0], 0), place(1, seen[1], 0)]) {
-        circle(ctx, x, y, dot);
-        stroke(pen, colours.actual, 1.4 * line);
+    line(sheet, [[0, 0], seen], colours.actual, theme.line);
+    const r = (sheet.mark + 0.03) * radius;
+    for (const [right, up] of [seen, place(0, seen[0], 0), place(1, seen[1], 0)]) {
+        ctx.beginPath();
+        ctx.arc(x + right * radius, y - up * radius, r, 0, 2 * Math.PI);
+        ctx.lineWidth = 1.3 * theme.line;
+        ctx.stroke();
     }
     ctx.setLineDash([]);
     ctx.lineCap = "round";
 }
 
-/** A line to a tip at (x, y) with a head that points along (right, up), a unit vector. */
-function arrowHead(ctx, x, y, right, up, size) {
-    path(
-        ctx,
-        [x, y],
-        [x - size * (right + up / 2), y - size * (up - right / 2)],
-        [x - size * (right - up / 2), y - size * (up + right / 2)],
-    );
-    ctx.closePath();
-}
-
-function force(pen, state, pin) {
-    const { ctx, colours, radius, line } = pen;
-    const length = state.torque;
-    if (!Number.isFinite(length) || Math.abs(length) < 0.01) return;
-    const [right, up] = [-pin[1] * Math.sign(length), pin[0] * Math.sign(length)];
-    const tip = [pin[0] - pin[1] * length, pin[1] + pin[0] * length];
-    const size = Math.min(Math.max(0.2, 8 / radius), Math.abs(length));
-    path(ctx, pin, [tip[0] - right * size * 0.8, tip[1] - up * size * 0.8]);
-    stroke(pen, colours.force, 2.2 * line);
-    arrowHead(ctx, ...tip, right, up, size);
-    ctx.fillStyle = colours.force;
-    ctx.fill();
+/** The tangential force: its direction, and |M| as its length. */
+function force(sheet, torque, pin) {
+    const { ctx, colours, theme, x, y, radius } = sheet;
+    if (!(Math.abs(torque) > 0.01)) return;
+    const tip = [pin[0] - pin[1] * torque, pin[1] + pin[0] * torque];
+    const way = Math.sign(torque);
+    const head = Math.min(0.8 * theme.text, Math.abs(torque) * radius);
+    const neck = torque - (0.7 * way * head) / radius;
+    const shaft = [pin, [pin[0] - pin[1] * neck, pin[1] + pin[0] * neck]];
+    line(sheet, shaft, colours.force, 2.2 * theme.line);
+    const [px, py] = [x + tip[0] * radius, y - tip[1] * radius];
+    theme.arrowHead(ctx, px, py, -pin[1] * way, -pin[0] * way, head, colours.force);
 }
 
 /** Outside the rim: which way is forward, and how the wheel turns now. */
-function directions(pen, at, state) {
-    const { ctx, colours, theme, line } = pen;
-    const words = state.labels ?? {};
-    const arc = (from, to, colour, width) => {
-        const r = 1.26 * at.radius;
-        const way = Math.sign(to - from);
-        const size = 4 * theme.line;
-        const end = to - (way * size) / r;
-        ctx.beginPath();
-        ctx.arc(at.x, at.y, r, -from, -end, way > 0);
-        ctx.strokeStyle = colour;
-        ctx.lineWidth = width;
-        ctx.stroke();
-        const [c, s] = [Math.cos(to), Math.sin(to)];
-        arrowHead(ctx, at.x + r * c, at.y - r * s, -s * way, -c * way, size);
-        ctx.fillStyle = colour;
-        ctx.fill();
-    };
-    arc(3.5, 4.15, colours.axis, 0.8 * line);
-    const low = at.y + 1.5 * at.radius;
-    theme.write(ctx, words.forward ?? "", at.x - 1.4 * at.radius, low, { colour: colours.faint });
-    const sweep = state.omega_rad_s * ARC_S;
-    if (Math.abs(sweep) > 0.05) {
-        const half = Math.max(-LONGEST_ARC, Math.min(LONGEST_ARC, sweep)) / 2;
-        arc(Math.PI / 2 - half, Math.PI / 2 + half, colours.ink, 1.6 * line);
-    }
+function directions(sheet, { omega_rad_s: omega, labels }) {
+    const { ctx, colours, theme, x, y, radius } = sheet;
+    arc(sheet, 3.4, 4.0, colours.faint, 0.8 * theme.line);
+    const how = { colour: colours.faint, align: "right" };
+    theme.write(ctx, labels?.forward ?? "", x - 0.45 * radius, y + 1.42 * radius, how);
+    const half = Math.max(-LONGEST_ARC, Math.min(LONGEST_ARC, omega * ARC_S)) / 2;
+    if (!(Math.abs(half) > 0.02)) return;
+    arc(sheet, Math.PI / 2 - half, Math.PI / 2 + half, colours.ink, 1.8 * theme.line);
 }
 
-/** The numbers, right below where the picture is empty. */
-function readout(pen, at, state, width, height) {
-    const { ctx, colours, theme } = pen;
-    const words = state.labels ?? {};
-    const left = at.x + 1.15 * at.radius;
-    const step = 1.45 * theme.text;
-    const room = Math.min(width - left - theme.text / 2, 15 * theme.text);
-    let y = at.y + 1.5 * at.radius;
-    const line = (symbol, value, unit, colour, bold) => {
-        if (y > height - theme.text * 0.7) return;
-        theme.write(ctx, symbol, left, y, { colour, symbol: symbol.length === 1, bold });
-        const numbers = left + 4.6 * theme.text;
-        theme.write(ctx, value, numbers, y, { colour, align: "right", bold });
-        theme.write(ctx, unit, numbers + 0.4 * theme.text, y, { colour: colours.faint });
-        y += step;
+/** An arrow around the wheel between two angles. */
+function arc({ ctx, theme, x, y, radius }, from, to, colour, width) {
+    const r = 1.26 * radius;
+    const way = Math.sign(to - from);
+    const head = Math.min(0.7 * theme.text, Math.abs(to - from) * r);
+    ctx.beginPath();
+    ctx.arc(x, y, r, -from, -to + (0.8 * way * head) / r, way > 0);
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = width;
+    ctx.stroke();
+    const [right, up] = [Math.cos(to), Math.sin(to)];
+    theme.arrowHead(ctx, x + r * right, y - r * up, -up * way, -right * way, head, colour);
+}
+
+/** Numbers where the picture is empty: below on the right. */
+function readout({ ctx, colours, theme, x, y, radius }, state, width) {
+    const text = theme.text;
+    const left = x + Math.max(1.2 * radius, 0.8 * radius + 2 * text);
+    const room = Math.min(width - left - 0.5 * text, 11 * text);
+    const step = 1.45 * text;
+    let line = y + 1.5 * radius;
+    if (state.kick) {
+        ctx.fillStyle = colours.kick;
+        ctx.fillRect(left - 0.4 * text, line - 0.7 * text, room + 0.4 * text, 1.4 * text);
+    }
+    const how = { colour: state.kick ? colours.paper : colours.ink, bold: true };
+    theme.write(ctx, state.kick || (state.title ?? ""), left, line, how);
+    const row = (name, value, unit, colour) => {
+        line += step;
+        theme.write(ctx, name, left, line, { colour, symbol: name.length === 1, bold: true });
+        const numbers = left + 5.4 * text;
+        theme.write(ctx, value, numbers, line, { colour, align: "right" });
+        theme.write(ctx, unit, numbers + 0.4 * text, line, { colour: colours.faint });
     };
-    theme.write(ctx, state.title ?? "", left, y, { colour: colours.ink, bold: true });
-    y += step;
-    line("M", theme.number(state.torque, 2, true), "", colours.force, true);
-    gauge(pen, left, y - 0.2 * step, room, state);
-    y += 0.7 * step;
-    line("ω", theme.number(state.omega_rad_s, 1, true), "rad/s", colours.ink);
-    line("", theme.number(state.omega_rad_s / 2 / Math.PI, 1, true), words.turns, colours.ink);
-    line(words.duty ?? "", theme.number(state.duty_pct, 0, true), "%", colours.ink);
-    if (!state.kick) return;
-    const below = Math.min(y, height - 0.9 * step);
-    ctx.fillStyle = colours.kick;
-    ctx.fillRect(left - 0.3 * theme.text, below - 0.65 * step, room + 0.3 * theme.text, 1.2 * step);
-    theme.write(ctx, state.kick, left, below, { colour: colours.paper, bold: true });
+    const { torque, omega_rad_s: omega, duty_pct: duty, labels } = state;
+    row("M", theme.number(torque, 2, true), "", colours.force);
+    gauge({ ctx, colours, theme }, left, (line += 0.85 * step), room, state);
+    row("ω", theme.number(omega, 1, true), "rad/s", colours.ink);
+    row("", theme.number(omega / 2 / Math.PI, 1, true), labels?.turns ?? "", colours.ink);
+    row(labels?.duty ?? "", theme.number(duty, 0, true), "%", colours.ink);
 }
 
 /** M between -1 and 1, with the band in which the wheel does not start. */
-function gauge({ ctx, colours, theme }, left, y, room, state) {
-    const width = room;
-    const half = 0.32 * theme.text;
-    const x = (value) => left + ((value + 1) / 2) * width;
+function gauge({ ctx, colours, theme }, left, y, room, { stall, torque }) {
+    const half = 0.3 * theme.text;
+    const x = (value) => left + ((value + 1) / 2) * room;
     ctx.fillStyle = colours.rim;
-    ctx.fillRect(left, y - half, width, 2 * half);
-    if (state.stall > 0) {
+    ctx.fillRect(left, y - half, room, 2 * half);
+    ctx.fillStyle = colours.axis;
+    ctx.fillRect(x(0) - 0.5, y - 1.5 * half, 1, 3 * half);
+    if (stall > 0) {
+        ctx.fillRect(x(-stall), y - half, 1, 2 * half);
+        ctx.fillRect(x(stall) - 1, y - half, 1, 2 * half);
         ctx.fillStyle = colours.band;
-        ctx.fillRect(x(-state.stall), y - half, x(state.stall) - x(-state.stall), 2 * half);
-        ctx.fillStyle = colours.axis;
-        ctx.fillRect(x(-state.stall), y - half, 1, 2 * half);
-        ctx.fillRect(x(state.stall), y - half, 1, 2 * half);
+        ctx.fillRect(x(-stall) + 1, y - half, x(stall) - x(-stall) - 2, 2 * half);
     }
-    if (!Number.isFinite(state.torque)) return;
+    if (!Number.isFinite(torque)) return;
     ctx.fillStyle = colours.force;
-    const [from, to] = [x(Math.min(0, state.torque)), x(Math.max(0, state.torque))];
-    ctx.fillRect(from, y - half / 2, to - from, half);
-    ctx.fillRect(x(state.torque) - theme.line, y - 1.6 * half, 2 * theme.line, 3.2 * half);
+    ctx.fillRect(x(Math.min(0, torque)), y - half / 2, (Math.abs(torque) * room) / 2, half);
+    ctx.fillRect(x(torque) - theme.line, y - 1.5 * half, 2 * theme.line, 3 * half);
 }
