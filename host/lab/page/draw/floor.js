@@ -123,7 +123,7 @@ function trail({ ctx, colours, theme, x, y }, state) {
     ctx.strokeStyle = colours.faint;
     ctx.stroke();
     const how = { colour: colours.faint, size: 0.85, halo: colours.paper };
-    theme.write(ctx, state.labels?.start ?? "", x(0) + 0.6 * theme.text, y(0), how);
+    theme.write(ctx, state.labels?.start ?? "", x(0) + 0.3 * theme.text, y(0) + theme.text, how);
 }
 
 function robot({ ctx, colours, theme, unit, x, y }, state) {

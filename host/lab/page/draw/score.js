@@ -1,6 +1,6 @@
 /**
- * What the simulation expects of a kick, and what came of it: for each wheel a bar of shares, and a
- * mark where the outcome is.
+ * What the simulation expects of a kick, and what came of it: for each wheel a bar of shares, with
+ * marks at what the person expects and at what the wheel did.
  */
 
 const KINDS = ["reverses", "continues", "stops"];
@@ -103,7 +103,7 @@ function bar(pen, state, wheel, y, high) {
     }
 }
 
-/** A triangle that points at a bar's edge from outside, above (-1) or below (1), and what it says. */
+/** A triangle that points at a bar from above (-1) or below (1), and what it says. */
 function mark({ ctx, colours, theme, left, wide }, x, edge, way, words = "") {
     const text = theme.text;
     theme.arrowHead(ctx, x, edge + 0.15 * way * text, 0, -way, 0.65 * text, colours.ink);

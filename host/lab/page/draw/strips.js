@@ -89,7 +89,7 @@ export function draw(canvas, state, theme) {
     const top = state.kicks?.length ? 1.5 * text : 0.3 * text;
     const bottom = height - 1.7 * text;
     const view = { ctx, colours, theme, left, right, now, pixels: (right - left) / seconds };
-    const window = recent(state, now - seconds);
+    const shown = recent(state, now - seconds);
     const weights = ROWS.reduce((sum, row) => sum + row.weight, 0);
     const header = 1.5 * text;
     let y = top;
@@ -98,7 +98,7 @@ export function draw(canvas, state, theme) {
     for (const row of ROWS) {
         const box = { top: y + header, bottom: y + header + share * row.weight };
         legend(view, row, state, y + 0.42 * header);
-        strip(view, row, state, window, box);
+        strip(view, row, state, shown, box);
         y = box.bottom;
     }
 }
@@ -179,9 +179,9 @@ function ink(ctx, colour, theme, dashed) {
     if (dashed) ctx.setLineDash([]);
 }
 
-function strip(view, row, state, window, box) {
+function strip(view, row, state, shown, box) {
     const { ctx, colours, theme, left, right } = view;
-    const high = limit(row, state, window);
+    const high = limit(row, state, shown);
     const low = row.positive ? 0 : -high;
     const margin = 0.06 * (high - low);
     const unit = (box.bottom - box.top) / (high - low + 2 * margin);
@@ -222,7 +222,7 @@ function strip(view, row, state, window, box) {
     for (const line of row.lines) {
         const data = state.columns?.[line.column];
         if (!data) continue;
-        trace(view, state, window, data, zero, unit * (row.factor ?? 1));
+        trace(view, state, shown, data, zero, unit * (row.factor ?? 1));
         ink(ctx, colours[line.colour], theme, line.right);
     }
     ctx.restore();

@@ -19,7 +19,7 @@ const COILS = 6;
 // The arc that shows the speed: its length in rad for each rad/s, and at most, rad.
 const ARC_S = 0.09;
 const LONGEST_ARC = 1.9;
-// The seen positions differ from the actual ones if they are farther away than rounding takes them.
+// Seen positions that are no farther from the actual ones than this are the actual ones, rounded.
 const ROUNDING = 1e-3;
 
 /**
@@ -39,8 +39,7 @@ const ROUNDING = 1e-3;
  * @property {string} kick the name of the kick that acts now, for people; empty if none does
  * @property {string} title the wheel's name, for people
  * @property {boolean} stale whether this is no longer up to date
- * @property {{forward: string, duty: string, turns: string}} labels words: 'forward', 'duty',
- *     'turns/s'
+ * @property {{forward: string, duty: string, turns: string}} labels 'forward', 'duty', 'turns/s'
  */
 
 /**
@@ -65,7 +64,7 @@ export function layout(canvas, theme) {
  * @param {Object} theme see theme.js
  * @param {number} x from the canvas's left edge, CSS pixels
  * @param {number} y from its upper edge, CSS pixels
- * @returns {?number} rad, from -pi to pi; null if the point is beside the wheel
+ * @returns {?number} rad, from -pi to pi; null beside the wheel
  */
 export function angleAt(canvas, theme, x, y) {
     const at = layout(canvas, theme);
@@ -272,12 +271,12 @@ function readout({ ctx, colours, theme, x, y, radius }, state, width) {
         theme.write(ctx, value, numbers, line, { colour, align: "right" });
         theme.write(ctx, unit, numbers + 0.4 * text, line, { colour: colours.faint });
     };
-    const { torque, omega_rad_s: omega, duty_pct: duty, labels } = state;
-    row("M", theme.number(torque, 2, true), "", colours.force);
+    const { omega_rad_s: omega, labels } = state;
+    row("M", theme.number(state.torque, 2, true), "", colours.force);
     gauge({ ctx, colours, theme }, left, (line += 0.85 * step), room, state);
     row("ω", theme.number(omega, 1, true), "rad/s", colours.ink);
     row("", theme.number(omega / 2 / Math.PI, 1, true), labels?.turns ?? "", colours.ink);
-    row(labels?.duty ?? "", theme.number(duty, 0, true), "%", colours.ink);
+    row(labels?.duty ?? "", theme.number(state.duty_pct, 0, true), "%", colours.ink);
 }
 
 /** M between -1 and 1, with the band in which the wheel does not start. */
