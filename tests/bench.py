@@ -14,6 +14,7 @@ from math import cos, exp, sin, tanh
 from pathlib import Path
 
 from tests.bench_io import reads_and_writes
+from tests.bench_lab import lab_page
 from tests.bench_starts import starts
 from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell, stop_of_all
 from tests.bench_storm import many_hosts
@@ -37,6 +38,7 @@ def main() -> None:
         stop_from_a_shell,
         stop_of_all,
         many_hosts,
+        lab_page,
     ):
         measure()
 

@@ -76,7 +76,7 @@ def stop_of_all() -> None:
     """
     with _three_robots() as (tokens, environment), ExitStack() as stack:
         robots = [stack.enter_context(connect(uri, token=token)) for uri, token in tokens.items()]
-        zeros = [_clock_zero(robot) for robot in robots]
+        zeros = [clock_zero(robot) for robot in robots]
         logs = [stack.enter_context(robot.recording()) for robot in robots]
         apart = []
         for _ in range(STOPS_OF_ALL):
@@ -86,7 +86,7 @@ def stop_of_all() -> None:
             off = []
             for zero_s, robot, log in zip(zeros, robots, logs, strict=True):
                 _wait_until(robot, log, running=False)
-                off.append(zero_s + _first_tick_off(log).t_s)
+                off.append(zero_s + first_tick_off(log).t_s)
                 robot.start()
             apart.append(max(off) - min(off))
     verdict = "PASS" if max(apart) <= APART_S else "FAIL"
@@ -116,7 +116,7 @@ def _three_robots() -> Iterator[tuple[dict[str, str], dict[str, str]]]:
         yield tokens, environment
 
 
-def _clock_zero(robot: Robot) -> float:
+def clock_zero(robot: Robot) -> float:
     """When the robot's clock was at zero, in Unix seconds: what delays an answer only adds."""
     return min(time.time() - robot.status()["clock_s"] for _ in range(CLOCK_READINGS))
 
@@ -130,7 +130,7 @@ def _wait_until(robot: Robot, log: Log, *, running: bool) -> None:
     robot.wait(float("inf"), until=arrived)
 
 
-def _first_tick_off(log: Log) -> Record:
+def first_tick_off(log: Log) -> Record:
     """The first record of the stop that the log ends with."""
     last = max(place for place, record in enumerate(log.records) if record.state == RUNNING)
     return log.records[last + 1]
