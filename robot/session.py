@@ -9,6 +9,7 @@ import sys
 
 from robot import __version__, commands, wire
 from robot.errors import Refused
+from robot.hardware import hardware_id
 from robot.record import STATES, STRUCT
 from robot.sources import of_robot
 from robot.words import person
@@ -16,6 +17,7 @@ from robot.words import person
 _BATCH = wire.MAX_SAMPLES // STRUCT.size
 # Computed before the loop runs: reading files would delay a tick.
 _SOURCES = of_robot()
+_HARDWARE_ID = hardware_id()
 # Not by `platform`, which starts a program on Python 3.5.
 _MACHINE = "{} {} {}".format(
     os.uname().machine,
@@ -220,6 +222,8 @@ class Session(object):
             taken_over_by=lease.taken_over_by(client),
         )
         answer.update(machine=_MACHINE, motor=loop.motor)
+        if _HARDWARE_ID:
+            answer.update(hardware_id=_HARDWARE_ID)
         return wire.encode_json(wire.HELLO, answer)
 
     def _authenticate(self, message):
