@@ -1,11 +1,22 @@
 """kickctl discover."""
 
-import argparse
+from __future__ import annotations
 
+import argparse
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from host.client.robot import connect
 from host.commands._terminal import essential, show
-from host.errors import NoLink
-from host.link.names import save
+from host.errors import KickctlError, NoLink
+from host.link.addresses import place_of, with_host
+from host.link.names import Saved, same_robot, save
 from host.util.numbers import Number
+from robot.program import PORT
+
+if TYPE_CHECKING:
+    from host.link.discovery import Found
 
 HELP = "look for robots in the network"
 USES = ()
@@ -30,7 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="how long to listen, s (default %(default)s)",
     )
     parser.add_argument(
-        "--save", action="store_true", help="give names to those that have none: see kickctl robots"
+        "--save",
+        action="store_true",
+        help="give names to those that have none, and new addresses to those that have moved: see"
+        " kickctl robots",
     )
 
 
@@ -39,16 +53,24 @@ def run(options: argparse.Namespace) -> int:
     from host.link.discovery import look_around
 
     found = look_around(options.seconds)
-    saved = save((robot.name, robot.uri) for robot in found) if options.save else {}
+    saved = Saved({}, {})
+    if options.save and found:
+        with ThreadPoolExecutor(len(found)) as pool:
+            found = list(pool.map(_ask, found))
+        saved = save(found)
     named = [
         f"{name} is {address} from now on: kickctl --brick {name} status"
-        for name, address in saved.items()
+        for name, address in saved.named.items()
+    ] + [
+        f"{name} is at {address} now, and no longer at {before}: it has the same hardware id"
+        for name, (before, address) in saved.moved.items()
     ]
     if options.json:
-        more = {"saved": saved} if options.save else {}
+        moved = {name: {"from": old, "to": new} for name, (old, new) in saved.moved.items()}
+        more = {"saved": saved.named, "moved": moved} if options.save else {}
         show({"robots": [robot.as_dict() for robot in found], **more}, "\n".join(named))
     else:
-        if options.save and found and not saved:
+        if options.save and found and not named:
             named = ["all of them have names already: kickctl robots list"]
         with essential("\n".join(named)):
             for robot in found:
@@ -58,3 +80,24 @@ def run(options: argparse.Namespace) -> int:
     if not found:
         raise NoLink("no robot has answered", WHAT_TO_TRY)
     return 0
+
+
+def _ask(found: Found) -> Found:
+    """The same with the hardware id that the robot's program there says.
+
+    Where a robot of this id is known and has a token, it must have this token too: anybody in the
+    network can say any id.
+    """
+    address = found.uri
+    if found.kind != "robot":
+        address = with_host(f"tcp://brick:{PORT}", place_of(found.uri)[0])
+    try:
+        with connect(address, observe=True) as robot:
+            hardware_id = robot.hello.get("hardware_id")
+        known = same_robot(hardware_id, address)
+        if known is not None and known.token is not None:
+            with connect(address, token=known.token) as robot:
+                hardware_id = hardware_id if robot.trusted else None
+    except KickctlError:  # an older program, or none
+        return found
+    return replace(found, hardware_id=hardware_id)

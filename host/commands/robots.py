@@ -6,9 +6,9 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from host.commands._terminal import answer, show
+from host.commands._terminal import answer, say, show
 from host.errors import WrongUse
-from host.link import robots_file
+from host.link import names, robots_file
 from host.link.addresses import make_link, sim_options
 from robot.token import TokenError, load
 
@@ -33,6 +33,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action", choices=_ACTIONS, help="what to do with the names")
     takes = "; ".join(f"{action} {words}" for action, words in _ACTIONS.items() if words)
     parser.add_argument("words", nargs="*", metavar="NAME", help=takes)
+    parser.add_argument(
+        "--hardware-id",
+        metavar="ID",
+        help="add: what its machine says of itself, as deploy finds out; a robot that is known by"
+        " it gets the new address instead of a second name",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -45,6 +51,8 @@ def run(options: argparse.Namespace) -> int:
         )
     if options.token is not None and options.action != "add":
         raise WrongUse("--token belongs to `kickctl robots add`", "leave it out")
+    if options.hardware_id is not None and options.action != "add":
+        raise WrongUse("--hardware-id belongs to `kickctl robots add`", "leave it out")
     actions: dict[str, Callable[..., None]] = {
         "list": _list,
         "add": _add,
@@ -58,13 +66,16 @@ def run(options: argparse.Namespace) -> int:
 def _list(options: argparse.Namespace) -> None:
     robots = robots_file.read()
     if options.json:
-        rows = {one.name: {"address": one.address, "token": one.token} for one in robots.values()}
-        show({"robots": rows})
+        show({"robots": {one.name: _as_dict(one) for one in robots.values()}})
         return
     for one in robots.values():
         print(f"{one.name}  {one.address}  ({_token_words(one.token)})")
     if not robots:
         print("no robot has a name yet: kickctl robots add NAME ADDRESS")
+
+
+def _as_dict(robot: robots_file.Known) -> dict[str, str | None]:
+    return {"address": robot.address, "token": robot.token, "hardware_id": robot.hardware_id}
 
 
 def _token_words(path: str | None) -> str:
@@ -81,13 +92,33 @@ def _add(options: argparse.Namespace, name: str, address: str) -> None:
             "a robot that keeps running is one of its own: python -m sim_motor --port 5425",
         )
     path = None if options.token is None else _checked(options.token)
-    usual = robots_file.token_path(name)
-    known = robots_file.add(name, address, None if path in (None, usual) else str(path))
+    same = names.same_robot(options.hardware_id, address)
+    if same is not None and (same.name, same.address) != (name, address):
+        name = _moved(same, address, path)
+    else:
+        usual = robots_file.token_path(name)
+        own = None if path in (None, usual) else str(path)
+        robots_file.add(name, address, own, options.hardware_id)
+    known = robots_file.read()[name]
     answer(
         options,
-        {"name": known.name, "address": known.address, "token": known.token},
-        f"{known.name} is {known.address} ({_token_words(known.token)})",
+        {"name": name, **_as_dict(known)},
+        f"{name} is {known.address} ({_token_words(known.token)})",
     )
+
+
+def _moved(robot: robots_file.Known, address: str, token: Path | None) -> str:
+    """A robot that has a name is at another address now. Returns the name."""
+    changes = {"address": address}
+    if token is not None and (robot.token is None or not _same_text(token, Path(robot.token))):
+        changes["token"] = str(token)
+    robots_file.update(robot.name, **changes)
+    say(f"its hardware id is that of {robot.name}, which was at {robot.address}")
+    return robot.name
+
+
+def _same_text(one: Path, other: Path) -> bool:
+    return other.is_file() and one.read_text().strip() == other.read_text().strip()
 
 
 def _checked(token: str) -> Path:

@@ -123,6 +123,33 @@ def place_of(uri: str) -> tuple[str, str]:
     return (pieces["v6"] or pieces["name"]).lower(), port or str(PORT)
 
 
+def with_host(uri: str, host: str) -> str:
+    """The address of the same robot after its machine has got another address.
+
+    Args:
+        uri: The robot's tcp:// or ssh:// address.
+        host: The machine's new name or address, without brackets.
+
+    Raises:
+        WrongUse: It is no address of a robot.
+    """
+    parts = _split(uri)
+    pieces = _AUTHORITY.fullmatch(parts.authority)
+    if pieces is None:
+        raise no_address(uri, "it names no machine")
+    before = pieces["v6"] or pieces["name"]
+    user, port = pieces["user"], pieces["port"]
+    authority = f"{'' if user is None else user + '@'}{f'[{host}]' if ':' in host else host}"
+    authority += "" if port is None else f":{port}"
+    # Behind ssh, `host` says where on the machine the program listens.
+    options = {
+        name: host if (name, value) == ("host", before) else value
+        for name, value in parts.options.items()
+    }
+    query = f"?{urlencode(options, safe=':')}" if options else ""
+    return f"{parts.scheme}://{authority}{parts.path}{query}"
+
+
 def with_params(uri: str, settings: list[str]) -> str:
     """The address of a simulated robot that begins with parameters.
 

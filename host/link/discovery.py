@@ -41,6 +41,7 @@ class Found:
     """A robot, or a brick that runs none as far as anybody knows.
 
     uri: its address. addresses: all that it has in the network, the easiest to reach first.
+    hardware_id: what the robot's program there says of its machine; None if nobody has asked it.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Found:
     uri: str
     host: str
     addresses: tuple[str, ...]
+    hardware_id: str | None = None
 
     def as_dict(self) -> dict[str, object]:
         """For JSON."""

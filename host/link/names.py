@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
+from ipaddress import ip_address
+from typing import TYPE_CHECKING, NamedTuple
 
 from host.errors import WrongUse, quotable
 from host.link import robots_file
-from host.link.addresses import FORMS, SIM, place_of, sim_options
+from host.link.addresses import FORMS, SIM, place_of, sim_options, with_host
 from host.util.arguments import need_text
+
+if TYPE_CHECKING:
+    from host.link.discovery import Found
 
 ALL = "all"
 
@@ -155,26 +162,100 @@ def _at(address: str) -> Iterator[robots_file.Known]:
     return (one for one in robots_file.read().values() if _is_at(place, one.address))
 
 
-def save(found: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """Give names to robots that have none yet.
+class Saved(NamedTuple):
+    """What is new in the file of robots.
+
+    Attributes:
+        named: The addresses of the robots that have got a name, by their names.
+        moved: (old address, new address) of those that were found again elsewhere.
+    """
+
+    named: dict[str, str]
+    moved: dict[str, tuple[str, str]]
+
+
+def save(found: Iterable[Found]) -> Saved:
+    """Give names to robots that have none yet, and their new addresses to those that have moved.
+
+    A robot is the same if its machine has the same hardware id and its program the same port.
+    Without an id, it is the same if its machine has the same name or address.
 
     Args:
-        found: (name, address) of each. A name that is taken, or none, is changed.
-
-    Returns:
-        The addresses that are new, by their names.
+        found: The robots. A name that is taken, or none, is changed.
     """
-    saved: dict[str, str] = {}
-    for wanted, address in found:
-        if next(_at(address), None) is None:
-            name = robots_file.free_name(wanted, robots_file.read())
-            robots_file.add(name, address)
-            saved[name] = address
+    found = list(found)
+    ids = Counter((one.hardware_id, place_of(one.uri)[1]) for one in found)
+    saved = Saved({}, {})
+    for one in found:
+        # Copies of one card may have one id. Then it tells nothing apart.
+        unique = ids[one.hardware_id, place_of(one.uri)[1]] == 1
+        hardware_id = one.hardware_id if unique else None
+        known = same_robot(hardware_id, one.uri) or _at_place(one, hardware_id)
+        if known is None:
+            name = robots_file.free_name(one.name, robots_file.read())
+            robots_file.add(name, one.uri, None, hardware_id)
+            saved.named[name] = one.uri
+            continue
+        address = _new_address(known.address, one)
+        if address != known.address:
+            robots_file.update(known.name, address=address)
+            saved.moved[known.name] = known.address, address
+        if hardware_id is not None and known.hardware_id is None:
+            robots_file.update(known.name, hardware_id=hardware_id)
     return saved
 
 
-def _is_at(place: tuple[str, str], address: str) -> bool:
+def same_robot(hardware_id: str | None, address: str) -> robots_file.Known | None:
+    """The robot with a name that is on this machine and listens at the port of this address."""
+    port = place_of(address)[1]
+    return next(
+        (
+            one
+            for one in robots_file.read().values()
+            if one.hardware_id is not None
+            and one.hardware_id == hardware_id
+            and _is_at((None, port), one.address)
+        ),
+        None,
+    )
+
+
+def _at_place(found: Found, hardware_id: str | None) -> robots_file.Known | None:
+    """The robot with a name at one of the addresses of what was found, unless its id is another."""
+    port = place_of(found.uri)[1]
+    places = [place_of(found.uri), *((host, port) for host in (found.host, *found.addresses))]
+    return next(
+        (
+            one
+            for one in robots_file.read().values()
+            if any(_is_at(place, one.address) for place in places)
+            and (hardware_id is None or one.hardware_id in (None, hardware_id))
+        ),
+        None,
+    )
+
+
+def _new_address(address: str, found: Found) -> str:
+    """The address of a robot that was found again; the same if that still leads there.
+
+    A name follows its machine by itself, as does one of ~/.ssh/config; but a second machine of the
+    name ev3dev.local is called ev3dev-2.local.
+    """
+    host = place_of(address)[0]
+    if host in (found.host.lower(), *found.addresses):
+        return address
+    if host.endswith(".local") and found.host.endswith(".local"):
+        return with_host(address, found.host)
+    with suppress(ValueError):
+        if not ip_address(host).is_loopback:
+            return with_host(address, place_of(found.uri)[0])
+    return address
+
+
+def _is_at(place: tuple[str | None, str], address: str) -> bool:
+    """Whether an address leads to a place; one without a machine is that port of any machine."""
     try:
-        return place_of(address) == place
+        host, port = place_of(address)
     except WrongUse:  # in the file, where it harms nobody who names another robot
         return False
+    return port == place[1] and place[0] in (None, host)

@@ -1,5 +1,6 @@
-"""The file of robots that this user knows by name: a table for each, with its address and token.
+"""The file of robots that this user knows by name: a table for each.
 
+It holds a robot's address, and its token and the hardware id of its machine where it has them.
 It belongs to the user, who may edit it. So a change keeps every other line as it is, comments too.
 """
 
@@ -29,7 +30,9 @@ _NAMES_ARE = (
     f"a name has letters (a to z), digits, - and _, at most {LONGEST_NAME} of them, and begins with"
     " a letter or a digit, as in anna or ev3-2"
 )
-_KEYS = ("address", "token")
+_KEYS = ("address", "token", "hardware_id")
+# A line of a table, around its value.
+_LINE = r"(\s*{}\s*=\s*)(\"(?:[^\"\\]|\\.)*\"|'[^']*')"
 _HEADER = re.compile(r"\s*\[")
 _NEW_FILE = (
     "# The robots that kickctl knows by name. `kickctl robots --help` says how to change it.\n"
@@ -44,11 +47,13 @@ class Known:
         name: Its name.
         address: Its address.
         token: The path of its own token file; None if it has none.
+        hardware_id: What its machine says of itself under any address; None if it is not known.
     """
 
     name: str
     address: str
     token: str | None
+    hardware_id: str | None = None
 
 
 def is_name(text: str) -> bool:
@@ -85,16 +90,20 @@ def read() -> dict[str, Known]:
     path = file_path()
     if path is None:
         return {}
-    return {name: _known(name, entry) for name, entry in _parse(path, _text(path)).items()}
+    return {
+        name: _known(name, entry, entry.get("hardware_id"))
+        for name, entry in _parse(path, _text(path)).items()
+    }
 
 
-def add(name: str, address: str, token: str | None = None) -> Known:
-    """Add a robot; nothing happens if it is there just so.
+def add(name: str, address: str, token: str | None = None, hardware_id: str | None = None) -> Known:
+    """Add a robot; nothing happens if it is there just so, but for a new hardware id.
 
     Args:
         name: Its name, which nobody has yet.
         address: Its address.
         token: The path of its token file; None if it lies at `token_path`, or if there is none.
+        hardware_id: That of its machine; None if it is not known.
 
     Raises:
         WrongUse: The name cannot be one, or another robot has it, or the file is spoiled.
@@ -103,23 +112,64 @@ def add(name: str, address: str, token: str | None = None) -> Known:
     entry = {"address": address} | ({} if token is None else {"token": token})
 
     def change(text: str, robots: dict[str, dict[str, str]]) -> str:
-        if robots.get(name) == entry:
-            return text
+        if name in robots and _without_id(robots[name]) == entry:
+            return (
+                text if hardware_id is None else _set(text, robots, name, hardware_id=hardware_id)
+            )
         if name in robots:
             raise WrongUse(
                 f"there is a robot '{name}' already, at {robots[name]['address']}",
                 "choose another name, or type first: kickctl robots remove " + name,
             )
-        robots[name] = entry
-        lines = [
-            f"{key} = {json.dumps(value, ensure_ascii=False, allow_nan=False)}"
-            for key, value in entry.items()
-        ]
+        robots[name] = entry | ({} if hardware_id is None else {"hardware_id": hardware_id})
+        lines = [f"{key} = {_quoted(value)}" for key, value in robots[name].items()]
         gap = "" if not text or text.endswith("\n\n") else "\n" if text.endswith("\n") else "\n\n"
         return "\n".join([f"{text or _NEW_FILE}{gap}[{name}]", *lines, ""])
 
     _change(change)
-    return _known(name, entry)
+    return _known(name, entry, hardware_id)
+
+
+def update(name: str, **values: str) -> None:
+    """Change what the file says of a robot.
+
+    Args:
+        name: Its name.
+        values: What is new: its address, token or hardware_id.
+
+    Raises:
+        WrongUse: There is no such robot, or the file is spoiled.
+    """
+
+    def change(text: str, robots: dict[str, dict[str, str]]) -> str:
+        _need(name, robots)
+        return _set(text, robots, name, **values)
+
+    _change(change)
+
+
+def _set(text: str, robots: dict[str, dict[str, str]], name: str, **values: str) -> str:
+    """The file's text with other values in an entry, which is changed too."""
+    robots[name] = robots[name] | values
+    lines = (text if text.endswith("\n") else text + "\n").splitlines(keepends=True)
+    for key, value in values.items():
+        start, end = _section(lines, name)
+        for place in range(start, end):
+            line = re.match(_LINE.format(key), lines[place])
+            if line:
+                lines[place] = line[1] + _quoted(value) + lines[place][line.end() :]
+                break
+        else:
+            lines.insert(end, f"{key} = {_quoted(value)}\n")
+    return "".join(lines)
+
+
+def _quoted(value: str) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def _without_id(entry: dict[str, str]) -> dict[str, str]:
+    return {key: value for key, value in entry.items() if key != "hardware_id"}
 
 
 def free_name(text: str, taken: Iterable[str]) -> str:
@@ -276,7 +326,7 @@ def _fault(name: str, entry: object) -> str:
         return f"'{name}' stands outside of a robot's table, which begins with [NAME]"
     for key, value in entry.items():
         if key not in _KEYS:
-            return f"{name} has an unknown '{quotable(key)}'; a robot has address and token"
+            return f"{name} has an unknown '{quotable(key)}'; a robot has {', '.join(_KEYS)}"
         if not isinstance(value, str) or not value or not value.isprintable():
             return f"the {key} of {name} is no text in quotes"
     return "" if "address" in entry else f"{name} has no address"
@@ -314,11 +364,12 @@ def _section(lines: list[str], name: str) -> tuple[int, int]:
     return start, end
 
 
-def _known(name: str, entry: dict[str, str]) -> Known:
+def _known(name: str, entry: dict[str, str], hardware_id: str | None) -> Known:
     """A robot with the token file that its entry names, or that lies in the usual place."""
     if "token" in entry:
         # An absolute path stays as it is.
         own: Path | None = Path(config_folder(), os.path.expanduser(entry["token"]))  # noqa: PTH111
     else:
         own = _usual_token(name)
-    return Known(name, entry["address"], None if own is None else str(own))
+    token = None if own is None else str(own)
+    return Known(name, entry["address"], token, hardware_id)

@@ -85,7 +85,8 @@ class TcpLink:
         except OSError as error:
             raise NoLink(
                 f"no robot answers at {self.uri}: {error.strerror or error}",
-                "is it switched on and its program running? `kickctl doctor` looks closer",
+                "is it switched on and its program running? `kickctl doctor` looks closer, and"
+                " `kickctl discover --save` finds a robot again whose address has changed",
             ) from error
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 

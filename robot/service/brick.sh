@@ -56,7 +56,12 @@ ready() { sed -n 's|^READY tcp://||p' "$(kept robot.log)" 2>/dev/null | tail -n 
 port() { ready | sed 's/.*://'; }
 
 # What a login may print by itself must not be taken for what deploy.sh wants to know.
-address() { tell "kickctl-address=$(ready | tr -d '[]')="; }
+address() {
+    tell "kickctl-address=$(ready | tr -d '[]')="
+    # Releases from before it do not know it.
+    tell "kickctl-hardware=$(cd "$ROOT/current" &&
+        python3 -c 'from robot.hardware import hardware_id; print(hardware_id())' 2>/dev/null)="
+}
 
 arguments() { cat "$ROOT/arguments" 2>/dev/null || true; }
 

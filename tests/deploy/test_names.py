@@ -9,6 +9,7 @@ import pytest
 from host.cli import main
 from host.link import discovery
 from host.link.discovery import Found
+from robot.hardware import hardware_id
 from tests.deploy.brick import ROOT, needs_sshd
 
 
@@ -39,7 +40,9 @@ def test_a_deployed_robot_has_a_name_and_a_token_of_its_own(brick, checkout, tmp
     token = tmp_path / "config" / "kickctl" / "tokens" / "anna"
     assert token.stat().st_mode & 0o777 == 0o600
     known = json.loads(run("robots", "list", "--json")[1])["robots"]
-    assert known == {"anna": {"address": brick.uri(), "token": str(token)}}
+    assert known == {
+        "anna": {"address": brick.uri(), "token": str(token), "hardware_id": hardware_id() or None}
+    }
     status, output = run("--brick", "anna", "params", "set", "k=7")
     assert status == 0, output
     assert "k = 7" in output

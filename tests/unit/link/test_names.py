@@ -11,8 +11,20 @@ from hypothesis import strategies as st
 
 from host.errors import WrongUse
 from host.link import robots_file
-from host.link.names import Chosen, chosen, every, is_several, name_at, own_token, several
-from host.link.robots_file import add, file_path, is_name, read, remove, rename, token_path
+from host.link.addresses import place_of
+from host.link.discovery import Found
+from host.link.names import Chosen, chosen, every, is_several, name_at, own_token, save, several
+from host.link.robots_file import (
+    Known,
+    add,
+    file_path,
+    is_name,
+    read,
+    remove,
+    rename,
+    token_path,
+    update,
+)
 
 NAMES = st.from_regex("[A-Za-z0-9][A-Za-z0-9_-]{0,39}", fullmatch=True).filter(is_name)
 TEXTS = st.text(st.characters(codec="utf-8"), min_size=1, max_size=20).filter(str.isprintable)
@@ -149,7 +161,11 @@ def test_a_file_that_is_no_text(by_hand):
 @pytest.mark.parametrize("text", ['anna = {address = "a"}\n', 'anna.address = "a"\n'])
 def test_a_form_that_lines_cannot_change_is_left_as_it_is(by_hand, text):
     by_hand.write_text(text, encoding="utf-8")
-    for change in (lambda: rename("anna", "new"), lambda: remove("anna")):
+    for change in (
+        lambda: rename("anna", "new"),
+        lambda: remove("anna"),
+        lambda: update("anna", address="tcp://h"),
+    ):
         with pytest.raises(WrongUse, match="not change"):
             change()
         assert by_hand.read_text(encoding="utf-8") == text
@@ -256,3 +272,69 @@ def test_several_robots(by_hand):
     by_hand.unlink()
     with pytest.raises(WrongUse, match="no robot has a name"):
         several("all")
+
+
+# Robots that have moved
+
+
+def found(name, address, host="", hardware_id=None, more=()):
+    place = place_of(address)[0]
+    return Found(name, "robot", address, host, (place, *more), hardware_id)
+
+
+def test_robots_that_have_swapped_their_addresses_keep_their_names():
+    add("anna", "tcp://10.0.0.1", None, "a")
+    add("bert", "ssh://robot@10.0.0.2:2222?host=10.0.0.2&port=5425", None, "b")
+    saved = save(
+        [found("x", "tcp://10.0.0.1", "", "b"), found("y", "tcp://[fd00::2]", "", "a")],
+    )
+    assert (saved.named, list(saved.moved)) == ({}, ["bert", "anna"])
+    assert {one.name: one.address for one in read().values()} == {
+        "anna": "tcp://[fd00::2]",
+        "bert": "ssh://robot@10.0.0.1:2222?host=10.0.0.1&port=5425",
+    }
+
+
+@pytest.mark.parametrize(
+    ("known", "host", "now"),
+    [
+        ("tcp://10.0.0.1", "ev3dev.local", "tcp://10.0.0.9"),
+        ("ssh://robot@ev3dev.local", "ev3dev.local", "ssh://robot@ev3dev.local"),
+        ("ssh://robot@ev3dev.local", "ev3dev-2.local", "ssh://robot@ev3dev-2.local"),
+        ("tcp://10.0.0.10", "ev3dev.local", "tcp://10.0.0.10"),  # its other address
+        ("ssh://my-brick", "ev3dev.local", "ssh://my-brick"),  # a name of ~/.ssh/config
+        ("tcp://robot.school.example", "ev3dev.local", "tcp://robot.school.example"),
+        ("tcp://127.0.0.1", "ev3dev.local", "tcp://127.0.0.1"),
+    ],
+)
+def test_only_an_address_that_leads_nowhere_is_changed(known, host, now):
+    add("anna", known, None, "a")
+    saved = save([found("ev3dev", "tcp://10.0.0.9", host, "a", ("10.0.0.10",))])
+    assert saved.named == {}
+    assert read()["anna"].address == now
+    assert saved.moved == ({} if now == known else {"anna": (known, now)})
+
+
+def test_another_machine_at_a_known_address_is_another_robot():
+    add("anna", "tcp://10.0.0.1", None, "a")
+    assert save([found("new", "tcp://10.0.0.1", "", "b")]).named == {"new": "tcp://10.0.0.1"}
+    assert read()["anna"] == Known("anna", "tcp://10.0.0.1", None, "a")
+
+
+def test_an_id_that_two_machines_have_tells_nothing():
+    add("anna", "tcp://10.0.0.1", None, "a")
+    copies = [found("x", f"tcp://10.0.0.{number}", "", "a") for number in (1, 2)]
+    saved = save(copies)
+    assert (saved.named, saved.moved) == ({"x": "tcp://10.0.0.2"}, {})
+    assert read()["x"].hardware_id is None
+    both = [found("x", f"tcp://10.0.0.3:{port}", "", "c") for port in (1, 2)]
+    assert [read()[name].hardware_id for name in save(both).named] == ["c", "c"]
+
+
+def test_a_changed_value_leaves_all_else_in_its_line(by_hand):
+    by_hand.write_text('[anna]\naddress="tcp://h" # mine\ntoken = "t"', encoding="utf-8")
+    update("anna", address="tcp://new", hardware_id="a")
+    text = '[anna]\naddress="tcp://new" # mine\ntoken = "t"\nhardware_id = "a"\n'
+    assert by_hand.read_text(encoding="utf-8") == text
+    with pytest.raises(WrongUse, match="no robot 'ana'"):
+        update("ana", address="tcp://h")
