@@ -201,10 +201,10 @@ remember() {
     called='' run=${KICKCTL-}
     [ -n "$run" ] || ! command -v kickctl >/dev/null || run=kickctl
     add="robots add $(typed "$name") $(typed "$where") --token $(typed "$token")"
-    hardware=$(marked hardware <"$folder/answer")
+    hardware=$(marked hardware <"$folder/answer" | grep -Ex '[0-9a-f]{32}' || true)
     if [ -z "$run" ]; then
         say "To give the robot a name: $kickctl $add"
-    elif eval "$run $add${hardware:+ --hardware-id $(typed "$hardware")}" >"$folder/answer" 2>&1; then
+    elif eval "$run $add ${hardware:+--hardware-id $hardware}" >"$folder/answer" 2>&1; then
         # A robot that is known by its hardware id keeps its name.
         called=$(sed -n 's/^\([A-Za-z0-9_-]*\) is .*/\1/p' "$folder/answer" | tail -n 1)
         [ "$called" = "$name" ] || sed -n '/^its hardware id/p' "$folder/answer"

@@ -12,6 +12,7 @@ from host.commands._terminal import essential, show
 from host.errors import KickctlError, NoLink
 from host.link.addresses import place_of, with_host
 from host.link.names import Saved, same_robot, save
+from host.link.robots_file import is_hardware_id
 from host.util.numbers import Number
 from robot.program import PORT
 
@@ -100,4 +101,4 @@ def _ask(found: Found) -> Found:
                 hardware_id = hardware_id if robot.trusted else None
     except KickctlError:  # an older program, or none
         return found
-    return replace(found, hardware_id=hardware_id)
+    return replace(found, hardware_id=hardware_id if is_hardware_id(hardware_id) else None)

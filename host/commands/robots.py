@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from host.commands._terminal import answer, say, show
-from host.errors import WrongUse
+from host.errors import WrongUse, quotable
 from host.link import names, robots_file
 from host.link.addresses import make_link, sim_options
 from robot.token import TokenError, load
@@ -90,6 +90,11 @@ def _add(options: argparse.Namespace, name: str, address: str) -> None:
         raise WrongUse(
             "a simulated robot is a part of each command, and ends with it, so it has no name",
             "a robot that keeps running is one of its own: python -m sim_motor --port 5425",
+        )
+    if options.hardware_id is not None and not robots_file.is_hardware_id(options.hardware_id):
+        raise WrongUse(
+            f"'{quotable(options.hardware_id)}' is no hardware id",
+            "it has 32 hexadecimal digits, which kickctl deploy finds out",
         )
     path = None if options.token is None else _checked(options.token)
     same = names.same_robot(options.hardware_id, address)

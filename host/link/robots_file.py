@@ -61,6 +61,11 @@ def is_name(text: str) -> bool:
     return bool(_NAME.fullmatch(text)) and text.lower() not in _TAKEN
 
 
+def is_hardware_id(value: object) -> bool:
+    """Whether a value, which may come from anywhere, is a machine's hardware id."""
+    return isinstance(value, str) and bool(re.fullmatch("[0-9a-f]{32}", value))
+
+
 def need_name(text: str) -> str:
     """The text, if it may be the name of a robot. Raises WrongUse."""
     if is_name(text):

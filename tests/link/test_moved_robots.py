@@ -71,6 +71,16 @@ def test_a_robot_that_was_added_by_hand_gets_its_id_when_it_is_found(machine, di
     assert robots_file.read()["anna"].hardware_id == "a" * 32
 
 
+@pytest.mark.parametrize("said", ["", 'a"\n[evil]', {"a": 1}, 5, "A" * 32])
+def test_what_is_no_id_is_not_kept(discover, capsys, monkeypatch, said):
+    monkeypatch.setattr("robot.session._HARDWARE_ID", said)
+    assert list(discover()["saved"]) == ["ev3dev"]
+    assert robots_file.read()["ev3dev"].hardware_id is None
+    if isinstance(said, str):
+        assert main(["robots", "add", "bert", "tcp://h", f"--hardware-id={said}"]) == 2
+        assert "is no hardware id" in capsys.readouterr().err
+
+
 def test_a_new_robot_is_saved_with_its_id(discover):
     assert list(discover()["saved"]) == ["ev3dev"]
     assert robots_file.read()["ev3dev"].hardware_id == "a" * 32
