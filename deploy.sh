@@ -207,6 +207,7 @@ remember() {
     elif eval "$run $add ${hardware:+--hardware-id $hardware}" >"$folder/answer" 2>&1; then
         # A robot that is known by its hardware id keeps its name.
         called=$(sed -n 's/^\([A-Za-z0-9_-]*\) is .*/\1/p' "$folder/answer" | tail -n 1)
+        called=${called:-$name}
         [ "$called" = "$name" ] || sed -n '/^its hardware id/p' "$folder/answer"
         say "The robot is known here as $called: kickctl robots list"
     else
