@@ -47,6 +47,7 @@ EFFORTS = {
     "wall": Effort("bounces", 9.8),
     "chaos": Effort("minutes", 60.0, 1.0),
     "starts": Effort("starts", 3.3),
+    "predictions": Effort("kicks", 3.3),
     "calibrate": Effort("seconds", 1.0, 3.0),
 }
 

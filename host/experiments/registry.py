@@ -125,6 +125,11 @@ ROBOT = {
         " are equally likely",
         (Option("starts", 100, 1, 100000, "number of starts"),),
     ),
+    "predictions": Entry(
+        "predict kicks at random, then give them: whether the predicted shares come true, and how"
+        " sure they are",
+        (Option("kicks", 500, 1, 100000, "number of kicks"),),
+    ),
     "calibrate": Entry(
         "identify this robot's motor from a drive, and write it as a file for sim://?motor=mine",
         (Option("seconds", 120.0, 60.0, 3600.0, "how long to drive the robot about, s"),),

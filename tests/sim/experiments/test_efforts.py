@@ -24,6 +24,7 @@ SMALL = {
     "wall": 4,
     "chaos": 1.0,
     "starts": 4,
+    "predictions": 5,
     "calibrate": 60.0,
 }
 
