@@ -1,0 +1,111 @@
+/** The form for a kick of one's own. */
+
+import { button, choices, element, options, show } from "./dom.js";
+import { texts } from "./texts.js";
+
+const USUAL_TICKS = { position: 3, phase: 4, pulse: 4 };
+const ALWAYS_ONE_TICK = ["membrane", "jump"];
+const USUAL_VALUE = { beta: 1, shift_rad: 2.36 };
+
+/**
+ * @param {import("./lab.js").Lab} lab
+ * @param {(kick: object) => void} kick Does a kick.
+ * @param {(kick: object) => void} predict Asks the simulation about one.
+ */
+export function createDesigner(lab, kick, predict) {
+    const mode = choices("mode", texts.kind, options(texts.kinds), "phase", (chosen) => {
+        if (chosen in USUAL_TICKS) ticks.input.value = USUAL_TICKS[chosen];
+        arrange();
+    });
+    const ticks = numberField("kick-ticks", texts.ticks, { min: 1, max: 10000, step: 1, value: 4 });
+    const sign = choices("shift-sign", texts.shiftSign, options(texts.shiftSigns), "auto", arrange);
+    const shift = numberField("kick-shift", texts.shift, {
+        type: "range",
+        min: -2,
+        max: 2,
+        step: 0.05,
+        value: 0.75,
+    });
+    const shape = choices("shape", texts.shape, options(texts.shapes), "rectangular");
+    const param = choices("pulsed", texts.pulsed, options(texts.pulsedNames), "k", () => {
+        const params = lab.store.robot?.status.params ?? {};
+        value.input.value = USUAL_VALUE[param.value] ?? params[param.value] ?? 0;
+        arrange();
+    });
+    const value = numberField("pulse-value", texts.pulseValue(""), { step: "any", value: 0 });
+    const variable = choices("variable", texts.variable, options({ x1: "x1", x2: "x2" }), "x1");
+    const delta = numberField("jump-delta", texts.delta, { min: -2, max: 2, step: 0.1, value: 1 });
+
+    const fields = () => {
+        const made = { mode: mode.value };
+        if (!ALWAYS_ONE_TICK.includes(made.mode)) {
+            made.ticks = Math.round(Number(ticks.input.value));
+            made.shape = shape.value;
+        }
+        if (made.mode === "phase" && sign.value === "given") {
+            made.shift = Number(shift.input.value) * Math.PI;
+        }
+        if (made.mode === "pulse") {
+            made.param = param.value;
+            made.value = Number(value.input.value);
+        }
+        if (made.mode === "jump") {
+            made.variable = variable.value;
+            made.delta = Number(delta.input.value);
+        }
+        return made;
+    };
+
+    const commands = element(
+        "fieldset",
+        { className: "bare" },
+        button(texts.ownKickDo, () => kick(fields()), "kick own"),
+    );
+    const form = element("div", { className: "own-form" });
+    form.append(mode, ticks.root, param, value.root, sign, shift.root, variable, delta.root, shape);
+    form.append(
+        commands,
+        button(texts.askSimulation, () => predict(fields()), "quiet"),
+    );
+    const root = element(
+        "details",
+        { className: "own" },
+        element("summary", {}, texts.ownKick),
+        form,
+    );
+
+    function arrange() {
+        const is = mode.value;
+        show(ticks.root, !ALWAYS_ONE_TICK.includes(is));
+        show(shape, !ALWAYS_ONE_TICK.includes(is));
+        show(sign, is === "phase");
+        show(shift.root, is === "phase" && sign.value === "given");
+        show(param, is === "pulse");
+        show(value.root, is === "pulse");
+        show(variable, is === "jump");
+        show(delta.root, is === "jump");
+        const row = lab.store.robot?.info.params.find(({ name }) => name === param.value);
+        const unit = param.value === "shift_rad" ? "rad" : texts.unit(row?.unit);
+        value.label.textContent = texts.pulseValue(unit);
+        tell();
+    }
+
+    function tell() {
+        const tick_s = lab.store.robot?.tick_s ?? 0;
+        ticks.output.textContent = texts.ticksHint(Number(ticks.input.value) * tick_s);
+        shift.output.textContent = texts.shiftValue(Number(shift.input.value));
+    }
+
+    ticks.input.oninput = shift.input.oninput = tell;
+    arrange();
+    return { root, commands, update: tell };
+}
+
+/** A labelled number with a place for what it means. */
+function numberField(id, text, properties) {
+    const input = element("input", { type: "number", id, ...properties });
+    const label = element("label", { htmlFor: id }, text);
+    const output = element("output", { className: "meaning" });
+    output.htmlFor.add(id);
+    return { input, label, output, root: element("div", { className: "field" }, label, input, output) };
+}

@@ -1,0 +1,74 @@
+/** Small helpers for elements. */
+
+/** @param {string} id @returns {HTMLElement} */
+export const byId = (id) => document.getElementById(id);
+
+/**
+ * A new element.
+ * @param {string} tag
+ * @param {object} properties Properties of the element, such as className.
+ * @param {...(Node | string)} children
+ * @returns {HTMLElement}
+ */
+export function element(tag, properties = {}, ...children) {
+    const made = Object.assign(document.createElement(tag), properties);
+    made.append(...children);
+    return made;
+}
+
+/** Set a text only if it is another one, so that nothing is laid out or read out anew. */
+export function setText(target, text) {
+    if (target.textContent !== text) target.textContent = text;
+}
+
+/** Show or hide an element. */
+export function show(target, visible) {
+    if (target.hidden === visible) target.hidden = !visible;
+}
+
+/**
+ * A button with a text.
+ * @param {string} text
+ * @param {() => void} act What a click does.
+ * @param {string} className
+ */
+export function button(text, act, className = "") {
+    return element("button", { type: "button", textContent: text, onclick: act, className });
+}
+
+/** The options of a choice, from names to labels. */
+export function options(labels) {
+    return Object.entries(labels).map(([value, label]) => ({ value, label }));
+}
+
+/**
+ * A group of choices of which one holds. Not a select: its open list would keep Esc from stopping
+ * the robot.
+ * @param {string} name Unique in the page.
+ * @param {string} legend
+ * @param {{value: *, label: string}[]} options
+ * @param {*} chosen The value at first.
+ * @param {(value: *) => void} onchoice
+ * @returns {HTMLFieldSetElement & {choose: (value: *) => void, value: *}}
+ */
+export function choices(name, legend, options, chosen, onchoice = () => {}) {
+    const group = element("fieldset", { className: "choices" }, element("legend", {}, legend));
+    const inputs = options.map(({ value, label }, index) => {
+        const id = `${name}-${index}`;
+        const input = element("input", { type: "radio", name, id });
+        input.onchange = () => {
+            group.value = value;
+            onchoice(value);
+        };
+        group.append(element("span", {}, input, element("label", { htmlFor: id }, label)));
+        return input;
+    });
+    group.choose = (value) => {
+        group.value = value;
+        inputs.forEach((input, index) => {
+            input.checked = options[index].value === value;
+        });
+    };
+    group.choose(chosen);
+    return group;
+}

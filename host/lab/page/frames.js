@@ -1,0 +1,75 @@
+/** The drawing frames: what is drawn when, and how long it took. */
+
+const BEAT_MS = 200;
+const KEPT = 300;
+
+export class Frames {
+    #drawings = [];
+    #visible = new Set();
+    #times = new Float64Array(KEPT);
+    #beaten = 0;
+
+    /**
+     * @param {() => void} update Called before each frame's drawings.
+     * @param {() => void} beat Called several times a second as long as frames are drawn.
+     */
+    constructor(update, beat) {
+        this.update = update;
+        this.beat = beat;
+        /** How many frames were drawn. */
+        this.count = 0;
+        this.#watch = new IntersectionObserver((entries) => {
+            for (const { target, isIntersecting } of entries) {
+                if (isIntersecting) this.#visible.add(target);
+                else this.#visible.delete(target);
+            }
+        });
+        requestAnimationFrame((now) => this.#frame(now));
+    }
+
+    #watch;
+
+    /**
+     * Draw a canvas in each frame in which it can be seen.
+     * @param {HTMLCanvasElement} canvas
+     * @param {(canvas: HTMLCanvasElement, state: object, theme: object) => void} draw
+     * @param {() => [object, object] | null} view What to draw, and its theme; null for nothing.
+     */
+    add(canvas, draw, view) {
+        this.#drawings.push({ canvas, draw, view });
+        this.#watch.observe(canvas);
+    }
+
+    /** @returns {number} The time that 95 of 100 frames' own drawings stay below, ms. */
+    p95() {
+        const times = this.#times.slice(0, Math.min(this.count, KEPT)).sort();
+        return times.length ? times[Math.floor(0.95 * (times.length - 1))] : 0;
+    }
+
+    // The browser calls no frames on a hidden page: nothing is drawn then, and nothing beats.
+    #frame(now) {
+        requestAnimationFrame((next) => this.#frame(next));
+        if (now - this.#beaten >= BEAT_MS) {
+            this.#beaten = now;
+            this.beat();
+        }
+        const began = performance.now();
+        this.update();
+        for (const { canvas, draw, view } of this.#drawings) {
+            if (!this.#visible.has(canvas)) continue;
+            fit(canvas);
+            const seen = view();
+            if (seen) draw(canvas, ...seen);
+        }
+        this.#times[this.count % KEPT] = performance.now() - began;
+        this.count += 1;
+    }
+}
+
+/** Give a canvas as many pixels as it covers on the screen. */
+function fit(canvas) {
+    const width = Math.round(canvas.clientWidth * devicePixelRatio);
+    const height = Math.round(canvas.clientHeight * devicePixelRatio);
+    if (canvas.width !== width) canvas.width = width;
+    if (canvas.height !== height) canvas.height = height;
+}

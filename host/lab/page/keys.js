@@ -1,0 +1,29 @@
+/** The key that lets this page into the lab. It stands in the address, behind the `#`. */
+
+const KEY = "lab.key";
+const PAGE = "lab.page";
+
+/**
+ * The key of this page. The address keeps it, so that a reload and a copied address work; the
+ * session keeps it, too, in case somebody shortens the address.
+ * @returns {string} The key, empty if there is none.
+ */
+export function readKey() {
+    const match = /^#(?:drive|view)=(.+)$/.exec(location.hash);
+    if (match) sessionStorage.setItem(KEY, decodeURIComponent(match[1]));
+    return sessionStorage.getItem(KEY) ?? "";
+}
+
+/**
+ * The number that the lab gave this page before a reload or a lost connection.
+ * @returns {number | null}
+ */
+export function readPage() {
+    const page = sessionStorage.getItem(PAGE);
+    return page === null ? null : Number(page);
+}
+
+/** @param {number} page The number of this page, to come back with. */
+export function keepPage(page) {
+    sessionStorage.setItem(PAGE, String(page));
+}

@@ -1,0 +1,93 @@
+/** The lab as the panels see it: what is known, and how to ask for something. */
+
+import { Store } from "./store.js";
+import { texts } from "./texts.js";
+
+export class Lab {
+    #waiting = new Map();
+    #number = 0;
+
+    /** @param {{send: (message: object) => boolean, onmessage: Function}} source */
+    constructor(source) {
+        this.source = source;
+        this.store = new Store();
+        /** Whether something has changed since the panels were last updated. */
+        this.changed = true;
+        /** @type {((message: object) => void)[]} Hear every message after the store has taken it. */
+        this.listeners = [];
+        source.onmessage = (message) => this.#take(message);
+    }
+
+    /**
+     * Send a message that nobody answers.
+     * @param {object} message
+     * @returns {boolean} Whether it has left.
+     */
+    send(message) {
+        return this.source.send(message);
+    }
+
+    /**
+     * Send a message and wait for its reply.
+     * @param {object} message Without its `request`.
+     * @returns {Promise<object>} The result. It fails with `{message, hint}`.
+     */
+    request(message) {
+        this.#number += 1;
+        const request = this.#number;
+        return new Promise((resolve, reject) => {
+            if (this.send({ ...message, request })) this.#waiting.set(request, { resolve, reject });
+            else reject(texts.notConnected);
+        });
+    }
+
+    /**
+     * Have the selected robot do something.
+     * @param {string} command As MESSAGES.md says.
+     * @param {object} given Its arguments.
+     * @returns {Promise<object>} The result. It fails with `{message, hint}`.
+     */
+    do(command, given = {}) {
+        const robot = this.store.robot?.name;
+        return this.request({ type: "do", robot, command, arguments: given });
+    }
+
+    /**
+     * The same, where only a refusal has to be said: the robot's state shows that it worked.
+     * @returns {Promise<object | null>} The result, null if it was refused.
+     */
+    async try(command, given = {}) {
+        try {
+            return await this.do(command, given);
+        } catch (error) {
+            this.tell(error);
+            return null;
+        }
+    }
+
+    /** @param {{message: string, hint: string}} note What a person should know. */
+    tell(note) {
+        this.store.note = note;
+        this.changed = true;
+    }
+
+    #take(message) {
+        this.store.take(message);
+        if (message.type === "reply") this.#settle(message);
+        if (message.type === "link" && !message.up) this.#abandon();
+        if (message.type !== "records") this.changed = true;
+        for (const listener of this.listeners) listener(message);
+    }
+
+    #settle({ request, result, error }) {
+        const waiting = this.#waiting.get(request);
+        this.#waiting.delete(request);
+        if (error) waiting?.reject(error);
+        else waiting?.resolve(result);
+    }
+
+    #abandon() {
+        for (const { reject } of this.#waiting.values()) reject(texts.answerLost);
+        this.#waiting.clear();
+    }
+}

@@ -1,0 +1,61 @@
+/** What has to be said across the page: no link, not let in, who drives, and what went wrong. */
+
+import { button, element, setText, show } from "./dom.js";
+import { texts } from "./texts.js";
+
+/**
+ * @param {HTMLElement} root
+ * @param {import("./lab.js").Lab} lab
+ * @returns {() => void} Brings the notices up to date.
+ */
+export function createNotices(root, lab) {
+    const link = notice("alarm");
+    const again = button(texts.again, () => lab.source.open());
+    const role = notice("calm");
+    role.words.id = "who-drives";
+    const ask = button(texts.ask, () => lab.request({ type: "ask" }).catch((no) => lab.tell(no)));
+    const take = button(texts.take, () => lab.request({ type: "take" }).catch((no) => lab.tell(no)));
+    const note = notice("calm");
+    const close = button(texts.close, () => lab.tell(null), "quiet");
+    link.root.append(again);
+    role.root.append(ask, take);
+    note.root.append(close);
+    note.root.setAttribute("role", "alert");
+    root.append(link.root, role.root, note.root);
+
+    return () => {
+        const { store } = lab;
+        const off = !store.link.up;
+        show(link.root, off);
+        show(again, Boolean(store.refused));
+        if (off) setText(link.words, linkWords(store));
+        const { driver, you, asking } = store.baton;
+        const watching = store.link.up && !store.mayDrive;
+        show(role.root, watching);
+        const waits = asking.includes(store.page);
+        const who = driver === null ? texts.nobodyDrives : texts.pageDrives(driver);
+        if (watching) setText(role.words, waits ? `${who} ${texts.asked}` : who);
+        show(ask, !you && !waits);
+        show(take, store.role === "drive" && driver !== null);
+        show(note.root, Boolean(store.note));
+        if (store.note) setText(note.words, sentence(store.note));
+    };
+}
+
+function notice(className) {
+    const words = element("p");
+    const root = element("div", { className: `notice ${className}`, hidden: true }, words);
+    return { root, words };
+}
+
+function linkWords({ refused, link }) {
+    if (refused) return `${texts.refused}: ${sentence(refused)}`;
+    if (!link.ever) return texts.connecting;
+    return texts.noLab((performance.now() - link.since) / 1000);
+}
+
+/** What happened, and what to do next, as a sentence. */
+function sentence({ message, hint }) {
+    const words = hint ? `${message}: ${hint}` : message;
+    return words.charAt(0).toUpperCase() + words.slice(1);
+}

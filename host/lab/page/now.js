@@ -1,0 +1,59 @@
+/** The top of the page: which robot is shown, what it does, and the button that helps. */
+
+import { button, byId, element, setText, show } from "./dom.js";
+import { texts } from "./texts.js";
+
+/**
+ * @param {import("./lab.js").Lab} lab
+ * @returns {() => void} Brings the top up to date.
+ */
+export function createNow(lab) {
+    const [tabs, root] = [byId("robots"), byId("now")];
+    const state = element("b", { className: "state" });
+    const reason = element("span", { className: "reason" });
+    const remedy = button("", () => lab.try(remedy.value), "remedy");
+    root.append(state, reason, remedy);
+    let filled = null;
+    let buttons = [];
+
+    const select = (index) => {
+        lab.store.selected = index;
+        lab.changed = true;
+    };
+
+    return () => {
+        const { robots, robot, mayDrive } = lab.store;
+        if (filled !== robots) {
+            filled = robots;
+            buttons = robots.map(({ name }, index) => button(name, () => select(index)));
+            tabs.replaceChildren(...buttons);
+            show(tabs, robots.length > 1);
+        }
+        buttons.forEach((tab, index) => {
+            tab.setAttribute("aria-current", String(robots[index] === robot));
+            tab.dataset.state = shown(robots[index]);
+        });
+        show(root, Boolean(robot));
+        if (!robot) return;
+        const is = shown(robot);
+        root.dataset.state = is;
+        setText(state, texts.states[is]);
+        const why = is === "lost" ? texts.lostFor(robot.lostFor()) : why_of(robot.status);
+        setText(reason, why);
+        const help = is === "lost" ? null : robot.status.remedy;
+        show(remedy, Boolean(help));
+        remedy.value = help ?? "";
+        setText(remedy, texts.remedies[help] ?? "");
+        remedy.disabled = !mayDrive;
+    };
+}
+
+/** @returns {string} What a robot does, as a key of `texts.states`. */
+function shown(robot) {
+    return robot.lost ? "lost" : robot.state;
+}
+
+function why_of({ state, reason, hint }) {
+    if (state === "running") return "";
+    return [reason, hint].filter(Boolean).join(": ");
+}

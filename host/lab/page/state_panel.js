@@ -1,0 +1,42 @@
+/** What the robot says of itself. */
+
+import { button, element, setText, show } from "./dom.js";
+import { texts } from "./texts.js";
+
+/**
+ * @param {HTMLElement} root
+ * @param {import("./lab.js").Lab} lab
+ * @returns {() => void} Brings the panel up to date.
+ */
+export function createState(root, lab) {
+    const list = element("dl");
+    const values = {};
+    for (const [name, text] of Object.entries(texts.facts)) {
+        values[name] = element("dd");
+        list.append(element("div", {}, element("dt", {}, text), values[name]));
+    }
+    const identify = button(texts.identify, async () => {
+        if (await lab.try("identify")) lab.tell(texts.identified);
+    });
+    root.append(list, identify);
+
+    return () => {
+        const { robot, welcome, mayDrive } = lab.store;
+        identify.disabled = !mayDrive;
+        if (!robot) return;
+        const { info, status } = robot;
+        const facts = {
+            label: `${robot.name}, ${texts.labels[info.label] ?? info.label}`,
+            address: info.uri,
+            motor: info.motor || texts.unknown,
+            battery: status.battery_v > 0 ? texts.volts(status.battery_v) : texts.unknown,
+            punctual: texts.punctual(status),
+            driver: status.controller ?? texts.nobody,
+            unattended: texts.unattended[welcome.unattended?.[robot.name]] ?? texts.unknown,
+            missed: String(robot.missed),
+        };
+        for (const [name, value] of Object.entries(facts)) setText(values[name], value);
+        show(values.missed.parentElement, robot.missed > 0);
+        root.classList.toggle("stale", robot.lost);
+    };
+}

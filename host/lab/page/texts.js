@@ -1,0 +1,232 @@
+/** All words of the page. */
+
+/** @param {number} value @param {number} digits @returns {string} A number with a real minus. */
+export function number(value, digits = 2) {
+    return Number.isFinite(value) ? value.toFixed(digits).replace("-", "\u2212") : "\u2013";
+}
+
+const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
+
+const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
+
+const VERBS = { reverses: "reverse", continues: "continue", stops: "stop" };
+const DONE = { reverses: "reversed", continues: "continued", stops: "stopped" };
+const UNITS = { 1: "", "%": " %" };
+
+export const texts = {
+    title: "Kick control lab",
+    skip: "Skip to the kicks",
+    robots: "Robots",
+    stopButton: "STOP",
+    stopKey: "Esc or Space",
+    stopLabel: "Stop all robots",
+    projector: "Projector",
+    projectorLabel: "Large text for a projector",
+
+    wheels: "Wheels",
+    key: {
+        target: "where the rod is wanted",
+        actual: "where it is",
+        force: "force at the rim",
+        memory: "memory",
+    },
+    handNote: "Drag one to pull it by hand, or hold an arrow key on it.",
+    strips: "The last seconds",
+    planes: "Where the wheels are",
+    lagPlane: "Lag and speed",
+    phiPlane: "Angle and speed",
+    xPlane: "Memory",
+    sliceNote: "a slice of four dimensions",
+    shortSliceNote: "a slice",
+    slice: "Each plane is a slice of four dimensions: angle, speed, x\u2081 and x\u2082.",
+    lagNote:
+        "Lag says how far the angle that the neurons remember lies behind the wheel. A membrane kick" +
+        " makes it jump by half a turn.",
+    floor: "Path on the floor",
+    floorNote: "Calculated from the turns of the wheels since the lab began.",
+
+    kicks: "Kick",
+    guess: "What will the wheels do? Guess first.",
+    guesses: { reverses: "Reverse", continues: "Continue", stops: "Stop", none: "No guess" },
+    whichWheel: "Which wheel",
+    wheelChoices: { both: "Both", left: "Left", right: "Right" },
+    theThree: {
+        membrane: ["Membrane kick", "1 tick", "flips what the neurons remember"],
+        position: ["Position kick", "3 ticks", "shows the neurons the opposite side"],
+        phase: ["Phase kick", "4 ticks", "shows them the wheel 3/4 \u03c0 further on"],
+    },
+    askSimulation: "What does the simulation expect?",
+    ownKick: "Design your own kick",
+    ownKickDo: "Kick like this",
+    kind: "Kind of kick",
+    kinds: {
+        membrane: "Membrane",
+        position: "Position",
+        phase: "Phase",
+        pulse: "Pulse",
+        jump: "Jump",
+    },
+    ticks: "Length in ticks",
+    ticksHint: (seconds) => `${number(seconds, 2)} s`,
+    shift: "Phase shift",
+    shiftValue: (turns) => `${number(turns, 2)} \u03c0 = ${number(turns * Math.PI, 2)} rad`,
+    shiftSign: "Sign of the shift",
+    shiftSigns: { auto: "The one that reverses", given: "As set" },
+    shape: "Shape",
+    shapes: { rectangular: "Rectangular", smooth: "Smooth" },
+    pulsed: "What is pulsed",
+    pulsedNames: { a: "a", tau_s: "tau", k: "k", beta: "beta", shift_rad: "shift" },
+    pulseValue: (unit) => `Value at its height${unit ? ` (${unit})` : ""}`,
+    variable: "What jumps",
+    delta: "By how much",
+
+    lastKick: (kick) => `Last: ${texts.kickLine(kick)}`,
+    noKick: "Nobody has kicked this robot yet.",
+    kickLine: ({ mode, ticks }) =>
+        mode
+            ? `${texts.kinds[mode] ?? mode} kick, ${counted(ticks ?? 1, "tick", "ticks")}`
+            : "A kick",
+    sides: { left: "Left", right: "Right" },
+    verdict: ({ name, shares, outcome }, of) => {
+        const [result, count] = Object.entries(shares ?? {}).reduce(
+            (best, entry) => (entry[1] > best[1] ? entry : best),
+            ["", -1],
+        );
+        const expected = result ? `${count} of ${of} will ${VERBS[result]}.` : "";
+        return [`${name}:`, expected, outcome ? `It ${DONE[outcome]}.` : ""].join(" ").trim();
+    },
+    unknown: "\u2013",
+    ownGuess: (guess, right) =>
+        `Your guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Right." : "Not this time."}`,
+    score: ({ guesses, right }) =>
+        guesses ? `${right} of ${counted(guesses, "guess", "guesses")} right so far.` : "",
+    ifNow: (kick) => `Now, a ${texts.kickLine(kick).toLowerCase()} would:`,
+
+    moves: "Movements",
+    primitives: "Motion primitives",
+    presets: "Settings of the paper",
+    moveNote: "A primitive takes a few kicks, and some seconds.",
+    notReached: (name) => ({ message: `the robot did not reach '${name}'`, hint: "try it again" }),
+    moving: "The robot is on its way \u2026",
+    parameters: "Parameters",
+    parametersNote: "A change holds from the next tick on.",
+    more: "More parameters",
+    paramDoc: ({ doc, minimum, maximum, unit, default: usual }) =>
+        `${capital(doc)}. ${minimum} to ${maximum}${UNITS[unit] ?? ` ${unit}`}, usually ${usual}.`,
+    unit: (unit) => (unit === "1" || !unit ? "" : unit),
+    notANumber: (name) => ({ message: `${name} needs a number`, hint: "write a point: 2.5" }),
+
+    state: "State",
+    states: {
+        idle: "Ready",
+        running: "Running",
+        held: "Held",
+        stopped: "Stopped",
+        fault: "Fault",
+        lost: "Lost",
+        "": "\u2026",
+    },
+    remedies: { start: "Start", clear: "Clear the fault" },
+    lostFor: (seconds) => `No word from the robot for ${number(seconds, 0)} s. The page looks for it.`,
+    facts: {
+        label: "Robot",
+        address: "Address",
+        motor: "Motors",
+        battery: "Battery",
+        punctual: "Ticks",
+        driver: "Controlled by",
+        unattended: "If the driver's page closes",
+        missed: "Records this page missed",
+    },
+    labels: { simulated: "simulated", real: "real", model: "model" },
+    volts: (volts) => `${number(volts, 2)} V`,
+    punctual: ({ late = 0, missed = 0, overrun = 0 }) =>
+        late + missed + overrun === 0
+            ? "all on time"
+            : `${late} late, ${missed} missed, ${overrun} too long`,
+    unattended: { stop: "the robot stops", continue: "the robot goes on" },
+    nobody: "nobody",
+    identify: "Which one is it?",
+    identified: { message: "The robot shows itself for 3 s.", hint: "" },
+
+    recording: "Recording",
+    recordOn: "Record",
+    recordOff: "End the recording",
+    recordingNow: (name) => `Recording to ${name}`,
+    logs: "Logs to download",
+    noLogs: "This lab has recorded no log yet.",
+    download: (name, bytes) => `${name} (${number(bytes / 1e6, 2)} MB)`,
+    downloadFailed: (why) => ({ message: `the log did not come: ${why}`, hint: "try again" }),
+
+    driving: "Who drives",
+    youDrive: "This page drives.",
+    youMay: "Nobody drives. Your first command takes the baton.",
+    pageDrives: (page) => `Page ${page} drives. This page watches.`,
+    nobodyDrives: "Nobody drives. This page watches.",
+    pages: ({ driving, watching }) => `${driving} may drive, ${watching} only watch.`,
+    ask: "Ask to drive",
+    asked: "You have asked to drive. The page that drives can say yes.",
+    take: "Drive from here",
+    leave: "Drive no more",
+    give: (page) => `Let page ${page} drive`,
+    asks: (pages) =>
+        pages.length === 1 ? `Page ${pages[0]} asks to drive.` : `Pages ${pages.join(", ")} ask to drive.`,
+
+    stop: {
+        sent: "STOP is on its way \u2026",
+        confirmed: "Stopped. The robot has confirmed it.",
+        unconfirmed: "NOT confirmed. Look at the wheels: lift the robot, or press its back button.",
+        waiting: "No link to the lab: STOP leaves as soon as it is back. Lift the robot, or press its" +
+        " back button.",
+    },
+
+    connecting: "Connecting to the lab \u2026",
+    noLab: (seconds) =>
+        `No link to the lab for ${number(seconds, 0)} s. What you see is old. The page tries again` +
+        ` by itself; if this lasts, look whether \`kickctl lab\` still runs.`,
+    notConnected: { message: "there is no link to the lab", hint: "wait until it is back" },
+    answerLost: {
+        message: "the link to the lab broke before the answer came",
+        hint: "look at the robot, and try again",
+    },
+    refused: "The lab did not let this page in",
+    again: "Try again",
+    close: "Close",
+
+    delay: (milliseconds) => `shown ${number(milliseconds, 0)} ms late, to run evenly`,
+    keys: "Esc stops all robots, anywhere. Space, too, unless you came to a control by keyboard.",
+    wheelLabel: (side, { omega_rad_s, torque } = {}) =>
+        `${texts.sides[side]} wheel: ${number(omega_rad_s / (2 * Math.PI), 1)} turns per second,` +
+        ` M ${number(torque, 2)}`,
+
+    wheelLabels: {
+        forward: "forward",
+        backward: "backward",
+        rest: "at rest",
+        duty: "duty",
+        turns: "turns/s",
+        stall: "stalls",
+    },
+    stripLabels: { left: "left", right: "right", stall: "stalls", period: "control period" },
+    floorLabels: { start: "start" },
+    scoreLabels: {
+        reverses: "reverses",
+        continues: "continues",
+        stops: "stops",
+        outcome: "what it did",
+        guess: "your guess",
+    },
+
+    said: {
+        kick: (kick) => `Kick: ${texts.kickLine(kick)}.`,
+        outcome: (result) =>
+            `${Object.entries(result)
+                .map(([side, word]) => `${texts.sides[side]} wheel ${DONE[word]}`)
+                .join(", ")}.`,
+        lost: (robot) => `${robot} does not answer.`,
+        found: (robot) => `${robot} is back.`,
+        fault: (robot, reason) => `${robot} is in fault: ${reason}.`,
+        labLost: "The link to the lab is lost.",
+        labFound: "The link to the lab is back.",
+    },
+};
