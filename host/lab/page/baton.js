@@ -1,7 +1,7 @@
 /** Who drives: ask for the baton, take it, hand it on. */
 
 import { button, element, setText, show } from "./dom.js";
-import { texts } from "./texts.js";
+import { sentences, texts } from "./texts.js";
 
 /**
  * @param {HTMLElement} root
@@ -23,7 +23,7 @@ export function createBaton(root, lab) {
         const { baton, role, pages, mayDrive } = lab.store;
         const mine = baton.you ? texts.youDrive : mayDrive ? texts.youMay : "";
         const other = baton.driver === null ? texts.nobodyDrives : texts.pageDrives(baton.driver);
-        setText(who, [mine || other, baton.why].filter(Boolean).join(" "));
+        setText(who, sentences(mine || other, baton.why));
         const others = baton.you ? baton.asking : [];
         setText(asking, others.length ? texts.asks(others) : "");
         if (offered !== others.join()) {

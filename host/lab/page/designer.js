@@ -107,5 +107,10 @@ function numberField(id, text, properties) {
     const label = element("label", { htmlFor: id }, text);
     const output = element("output", { className: "meaning" });
     output.htmlFor.add(id);
-    return { input, label, output, root: element("div", { className: "field" }, label, input, output) };
+    return {
+        input,
+        label,
+        output,
+        root: element("div", { className: "field" }, label, input, output),
+    };
 }

@@ -1,7 +1,7 @@
 /** Kicks: the guess, the three kicks of the paper, and what became of the last one. */
 
 import { createDesigner } from "./designer.js";
-import { button, choices, element, options } from "./dom.js";
+import { button, choices, element, options, show } from "./dom.js";
 import { texts } from "./texts.js";
 import { createVerdict } from "./verdict.js";
 
@@ -53,12 +53,13 @@ export function createKicks(root, lab) {
         big.append(element("b", {}, name), element("span", {}, length), element("small", {}, what));
         return big;
     });
+    const resting = element("p", { className: "resting" }, texts.startFirst);
     const controls = element("fieldset", { className: "bare" });
     const designer = createDesigner(lab, kick, predict);
     controls.append(
         guess,
         wheel,
-        element("div", { className: "three" }, ...three),
+        element("div", { className: "three" }, resting, ...three),
         verdict.root,
         designer.root,
     );
@@ -66,10 +67,11 @@ export function createKicks(root, lab) {
     root.append(controls);
 
     const update = () => {
-        for (const field of [guess, wheel, ...three, designer.commands]) {
-            field.disabled = !lab.store.mayDrive;
-        }
-        const { robot } = lab.store;
+        const { robot, mayDrive } = lab.store;
+        const runs = robot?.state === "running";
+        for (const field of [...three, designer.commands]) field.disabled = !(mayDrive && runs);
+        guess.disabled = wheel.disabled = !mayDrive;
+        show(resting, Boolean(robot) && mayDrive && !runs);
         if (robot) {
             designer.update(robot);
             verdict.update(robot);

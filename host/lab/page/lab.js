@@ -13,7 +13,7 @@ export class Lab {
         this.store = new Store();
         /** Whether something has changed since the panels were last updated. */
         this.changed = true;
-        /** @type {((message: object) => void)[]} Hear every message after the store has taken it. */
+        /** @type {((message: object) => void)[]} Hear each message after the store. */
         this.listeners = [];
         source.onmessage = (message) => this.#take(message);
     }

@@ -81,13 +81,15 @@ function update() {
     if (robot) setText(byId("delay"), texts.delay(1000 * DELAY_TICKS * robot.tick_s));
     byId("hand-note").hidden = !hands[0].allowed;
     for (const side of ["left", "right"]) {
-        byId(`${side}-wheel`).setAttribute("aria-label", texts.wheelLabel(side, views?.wheels[side]));
+        byId(`${side}-wheel`).setAttribute(
+            "aria-label",
+            texts.wheelLabel(side, views?.wheels[side]),
+        );
     }
 }
 
 const hands = ["left", "right"].map(
-    (side) =>
-        new Hand(byId(`${side}-wheel`), side, lab, screen, () => views.angle(side)),
+    (side) => new Hand(byId(`${side}-wheel`), side, lab, screen, () => views.angle(side)),
 );
 const frames = new Frames(update, () => {
     if (lab.store.baton.you) lab.send({ type: "beat" });

@@ -1,7 +1,7 @@
 /** What has to be said across the page: no link, not let in, who drives, and what went wrong. */
 
 import { button, element, setText, show } from "./dom.js";
-import { texts } from "./texts.js";
+import { sentences, texts } from "./texts.js";
 
 /**
  * @param {HTMLElement} root
@@ -14,8 +14,10 @@ export function createNotices(root, lab) {
     const role = notice("calm");
     role.words.id = "who-drives";
     const ask = button(texts.ask, () => lab.request({ type: "ask" }).catch((no) => lab.tell(no)));
-    const take = button(texts.take, () => lab.request({ type: "take" }).catch((no) => lab.tell(no)));
-    const note = notice("calm");
+    const take = button(texts.take, () =>
+        lab.request({ type: "take" }).catch((no) => lab.tell(no)),
+    );
+    const note = notice("note");
     const close = button(texts.close, () => lab.tell(null), "quiet");
     link.root.append(again);
     role.root.append(ask, take);
@@ -38,7 +40,7 @@ export function createNotices(root, lab) {
         show(ask, !you && !waits);
         show(take, store.role === "drive" && driver !== null);
         show(note.root, Boolean(store.note));
-        if (store.note) setText(note.words, sentence(store.note));
+        if (store.note) setText(note.words, sentences(store.note.message, store.note.hint));
     };
 }
 
@@ -49,13 +51,7 @@ function notice(className) {
 }
 
 function linkWords({ refused, link }) {
-    if (refused) return `${texts.refused}: ${sentence(refused)}`;
+    if (refused) return sentences(texts.refused, refused.message, refused.hint);
     if (!link.ever) return texts.connecting;
     return texts.noLab((performance.now() - link.since) / 1000);
-}
-
-/** What happened, and what to do next, as a sentence. */
-function sentence({ message, hint }) {
-    const words = hint ? `${message}: ${hint}` : message;
-    return words.charAt(0).toUpperCase() + words.slice(1);
 }

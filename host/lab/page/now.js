@@ -1,7 +1,7 @@
 /** The top of the page: which robot is shown, what it does, and the button that helps. */
 
 import { button, byId, element, setText, show } from "./dom.js";
-import { texts } from "./texts.js";
+import { sentences, texts } from "./texts.js";
 
 /**
  * @param {import("./lab.js").Lab} lab
@@ -38,7 +38,7 @@ export function createNow(lab) {
         const is = shown(robot);
         root.dataset.state = is;
         setText(state, texts.states[is]);
-        const why = is === "lost" ? texts.lostFor(robot.lostFor()) : why_of(robot.status);
+        const why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status);
         setText(reason, why);
         const help = is === "lost" ? null : robot.status.remedy;
         show(remedy, Boolean(help));
@@ -53,7 +53,7 @@ function shown(robot) {
     return robot.lost ? "lost" : robot.state;
 }
 
-function why_of({ state, reason, hint }) {
+function whyOf({ state, reason, hint }) {
     if (state === "running") return "";
-    return [reason, hint].filter(Boolean).join(": ");
+    return sentences(reason, hint);
 }

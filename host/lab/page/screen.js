@@ -6,8 +6,9 @@ import { media, theme } from "./theme.js";
 const PROJECTOR = "lab.projector";
 // The names of the theme's colours that the key beside the wheels shows.
 const MARKS = ["target", "actual", "force", "memory"];
-// A drawing has room for a line of this many letters.
-const LEAST_LETTERS = 17.5;
+// A drawing has room for a line of this many letters' heights, and for this many lines.
+const LETTERS = 17.5;
+const LINES = 6;
 const WIDE = matchMedia("(min-width: 1600px)");
 
 export class Screen {
@@ -45,7 +46,8 @@ export class Screen {
      * @returns {object}
      */
     themeFor(canvas) {
-        const text = Math.min(this.theme.text, canvas.clientWidth / LEAST_LETTERS);
+        const room = Math.min(canvas.clientWidth / LETTERS, canvas.clientHeight / LINES);
+        const text = Math.min(this.theme.text, room);
         return text < this.theme.text ? { ...this.theme, text } : this.theme;
     }
 }

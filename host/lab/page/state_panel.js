@@ -26,7 +26,7 @@ export function createState(root, lab) {
         if (!robot) return;
         const { info, status } = robot;
         const facts = {
-            label: `${robot.name}, ${texts.labels[info.label] ?? info.label}`,
+            label: texts.robotLabel(robot.name, info.label),
             address: info.uri,
             motor: info.motor || texts.unknown,
             battery: status.battery_v > 0 ? texts.volts(status.battery_v) : texts.unknown,

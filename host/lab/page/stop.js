@@ -100,7 +100,7 @@ export class Stop {
         this.#byKeyboard = false;
     }
 
-    // After a click with the pointer no button keeps the focus, so that Space cannot press it again.
+    // A click leaves the focus on no button, so that Space cannot press it again.
     #release(event) {
         const pressed = event.target.closest?.("button, summary");
         if (pressed && event.detail > 0) document.activeElement?.blur();

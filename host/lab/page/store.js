@@ -31,7 +31,7 @@ export class RobotView {
         this.jumped = { left: new Uint8Array(CAPACITY), right: new Uint8Array(CAPACITY) };
         /** How often the robot has been heard of: a record or a state. */
         this.heard = 0;
-        for (const event of info.events ?? []) this.takeEvent(event);
+        if (info.events) this.takeEvent(info.events);
     }
 
     /** @returns {boolean} Whether the robot itself does not answer. */
@@ -100,7 +100,11 @@ export class RobotView {
 
     /** Give kicks the times at which they begin and end, and mark jumps. */
     #date() {
-        const [tick, t_s, place] = [this.ring.newest("tick"), this.ring.newest("t_s"), this.ring.place(0)];
+        const [tick, t_s, place] = [
+            this.ring.newest("tick"),
+            this.ring.newest("t_s"),
+            this.ring.place(0),
+        ];
         this.jumped.left[place] = this.jumped.right[place] = 0;
         for (let i = this.kicks.length - 1; i >= 0; i -= 1) {
             const kick = this.kicks[i];
@@ -185,7 +189,10 @@ export class Store {
         this.page = message.page;
         this.role = message.role;
         this.robots = message.robots.map((info) => new RobotView(info));
-        this.selected = Math.max(0, this.robots.findIndex(({ name }) => name === shown));
+        this.selected = Math.max(
+            0,
+            this.robots.findIndex(({ name }) => name === shown),
+        );
     }
 
     _refused(message) {
@@ -220,6 +227,7 @@ export class Store {
     }
 
     _baton({ driver, you, asking, why }) {
+        if (this.baton.you && !you && why) this.note = { message: why, hint: "" };
         this.baton = { driver, you, asking, why };
     }
 

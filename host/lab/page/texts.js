@@ -13,6 +13,18 @@ const VERBS = { reverses: "reverse", continues: "continue", stops: "stop" };
 const DONE = { reverses: "reversed", continues: "continued", stops: "stopped" };
 const UNITS = { 1: "", "%": " %" };
 
+/**
+ * What happened, and what to do next, as sentences.
+ * @param {...(string | null | undefined)} parts
+ * @returns {string}
+ */
+export function sentences(...parts) {
+    return parts
+        .filter(Boolean)
+        .map((part) => capital(part) + (/[.?!\u2026]$/.test(part) ? "" : "."))
+        .join(" ");
+}
+
 export const texts = {
     title: "Kick control lab",
     skip: "Skip to the kicks",
@@ -25,30 +37,29 @@ export const texts = {
 
     wheels: "Wheels",
     key: {
-        target: "where the rod is wanted",
-        actual: "where it is",
-        force: "force at the rim",
+        target: "rod wanted here",
+        actual: "rod",
+        force: "force",
         memory: "memory",
     },
     handNote: "Drag one to pull it by hand, or hold an arrow key on it.",
     strips: "The last seconds",
     planes: "Where the wheels are",
-    lagPlane: "Lag and speed",
+    lagPlane: "Lag and speed of both wheels",
     phiPlane: "Angle and speed",
     xPlane: "Memory",
-    sliceNote: "a slice of four dimensions",
-    shortSliceNote: "a slice",
-    slice: "Each plane is a slice of four dimensions: angle, speed, x\u2081 and x\u2082.",
+    sliceNote: "a slice",
+    slice: "each a slice of four dimensions",
     lagNote:
-        "Lag says how far the angle that the neurons remember lies behind the wheel. A membrane kick" +
-        " makes it jump by half a turn.",
+        "The four dimensions are angle, speed, x\u2081 and x\u2082. Lag says how far the angle that" +
+        " the neurons remember lies behind the wheel. A membrane kick makes it jump by half a turn.",
     floor: "Path on the floor",
     floorNote: "Calculated from the turns of the wheels since the lab began.",
 
     kicks: "Kick",
     guess: "What will the wheels do? Guess first.",
     guesses: { reverses: "Reverse", continues: "Continue", stops: "Stop", none: "No guess" },
-    whichWheel: "Which wheel",
+    whichWheel: "Wheels",
     wheelChoices: { both: "Both", left: "Left", right: "Right" },
     theThree: {
         membrane: ["Membrane kick", "1 tick", "flips what the neurons remember"],
@@ -81,6 +92,7 @@ export const texts = {
     delta: "By how much",
 
     lastKick: (kick) => `Last: ${texts.kickLine(kick)}`,
+    startFirst: "The robot does not run. Start it to kick it.",
     noKick: "Nobody has kicked this robot yet.",
     kickLine: ({ mode, ticks }) =>
         mode
@@ -92,7 +104,7 @@ export const texts = {
             (best, entry) => (entry[1] > best[1] ? entry : best),
             ["", -1],
         );
-        const expected = result ? `${count} of ${of} will ${VERBS[result]}.` : "";
+        const expected = result ? `${count} of ${of} will ${VERBS[result]}.` : "\u2026";
         return [`${name}:`, expected, outcome ? `It ${DONE[outcome]}.` : ""].join(" ").trim();
     },
     unknown: "\u2013",
@@ -127,7 +139,8 @@ export const texts = {
         "": "\u2026",
     },
     remedies: { start: "Start", clear: "Clear the fault" },
-    lostFor: (seconds) => `No word from the robot for ${number(seconds, 0)} s. The page looks for it.`,
+    lostFor: (seconds) =>
+        `No word from the robot for ${number(seconds, 0)} s. The page looks for it.`,
     facts: {
         label: "Robot",
         address: "Address",
@@ -138,7 +151,7 @@ export const texts = {
         unattended: "If the driver's page closes",
         missed: "Records this page missed",
     },
-    labels: { simulated: "simulated", real: "real", model: "model" },
+    robotLabel: (name, label) => (name === label ? name : `${name}, ${label}`),
     volts: (volts) => `${number(volts, 2)} V`,
     punctual: ({ late = 0, missed = 0, overrun = 0 }) =>
         late + missed + overrun === 0
@@ -155,7 +168,7 @@ export const texts = {
     recordingNow: (name) => `Recording to ${name}`,
     logs: "Logs to download",
     noLogs: "This lab has recorded no log yet.",
-    download: (name, bytes) => `${name} (${number(bytes / 1e6, 2)} MB)`,
+    download: (name, whole) => (whole ? name : `${name} (still growing)`),
     downloadFailed: (why) => ({ message: `the log did not come: ${why}`, hint: "try again" }),
 
     driving: "Who drives",
@@ -163,27 +176,31 @@ export const texts = {
     youMay: "Nobody drives. Your first command takes the baton.",
     pageDrives: (page) => `Page ${page} drives. This page watches.`,
     nobodyDrives: "Nobody drives. This page watches.",
-    pages: ({ driving, watching }) => `${driving} may drive, ${watching} only watch.`,
+    pages: ({ driving, watching }) =>
+        `${driving ? "One page drives" : "No page drives"}, ${counted(watching, "watches", "watch")}.`,
     ask: "Ask to drive",
     asked: "You have asked to drive. The page that drives can say yes.",
     take: "Drive from here",
     leave: "Drive no more",
     give: (page) => `Let page ${page} drive`,
     asks: (pages) =>
-        pages.length === 1 ? `Page ${pages[0]} asks to drive.` : `Pages ${pages.join(", ")} ask to drive.`,
+        pages.length === 1
+            ? `Page ${pages[0]} asks to drive.`
+            : `Pages ${pages.join(", ")} ask to drive.`,
 
     stop: {
         sent: "STOP is on its way \u2026",
-        confirmed: "Stopped. The robot has confirmed it.",
+        confirmed: "Stopped. The robot confirms it.",
         unconfirmed: "NOT confirmed. Look at the wheels: lift the robot, or press its back button.",
-        waiting: "No link to the lab: STOP leaves as soon as it is back. Lift the robot, or press its" +
-        " back button.",
+        waiting:
+            "No link to the lab: STOP leaves as soon as it is back. Lift the robot, or press its" +
+            " back button.",
     },
 
     connecting: "Connecting to the lab \u2026",
     noLab: (seconds) =>
-        `No link to the lab for ${number(seconds, 0)} s. What you see is old. The page tries again` +
-        ` by itself; if this lasts, look whether \`kickctl lab\` still runs.`,
+        `No link to the lab for ${number(seconds, 0)} s. What you see is old. The page tries` +
+        ` again by itself; if this lasts, look whether \`kickctl lab\` still runs.`,
     notConnected: { message: "there is no link to the lab", hint: "wait until it is back" },
     answerLost: {
         message: "the link to the lab broke before the answer came",

@@ -28,8 +28,10 @@ export function createVerdict(lab) {
         if (asked && (asked.robot !== robot || asked.after !== newest)) asked = null;
         const kick = asked ?? newest;
         setText(title, kick ? (asked ? texts.ifNow : texts.lastKick)(kick) : texts.noKick);
-        show(canvas, Boolean(kick));
         const { prediction, outcome } = kick ?? {};
+        const known = Boolean(prediction || outcome);
+        show(canvas, known);
+        show(sentences, known);
         const sides = SIDES.filter((side) => kick && (kick.wheels ?? SIDES).includes(side));
         view.of = prediction?.of ?? 0;
         view.guess = outcome?.guess ?? null;

@@ -93,7 +93,9 @@ export class Views {
         for (const plane of [this.lag, this.phi, this.x]) {
             Object.assign(plane, { start, count, stale: this.stale });
         }
-        const fastest = Math.max(...SIDES.map((side) => Math.abs(this.wheels[side].omega_rad_s) || 0));
+        const fastest = Math.max(
+            ...SIDES.map((side) => Math.abs(this.wheels[side].omega_rad_s) || 0),
+        );
         this.#fastest = Math.max(this.#fastest, Math.ceil(fastest / TURN));
         for (const plane of [this.lag, this.phi]) {
             [plane.y.minimum, plane.y.maximum] = [-this.#fastest, this.#fastest];
@@ -144,21 +146,20 @@ export class Views {
         const turns = () => ({ symbol: "ω/2π", unit: "1/s", minimum: -3, maximum: 3 });
         const angle = { minimum: -Math.PI, maximum: Math.PI, pi: true, wrap: true, unit: "rad" };
         this.lag = {
-            title: texts.lagPlane,
             note: texts.sliceNote,
             x: { ...angle, symbol: "lag" },
             y: turns(),
             traces: trace("lag_rad", "omega_rad_s", 1 / TURN),
         };
         this.phi = {
-            note: texts.shortSliceNote,
+            note: texts.sliceNote,
             x: { ...angle, symbol: "φ" },
             y: turns(),
             traces: trace("phi_rad", "omega_rad_s", 1 / TURN),
         };
         const potential = { minimum: -1.2, maximum: 1.2, unit: "" };
         this.x = {
-            note: texts.shortSliceNote,
+            note: texts.sliceNote,
             x: { ...potential, symbol: "x₁" },
             y: { ...potential, symbol: "x₂" },
             traces: trace("x1", "x2", 1),
