@@ -37,14 +37,14 @@ export const texts = {
 
     wheels: "Wheels",
     key: {
-        target: "rod wanted here",
-        actual: "rod",
+        target: "target",
+        actual: "actual position",
         force: "force",
         memory: "memory",
     },
     handNote: "Drag one to pull it by hand, or hold an arrow key on it.",
     strips: "The last seconds",
-    planes: "Where the wheels are",
+    planes: "Phase planes",
     lagPlane: "Lag and speed of both wheels",
     phiPlane: "Angle and speed",
     xPlane: "Memory",
