@@ -31,7 +31,7 @@ export class RobotView {
         this.jumped = { left: new Uint8Array(CAPACITY), right: new Uint8Array(CAPACITY) };
         /** How often the robot has been heard of: a record or a state. */
         this.heard = 0;
-        if (info.events) this.takeEvent(info.events);
+        for (const event of info.events ?? []) this.takeEvent(event);
     }
 
     /** @returns {boolean} Whether the robot itself does not answer. */

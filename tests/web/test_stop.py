@@ -1,0 +1,95 @@
+"""STOP on the lab's page: by Esc and Space wherever the focus is, and by the button."""
+
+import pytest
+
+FOCUS = {
+    "nowhere": lambda page: page.click("h1"),
+    "a number": lambda page: page.click("#param-k"),
+    "a slider": lambda page: page.click("input[aria-label=k]"),
+    "a choice": lambda page: page.click("#guess-0"),
+    "a fold": lambda page: page.click(".own summary"),
+    "a kick": lambda page: page.click("#kick-membrane"),
+}
+
+
+def rolls(visitor, station):
+    station.step(0.3)
+    visitor.until("r.state === 'running'")
+
+
+@pytest.mark.parametrize("focus", FOCUS)
+@pytest.mark.parametrize("key", ["Escape", " "])
+def test_a_key_stops_wherever_a_click_has_left_the_focus(visit, station, focus, key):
+    visitor = visit()
+    rolls(visitor, station)
+    FOCUS[focus](visitor.page)
+    kicks = visitor.page.evaluate("document.activeElement.closest('.kick') !== null")
+    assert not kicks
+    visitor.page.keyboard.press(key)
+    visitor.until("r.state === 'stopped' && s.stop.anna === 'confirmed'")
+    assert visitor.page.inner_text("#stop-words") == "Stopped. The robot confirms it."
+
+
+def test_space_does_what_a_control_does_if_the_keyboard_led_there(visit, station):
+    visitor = visit()
+    rolls(visitor, station)
+    visitor.page.click("#guess-3")
+    while visitor.page.evaluate("document.activeElement.id") != "kick-membrane":
+        visitor.page.keyboard.press("Tab")
+    visitor.page.keyboard.press(" ")
+    visitor.until("r.kicks.length === 1")
+    assert visitor.robot()["state"] == "running"
+    visitor.page.keyboard.press("Escape")
+    visitor.until("r.state === 'stopped'")
+
+
+def test_who_only_watches_stops_too(visit, lab, station):
+    visitor = visit(lab.view_url)
+    rolls(visitor, station)
+    visitor.page.click("#stop")
+    visitor.until("r.state === 'stopped'")
+
+
+def test_without_a_link_it_says_so_and_stops_when_it_is_back(visit, lab, station, begin_again):
+    visitor = visit()
+    rolls(visitor, station)
+    lab.__exit__(None, None, None)
+    visitor.until("!s.link.up")
+    visitor.page.keyboard.press("Escape")
+    visitor.until("s.stop.anna === 'waiting'")
+    begin_again()
+    visitor.until("s.stop.anna === 'confirmed' && r.state === 'stopped'")
+    visitor.forgive("WebSocket connection to")
+
+
+def test_it_is_not_confirmed_by_a_robot_that_is_away(visit, station):
+    visitor = visit()
+    rolls(visitor, station)
+    station.stop = lambda who: None
+    visitor.page.keyboard.press("Escape")
+    visitor.until("s.stop.anna === 'unconfirmed'")
+    visitor.page.wait_for_function(
+        "document.getElementById('stop-words').textContent.startsWith('NOT confirmed')"
+    )
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (390, 844), (320, 568), (1920, 1080), (844, 390)])
+def test_the_button_is_in_view_at_every_place_of_the_page(visit, size):
+    visitor = visit(viewport={"width": size[0], "height": size[1]})
+    page = visitor.page
+    reached = page.evaluate(
+        """() => {
+            const stop = document.getElementById("stop"), seen = [];
+            const steps = Math.ceil(document.documentElement.scrollHeight / innerHeight);
+            for (let step = 0; step <= steps; step += 1) {
+                scrollTo(0, step * innerHeight);
+                const box = stop.getBoundingClientRect();
+                const middle = [box.x + box.width / 2, box.y + box.height / 2];
+                const top = document.elementFromPoint(...middle);
+                seen.push(box.height >= 44 && box.width >= 44 && stop.contains(top));
+            }
+            return seen;
+        }"""
+    )
+    assert len(reached) > 1
+    assert all(reached)
