@@ -68,9 +68,8 @@ class Visitor:
 
     def until(self, condition):
         """Wait until a condition on `s`, the page's state, and `r`, its robot, is true."""
-        self.page.wait_for_function(
-            "() => { const s = lab.state(), r = s.robots[s.selected]; return %s; }" % condition
-        )
+        known = "const s = lab.state(), r = s.robots[s.selected]"
+        self.page.wait_for_function(f"() => {{ {known}; return {condition}; }}")
 
 
 @pytest.fixture

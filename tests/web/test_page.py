@@ -84,8 +84,7 @@ def test_a_log_is_recorded_and_downloaded(visit, station):
     with visitor.page.expect_download() as download:
         visitor.page.click(".logs button")
     assert download.value.suggested_filename.endswith(".mcap")
-    with open(download.value.path(), "rb") as log:
-        assert log.read(8) == b"\x89MCAP0\r\n"
+    assert download.value.path().read_bytes().startswith(b"\x89MCAP0\r\n")
 
 
 def test_a_reload_in_the_middle_keeps_page_and_baton(visit, station):
@@ -150,12 +149,3 @@ def test_a_fault_has_a_button_that_clears_it(visit, station):
     visitor.page.click(".remedy")
     station.step(0.3)
     visitor.until("r.state === 'running'")
-
-
-def test_nothing_is_drawn_on_a_page_that_sleeps(visit):
-    visitor = visit()
-    session = visitor.context.new_cdp_session(visitor.page)
-    session.send("Page.setWebLifecycleState", {"state": "frozen"})
-    frames = visitor.state()["drawing"]["frames"]
-    session.send("Page.setWebLifecycleState", {"state": "active"})
-    visitor.until(f"s.drawing.frames > {frames}")

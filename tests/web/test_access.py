@@ -1,0 +1,100 @@
+"""The page for everybody: axe-core, keyboard alone, a narrow screen, less motion."""
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+
+def assert_no_findings(page):
+    """Have axe-core look at the page as it is."""
+    results = Axe().run(page, options={"runOnly": ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"]})
+    assert results.response["passes"]
+    assert results.violations_count == 0, results.generate_report()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_in_any_main_state(visit, lab, station, scheme):
+    visitor = visit(color_scheme=scheme)
+    page = visitor.page
+    page.click(".own summary")
+    page.click("#parameters summary")
+    page.click("#kick-phase")
+    visitor.until("r.kicks.length === 1")
+    assert_no_findings(page)
+    page.keyboard.press("Escape")
+    visitor.until("r.state === 'stopped'")
+    assert_no_findings(page)
+    station._link.loop.fail("the left motor does not answer")
+    station.step(0.3)
+    visitor.until("r.state === 'fault' && r.status.remedy === 'clear'")
+    assert_no_findings(page)
+    watcher = visit(lab.view_url, color_scheme=scheme)
+    assert watcher.page.is_visible("#who-drives")
+    assert_no_findings(watcher.page)
+    clock = station.clock
+    station.clock = lambda: clock() + 30
+    visitor.until("r.lost")
+    assert_no_findings(page)
+
+
+def test_a_page_that_is_not_let_in_has_no_findings(visit, lab):
+    visitor = visit()
+    page = visitor.context.new_page()
+    page.goto(lab.view_url + "not")
+    page.wait_for_function("lab.state().refused")
+    assert_no_findings(page)
+
+
+def press_until(page, key, condition):
+    """Press a key until a condition on the focused element `e` holds."""
+    for _ in range(80):
+        if page.evaluate(f"(() => {{ const e = document.activeElement; return {condition}; }})()"):
+            return
+        page.keyboard.press(key)
+    pytest.fail(f"no {key} leads to {condition}")
+
+
+def test_the_keyboard_alone_guesses_kicks_stops_and_starts(visit, station):
+    visitor = visit()
+    page = visitor.page
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip to the kicks"
+    page.keyboard.press("Enter")
+    press_until(page, "Tab", "e.name === 'guess'")
+    press_until(page, "ArrowRight", "e.id === 'guess-0'")
+    press_until(page, "Tab", "e.id === 'kick-phase'")
+    page.keyboard.press("Enter")
+    visitor.until("r.kicks.length === 1")
+    station.step(2.5)
+    page.keyboard.press("Escape")
+    visitor.until("r.state === 'stopped'")
+    press_until(page, "Shift+Tab", "e.className === 'remedy'")
+    page.keyboard.press("Enter")
+    station.step(0.3)
+    visitor.until("r.state === 'running'")
+    press_until(page, "Shift+Tab", "e.id === 'stop' || e.id === 'projector'")
+    focus = page.evaluate("getComputedStyle(document.activeElement).outlineStyle")
+    assert focus == "solid"
+
+
+@pytest.mark.parametrize("width", [320, 390, 768, 1280, 1920])
+def test_nothing_scrolls_sideways(visit, width):
+    visitor = visit(viewport={"width": width, "height": 800})
+    visitor.page.click(".own summary")
+    visitor.page.click("#parameters summary")
+    wide = visitor.page.evaluate("document.documentElement.scrollWidth")
+    assert wide <= width
+
+
+def test_the_first_screen_has_what_is_needed_most(visit):
+    visitor = visit()
+    for name in ("#left-wheel", "#right-wheel", "#lag-plane", "#strips", "#kick-phase", "#stop"):
+        box = visitor.page.locator(name).bounding_box()
+        assert box["y"] >= 0, name
+        assert box["y"] + box["height"] <= 720, name
+
+
+def test_kicks_and_stop_are_large_enough_for_a_thumb(visit):
+    visitor = visit(viewport={"width": 390, "height": 844})
+    for name in ("#kick-membrane", "#kick-position", "#kick-phase", "#stop"):
+        box = visitor.page.locator(name).bounding_box()
+        assert box["height"] >= 44, name

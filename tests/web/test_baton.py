@@ -1,0 +1,67 @@
+"""Who drives: several pages in one lab, and a driver who is not there any more."""
+
+import pytest
+from playwright.sync_api import Error
+
+from host.lab.station import STOP
+from host.lab.stepped_station import SteppedStation
+
+
+@pytest.fixture
+def station():
+    """A robot that stops when nobody attends to it."""
+    station = SteppedStation("sim://?seed=1", "anna", STOP)
+    yield station
+    station.close()
+
+
+def take_baton(visitor):
+    visitor.page.fill("#param-k", "7")
+    visitor.page.keyboard.press("Enter")
+    visitor.until("s.baton.you")
+
+
+def test_a_page_that_watches_says_why_and_gets_the_baton_when_it_asks(visit, lab):
+    driver, pupil = visit(), visit(lab.view_url)
+    take_baton(driver)
+    pupil.until("s.baton.driver !== null && !s.baton.you")
+    assert pupil.page.is_disabled("#kick-phase")
+    assert pupil.page.is_disabled("#param-k")
+    assert "drives. This page watches." in pupil.page.inner_text("#who-drives")
+    pupil.page.click("#notices >> text=Ask to drive")
+    pupil.page.wait_for_function(
+        "document.getElementById('who-drives').innerText.includes('You have asked')"
+    )
+    page = pupil.state()["page"]
+    driver.page.click(f"text=Let page {page} drive")
+    pupil.until("s.baton.you")
+    pupil.page.wait_for_selector("#kick-phase:enabled")
+    driver.page.wait_for_selector("#kick-phase:disabled")
+    driver.until("s.note && s.note.message.includes('given')")
+    driver.page.click("#notices >> text=Drive from here")
+    pupil.until("!s.baton.you")
+
+
+def test_a_driver_may_leave(visit):
+    driver = visit()
+    take_baton(driver)
+    driver.page.click("text=Drive no more")
+    driver.until("s.baton.driver === null && r.state === 'stopped'")
+    driver.page.wait_for_selector(".remedy:enabled")  # the first command takes it again
+
+
+@pytest.mark.parametrize("way", ["closed", "asleep", "crashed"])
+def test_the_robot_stops_if_its_drivers_page_is_gone(visit, lab, station, way):
+    driver, other = visit(), visit(lab.view_url)
+    take_baton(driver)
+    other.until("s.baton.driver !== null && r.state === 'running'")
+    if way == "closed":
+        driver.page.close()
+    elif way == "asleep":
+        session = driver.context.new_cdp_session(driver.page)
+        session.send("Emulation.setVirtualTimePolicy", {"policy": "pause"})
+    else:
+        with pytest.raises(Error):
+            driver.page.goto("chrome://crash", timeout=2000)
+    other.until("s.baton.driver === null && r.state === 'stopped'")
+    assert "silent" in other.page.inner_text("#baton")
