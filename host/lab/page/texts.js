@@ -2,7 +2,7 @@
 
 /** @param {number} value @param {number} digits @returns {string} A number with a real minus. */
 export function number(value, digits = 2) {
-    return Number.isFinite(value) ? value.toFixed(digits).replace("-", "\u2212") : "\u2013";
+    return Number.isFinite(value) ? value.toFixed(digits).replace("-", "−") : "–";
 }
 
 const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
@@ -21,7 +21,7 @@ const UNITS = { 1: "", "%": " %" };
 export function sentences(...parts) {
     return parts
         .filter(Boolean)
-        .map((part) => capital(part) + (/[.?!\u2026]$/.test(part) ? "" : "."))
+        .map((part) => capital(part) + (/[.?!…]$/.test(part) ? "" : "."))
         .join(" ");
 }
 
@@ -51,8 +51,8 @@ export const texts = {
     sliceNote: "a slice",
     slice: "each a slice of four dimensions",
     lagNote:
-        "The four dimensions are angle, speed, x\u2081 and x\u2082. Lag says how far the angle that" +
-        " the neurons remember lies behind the wheel. A membrane kick makes it jump by half a turn.",
+        "The four dimensions are angle, speed, x₁ and x₂. Lag says how far the angle that the" +
+        " neurons remember lies behind the wheel. A membrane kick makes it jump by half a turn.",
     floor: "Path on the floor",
     floorNote: "Calculated from the turns of the wheels since the lab began.",
 
@@ -64,7 +64,7 @@ export const texts = {
     theThree: {
         membrane: ["Membrane kick", "1 tick", "flips what the neurons remember"],
         position: ["Position kick", "3 ticks", "shows the neurons the opposite side"],
-        phase: ["Phase kick", "4 ticks", "shows them the wheel 3/4 \u03c0 further on"],
+        phase: ["Phase kick", "4 ticks", "shows them the wheel 3/4 π further on"],
     },
     askSimulation: "What does the simulation expect?",
     ownKick: "Design your own kick",
@@ -80,13 +80,13 @@ export const texts = {
     ticks: "Length in ticks",
     ticksHint: (seconds) => `${number(seconds, 2)} s`,
     shift: "Phase shift",
-    shiftValue: (turns) => `${number(turns, 2)} \u03c0 = ${number(turns * Math.PI, 2)} rad`,
+    shiftValue: (turns) => `${number(turns, 2)} π = ${number(turns * Math.PI, 2)} rad`,
     shiftSign: "Sign of the shift",
     shiftSigns: { auto: "The one that reverses", given: "As set" },
     shape: "Shape",
     shapes: { rectangular: "Rectangular", smooth: "Smooth" },
     pulsed: "What is pulsed",
-    pulsedNames: { a: "a", tau_s: "tau", k: "k", beta: "beta", shift_rad: "shift" },
+    pulsedNames: { a: "a", tau_s: "τ", k: "k", beta: "beta", shift_rad: "shift" },
     pulseValue: (unit) => `Value at its height${unit ? ` (${unit})` : ""}`,
     variable: "What jumps",
     delta: "By how much",
@@ -104,10 +104,10 @@ export const texts = {
             (best, entry) => (entry[1] > best[1] ? entry : best),
             ["", -1],
         );
-        const expected = result ? `${count} of ${of} will ${VERBS[result]}.` : "\u2026";
+        const expected = result ? `${count} of ${of} will ${VERBS[result]}.` : "…";
         return [`${name}:`, expected, outcome ? `It ${DONE[outcome]}.` : ""].join(" ").trim();
     },
-    unknown: "\u2013",
+    unknown: "–",
     ownGuess: (guess, right) =>
         `Your guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Right." : "Not this time."}`,
     score: ({ guesses, right }) =>
@@ -119,7 +119,7 @@ export const texts = {
     presets: "Settings of the paper",
     moveNote: "A primitive takes a few kicks, and some seconds.",
     notReached: (name) => ({ message: `the robot did not reach '${name}'`, hint: "try it again" }),
-    moving: "The robot is on its way \u2026",
+    moving: "The robot is on its way …",
     parameters: "Parameters",
     parametersNote: "A change holds from the next tick on.",
     more: "More parameters",
@@ -136,7 +136,7 @@ export const texts = {
         stopped: "Stopped",
         fault: "Fault",
         lost: "Lost",
-        "": "\u2026",
+        "": "…",
     },
     remedies: { start: "Start", clear: "Clear the fault" },
     lostFor: (seconds) =>
@@ -177,7 +177,8 @@ export const texts = {
     pageDrives: (page) => `Page ${page} drives. This page watches.`,
     nobodyDrives: "Nobody drives. This page watches.",
     pages: ({ driving, watching }) =>
-        `${driving ? "One page drives" : "No page drives"}, ${counted(watching, "watches", "watch")}.`,
+        (driving ? "One page drives, " : "No page drives, ") +
+        `${counted(watching, "watches", "watch")}.`,
     ask: "Ask to drive",
     asked: "You have asked to drive. The page that drives can say yes.",
     take: "Drive from here",
@@ -189,7 +190,7 @@ export const texts = {
             : `Pages ${pages.join(", ")} ask to drive.`,
 
     stop: {
-        sent: "STOP is on its way \u2026",
+        sent: "STOP is on its way …",
         confirmed: "Stopped. The robot confirms it.",
         unconfirmed: "NOT confirmed. Look at the wheels: lift the robot, or press its back button.",
         waiting:
@@ -197,7 +198,7 @@ export const texts = {
             " back button.",
     },
 
-    connecting: "Connecting to the lab \u2026",
+    connecting: "Connecting to the lab …",
     noLab: (seconds) =>
         `No link to the lab for ${number(seconds, 0)} s. What you see is old. The page tries` +
         ` again by itself; if this lasts, look whether \`kickctl lab\` still runs.`,
