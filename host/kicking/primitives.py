@@ -71,7 +71,14 @@ def headings(robot: Robot, log: Log) -> dict[str, str]:
     return {side: heading(log, side, log.records[-1].tick) for side in WHEELS}
 
 
-def drive(robot: Robot, log: Log, primitive: str, motor: Constants | None = None) -> dict[str, Any]:
+def drive(
+    robot: Robot,
+    log: Log,
+    primitive: str,
+    motor: Constants | None = None,
+    *,
+    planned: bool = True,
+) -> dict[str, Any]:
     """Bring a robot that runs into a primitive.
 
     Args:
@@ -80,6 +87,8 @@ def drive(robot: Robot, log: Log, primitive: str, motor: Constants | None = None
         primitive: A key of PRIMITIVES.
         motor: The constants of its motors; by default those of the motor that the robot says it
             has. To stop it, nobody has to know them.
+        planned: Whether to plan kicks, for which a map of their effects may have to be computed
+            first; else every wheel that turns the wrong way gets a membrane inversion.
 
     Returns:
         {primitive, reached, before, after, kicks, k, k_before}: whether the robot reached it, the
@@ -88,12 +97,15 @@ def drive(robot: Robot, log: Log, primitive: str, motor: Constants | None = None
     Raises:
         KickctlError: The robot does not run, or cannot be reached, or its motor is not known.
     """
-    if motor is None and primitive != "stopped":
+    stops = primitive == "stopped"
+    if not planned or stops:
+        motor = None
+    elif motor is None:
         motor = motor_of(robot)
     wanted = dict(zip(WHEELS, PRIMITIVES[primitive], strict=True))
     before = headings(robot, log)
     k_before = float(robot.status()["params"]["k"])
-    kicks = _stop(robot, log) if motor is None else _roll(robot, log, wanted, motor)
+    kicks = _stop(robot, log) if stops else _roll(robot, log, wanted, motor)
     after = headings(robot, log)
     return {
         "primitive": primitive,
@@ -106,7 +118,7 @@ def drive(robot: Robot, log: Log, primitive: str, motor: Constants | None = None
     }
 
 
-def _roll(robot: Robot, log: Log, wanted: dict[str, str], motor: Constants) -> list[Outcome]:
+def _roll(robot: Robot, log: Log, wanted: dict[str, str], motor: Constants | None) -> list[Outcome]:
     """Kick the wheels that do not head as wanted until they do."""
     _restore_k(robot, log)
     kicks: list[Outcome] = []
@@ -115,7 +127,8 @@ def _roll(robot: Robot, log: Log, wanted: dict[str, str], motor: Constants) -> l
         wrong = [side for side in WHEELS if present[side] != wanted[side]]
         if not wrong:
             break
-        params = robot.status()["params"] if len(kicks) < PLANNED_KICKS else None
+        plans = motor is not None and len(kicks) < PLANNED_KICKS
+        params = robot.status()["params"] if plans else None
         kicks.append(
             _kick(
                 robot,
@@ -127,7 +140,7 @@ def _roll(robot: Robot, log: Log, wanted: dict[str, str], motor: Constants) -> l
 
 
 def plan(
-    robot: Robot, present: str, wanted: str, params: dict[str, Any] | None, motor: Constants
+    robot: Robot, present: str, wanted: str, params: dict[str, Any] | None, motor: Constants | None
 ) -> Plan:
     """The kick that turns a wheel from one heading to another.
 
@@ -136,13 +149,13 @@ def plan(
         present: The wheel's heading.
         wanted: The other heading.
         params: The robot's parameters by name; None for a kick that needs no map.
-        motor: The constants of the robot's motors.
+        motor: The constants of the robot's motors; None for a kick that needs no map.
     """
     if present == STOPPED:
         return Plan(PHASE, DEFAULT_TICKS[PHASE], SHIFT_TOWARD[wanted])
     planned = (
         reversal(DIRECTIONS[present], params, robot.on_trouble, motor)
-        if params and present in DIRECTIONS
+        if params and motor is not None and present in DIRECTIONS
         else None
     )
     return planned or Plan(MEMBRANE, DEFAULT_TICKS[MEMBRANE])

@@ -19,7 +19,9 @@ from host.client.stop import Stopped, stop_robot
 from host.errors import KickctlError, NoLink, NotDone
 from host.lab.station import STOP, Answer, Station, stop_words
 from host.link.addresses import make_link
+from host.logs.tap import Event
 from host.util.own_name import own_name
+from robot.record import Record
 
 # How long somebody who drives counts as there without a new sign (s). Then heartbeats cease, and
 # the robot stops by its own dead-man: so it does if this program hangs.
@@ -38,6 +40,19 @@ class _Job(NamedTuple):
     arguments: dict[str, Any]
     answer: Answer
     stops: int
+
+
+class _UntilStop:
+    """A tap that raises in the thread that waits for records, as soon as a check raises."""
+
+    def __init__(self, check: Callable[[], None]) -> None:
+        self._check = check
+
+    def take_records(self, records: list[Record]) -> None:
+        self._check()
+
+    def take_event(self, event: Event) -> None:
+        self._check()
 
 
 class LiveStation(Station):
@@ -81,7 +96,7 @@ class LiveStation(Station):
         self._attended_until = 0.0
         self._release_wanted = False
         self._who = own_name()
-        self._busy = ""
+        self._performs = False
         self._threads = [
             threading.Thread(target=work, name=f"lab {what} {name}", daemon=True)
             for what, work in (
@@ -144,9 +159,10 @@ class LiveStation(Station):
 
     def do(self, command: str, arguments: dict[str, Any], answer: Answer) -> None:
         """Carry out a command in the drive thread; a stop that comes meanwhile cancels it."""
-        if self._busy and command not in _HARMLESS:
-            answer(NotDone(f"the robot is busy with {self._busy}", "wait, or stop it"))
+        if self._performs and command not in _HARMLESS:
+            answer(NotDone("the robot is being brought into a primitive", "wait, or stop it"))
             return
+        self._performs = self._performs or command == "primitive"
         self._jobs.put(_Job(command, arguments, answer, self._stops))
 
     def attend(self) -> None:
@@ -171,6 +187,7 @@ class LiveStation(Station):
     def _drive(self) -> None:
         while (job := self._jobs.get()) is not None:
             self._work(job)
+            self._performs = self._performs and job.command != "primitive"
             if job.stops != self._stops and job.command not in (*_HARMLESS, "release"):
                 # What was under way when the stop came may have moved the robot after it.
                 self._stop_wanted.set()
@@ -199,14 +216,28 @@ class LiveStation(Station):
             if job.command == "identify":
                 return robot.identify()
             return self._record(robot, bool(job.arguments["on"]))
-        if job.stops != self._stops:
-            raise NotDone("the robot was stopped meanwhile", "try it again")
+        self._require_no_stop(job)
+        if job.command == "primitive":
+            return self._bring(job)
         if job.command == "release":
             driver = self._driving
             if driver is not None and driver.may_drive:
                 driver.release()
             return {}
         return self._carry_out(self._driver_now(), job.command, job.arguments)
+
+    def _require_no_stop(self, job: _Job) -> None:
+        if job.stops != self._stops:
+            raise NotDone("the robot was stopped meanwhile", "try it again")
+
+    def _bring(self, job: _Job) -> dict[str, Any]:
+        """Bring the robot into a primitive. A stop ends that with the next record."""
+        robot, watch = self._driver_now(), _UntilStop(lambda: self._require_no_stop(job))
+        robot.add_tap(watch)
+        try:
+            return self._perform(robot, job.arguments["name"])
+        finally:
+            robot.remove_tap(watch)
 
     @property
     def _driving(self) -> Robot | None:

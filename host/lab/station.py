@@ -16,6 +16,8 @@ from host.client.robot import Robot
 from host.client.stop import Stopped
 from host.client.watching import Watcher
 from host.errors import KickctlError, WrongUse, printable
+from host.kicking.outcome import require_running
+from host.kicking.primitives import drive
 from host.lab import derived
 from host.lab.recording import Recording
 from host.lab.ring import Ring
@@ -247,6 +249,15 @@ class Station:
             kick["id"] = uuid.uuid4().hex
             return {"tick": robot.command("kick", kick=kick), "kick_id": kick["id"]}
         raise WrongUse(f"there is no command '{printable(command)}'", "reload the page")
+
+    def _perform(self, robot: Robot, primitive: str) -> dict[str, Any]:
+        """Bring the robot into a primitive, by kicks that need no plan. Raises KickctlError."""
+        robot.lease()
+        if robot.status()["state"] in ("idle", "stopped"):
+            robot.start()
+        require_running(robot)
+        with robot.recording() as log:
+            return drive(robot, log, primitive, planned=False)
 
     def _record(self, robot: Watcher, on: bool) -> dict[str, Any]:
         """Begin or end a log of the robot. Raises KickctlError or OSError."""

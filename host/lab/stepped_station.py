@@ -51,6 +51,8 @@ class SteppedStation(Station):
                     result = self._robot.identify()
                 elif command == "record":
                     result = self._record(self._robot, bool(arguments["on"]))
+                elif command == "primitive":
+                    result = self._perform(self._robot, arguments["name"])
                 else:
                     result = self._carry_out(self._robot, command, arguments)
             except KickctlError as error:

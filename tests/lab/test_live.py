@@ -208,6 +208,21 @@ def test_a_stop_passes_a_connection_that_waits_for_an_answer(station, observer):
             wait_until(lambda: state(observer) == "stopped", "the robot stops")
 
 
+def test_a_primitive_is_reached_and_a_stop_ends_it_at_once(station, observer):
+    with Beating(station):
+        answers = Answers()
+        station.do("primitive", {"name": "spin-left"}, answers)
+        station.do("kick", {"mode": "membrane"}, answers)
+        assert "into a primitive" in answers.next().message
+        assert answers.next()["after"] == {"left": "backward", "right": "forward"}
+        station.do("primitive", {"name": "forward"}, answers)
+        observer.wait(0.2)
+        station.stop("page 1")
+        assert "stopped meanwhile" in answers.next().message
+        assert state(observer) == "stopped"
+        started(station)
+
+
 def test_it_identifies_and_records_without_driving(station, observer, tmp_path):
     answers = Answers()
     station.do("identify", {}, answers)
