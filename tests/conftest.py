@@ -40,6 +40,7 @@ REAL_TIME = (
     "tests/cli/test_watch_terminal.py",
     "tests/contract/test_motor.py",
     "tests/deploy/",
+    "tests/lab/test_forecasts.py",
     "tests/lab/test_live.py",
     "tests/lab/test_web.py",
     "tests/link/test_own_motors.py",

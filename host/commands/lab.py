@@ -61,12 +61,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Serve the page until ^C. Raises KickctlError if that cannot begin."""
+    from host.lab.forecasts import Forecasts
     from host.lab.server import Lab
 
     with ExitStack() as stack:
+        forecasts = Forecasts()
+        stack.callback(forecasts.close)
         stations = [_station(robot, options, stack) for robot in _robots(options)]
-        lab = stack.enter_context(Lab(stations, options.port, options.host))
+        lab = stack.enter_context(Lab(stations, options.port, options.host, forecasts=forecasts))
         with suppress(KeyboardInterrupt):
+            forecasts.begin()
             _tell(lab, stations, options)
             threading.Event().wait()
     return 0

@@ -13,6 +13,7 @@ from typing import Any, Self
 from aiohttp import web
 
 from host.errors import KickctlError, NotDone, WrongUse
+from host.lab.forecasts import Forecasts
 from host.lab.keys import Keys
 from host.lab.session import Session
 from host.lab.station import Station
@@ -35,6 +36,7 @@ class Lab:
         host: An address of this machine on which others may watch, beside this computer; None if
             nobody else may.
         folder: The page's files.
+        forecasts: Where kicks are predicted; None if nowhere. It is the caller's, too.
 
     Attributes:
         session: What pages and robots have to do with each other.
@@ -48,12 +50,15 @@ class Lab:
         port: int = PORT,
         host: str | None = None,
         folder: Path = PAGE_FOLDER,
+        forecasts: Forecasts | None = None,
     ) -> None:
         self.keys = Keys()
         self.session = Session(self.keys, stations)
         self.drive_url = self.view_url = ""
         self._site = Site(self.session, folder)
         self._stations = stations
+        for station in stations:
+            station.forecasts = forecasts
         self._port = port
         self._hosts = [LOOPBACK, *([host] if host not in (None, LOOPBACK) else [])]
         self._loop = asyncio.new_event_loop()
@@ -84,7 +89,7 @@ class Lab:
 
     def hear(self, message: dict[str, Any]) -> None:
         """Give a message to all pages."""
-        self.call(lambda: self.session.broadcast(message))
+        self.call(lambda: self.session.hear(message))
 
     def wake(self) -> None:
         """There are new records, or the state of a robot has changed."""

@@ -6,7 +6,9 @@ by themselves and never make it wait.
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotabl
 from host.lab import requests
 from host.lab.baton import Baton
 from host.lab.keys import DRIVE, Keys
-from host.lab.page_end import Departed, Page
+from host.lab.page_end import Departed, Page, Score
 from host.lab.presets import PRESETS, PRIMITIVES, describe_presets, describe_primitives
 from host.lab.station import STOP, Station
 
@@ -24,6 +26,8 @@ MAX_STRANGERS = 64
 # How long a connection may take to join (s), and how often states are sent at least.
 JOIN_S = 5.0
 STATE_S = 1.0
+# How many kicks may wait for their outcome.
+GUESSES_KEPT = 64
 Message = dict[str, Any]
 
 
@@ -49,6 +53,7 @@ class Session:
         self._states: dict[str, Message] = {}
         self._states_due = 0.0
         self._counted = (0, 0)
+        self._guesses: dict[str, tuple[str | None, Score]] = {}
 
     # Connections.
 
@@ -124,6 +129,22 @@ class Session:
                 self.broadcast(state)
         self._tell()
 
+    def hear(self, message: Message) -> None:
+        """Take in what a station says, and tell all pages."""
+        if message["type"] == "outcome":
+            self._tell_outcome(message)
+        else:
+            self.broadcast(message)
+
+    def _tell_outcome(self, outcome: Message) -> None:
+        """Tell each page what a kick did, what was guessed, and how often it guessed right."""
+        guess, score = self._guesses.pop(outcome["kick_id"], (None, None))
+        if guess is not None and score is not None:
+            score.guesses += 1
+            score.right += all(result == guess for result in outcome["result"].values())
+        for page in self.pages.values():
+            page.send({**outcome, "guess": guess, "score": asdict(page.score)})
+
     def broadcast(self, message: Message) -> None:
         """Send a message to all pages."""
         for page in self.pages.values():
@@ -149,7 +170,8 @@ class Session:
         elif kind == "logs":
             page.answer(request, {"logs": self.logs()})
         elif kind == "predict":
-            raise NotDone("this lab cannot predict kicks yet", "kick, and see what happens")
+            kick = requests.kick_of(message.get("kick"))
+            self._station(message).predict(kick, lambda result: page.answer(request, result))
         else:
             raise WrongUse(f"there is no message '{quotable(kind)}'", requests.RELOAD)
 
@@ -230,8 +252,14 @@ class Session:
         if not isinstance(fields, dict):
             raise WrongUse("the arguments are no object", requests.RELOAD)
         arguments = self._checked(station, command, fields)
+        guess = requests.guess_of(fields) if command == "kick" else None
         self.baton.need(page.number, page.role, now)
         station.attend()
+        if command == "kick":
+            arguments["id"] = uuid.uuid4().hex
+            self._guesses[arguments["id"]] = guess, page.score
+            while len(self._guesses) > GUESSES_KEPT:
+                del self._guesses[next(iter(self._guesses))]
 
         def answered(result: Message | KickctlError) -> None:
             page.answer(request, result)
@@ -247,8 +275,6 @@ class Session:
             return {"name": fields["name"]}
         if command not in requests.CHECKS:
             raise WrongUse(f"there is no command '{quotable(command)}'", requests.RELOAD)
-        if command == "kick":
-            requests.guess_of(fields)
         checked = requests.CHECKS[command](fields)
         if station.rule == STOP and checked.get("set", {}).get("link_loss") == "continue":
             raise RefusedByRobot(

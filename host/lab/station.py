@@ -7,7 +7,6 @@ This part does no I/O and knows no threads. `LiveStation` connects it to a robot
 from __future__ import annotations
 
 import struct
-import uuid
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -15,10 +14,13 @@ from typing import Any, Protocol
 from host.client.robot import Robot
 from host.client.stop import Stopped
 from host.client.watching import Watcher
-from host.errors import KickctlError, WrongUse, printable
+from host.errors import KickctlError, NotDone, WrongUse, printable
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
+from host.kicking.robot_motor import MEASURE
 from host.lab import derived
+from host.lab.forecasts import Forecasts, Question
+from host.lab.kicks import Kicks, motor_known, stall
 from host.lab.recording import Recording
 from host.lab.ring import Ring
 from host.logs.tap import Event
@@ -82,6 +84,7 @@ class Station:
         pages: Where news goes.
         recording: The log that is being written, or None.
         logs: The logs that this lab has recorded, by the names of their files.
+        forecasts: Where kicks are predicted; None if nowhere.
         trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
     """
 
@@ -95,6 +98,7 @@ class Station:
         self.rule = rule
         self.ring = Ring(STRUCT.size + _DERIVED.size)
         self.pages: Pages | None = None
+        self.forecasts: Forecasts | None = None
         self.recording: Recording | None = None
         self.logs: dict[str, Recording] = {}
         self._label = label
@@ -107,6 +111,7 @@ class Station:
         self.trouble = ""
         self._tick = 0
         self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
+        self._kicks = Kicks()
 
     # What pages are told.
 
@@ -124,7 +129,7 @@ class Station:
             "derived": derived.describe(),
             "params": params.describe(),
             "tick_s": values["tick_s"],
-            "stall": None,
+            "stall": stall(self._hello, values),
             "track_m": place.track_m,
             "wheel_radius_m": place.wheel_radius_m,
             "walls": self._walls_m,
@@ -174,6 +179,9 @@ class Station:
             values = self._follower.derive(record)
             if values is not None:
                 self.ring.append(STRUCT.pack(*record) + _DERIVED.pack(*values))
+        outcome = self._kicks.take_records(records)
+        if outcome is not None:
+            self._hear({"type": "outcome", "robot": self.name, **outcome})
         if records:
             self._tick = records[-1].tick + 1
             self._take_state(STATES[records[-1].state])
@@ -186,6 +194,7 @@ class Station:
         if event["event"] == "restart":
             self._events.clear()
         self._events.append(event)
+        self._kicks.take_event(event)
         if event["event"] in _STATE_OF and self._status:
             self._status["state"] = _STATE_OF[event["event"]]
             self._status["reason"] = event.get("reason", "")
@@ -214,6 +223,40 @@ class Station:
             answer: Gets the result or the error, where the session lives.
         """
         raise NotImplementedError
+
+    def predict(self, kick: dict[str, Any], answer: Answer) -> None:
+        """Predict what a kick would do now.
+
+        Args:
+            kick: The request, as robot.kick_requests.parse takes it.
+            answer: Gets {shares, of} or the error, where the session lives.
+        """
+        pages, question = self.pages, self._question(kick)
+        if self.forecasts is None or pages is None:
+            answer(NotDone("this lab does not predict kicks", "kick, and see what happens"))
+        elif question is None:
+            answer(NotDone("nobody here knows the motors of this robot", MEASURE))
+        else:
+            self.forecasts.ask(question, lambda result: pages.call(lambda: answer(result)))
+
+    def _question(self, kick: dict[str, Any]) -> Question | None:
+        """What is to be predicted of a kick that begins now; None if the motors are not known."""
+        motor = motor_known(self._hello)
+        if motor is None:
+            return None
+        values = dict(self._follower.params)
+        return Question(self._kicks.recent(), values, kick, motor, self._status.get("battery_v"))
+
+    def _forecast(self, question: Question | None, kick_id: str) -> None:
+        """Tell the pages what the simulation expected of a kick, from the records before it."""
+
+        def done(result: dict[str, Any] | KickctlError) -> None:
+            if not isinstance(result, KickctlError):
+                message = {"type": "prediction", "robot": self.name, "kick_id": kick_id}
+                self._hear(message | result)
+
+        if self.forecasts is not None and question is not None:
+            self.forecasts.ask(question, done)
 
     def stop(self, who: str) -> None:
         """Stop the motors. It returns at once and waits for nothing."""
@@ -245,9 +288,10 @@ class Station:
         if command in ("set", "preset"):
             return {"tick": robot.command("set", set=arguments["set"])}
         if command == "kick":
-            kick = {name: value for name, value in arguments.items() if value is not None}
-            kick["id"] = uuid.uuid4().hex
-            return {"tick": robot.command("kick", kick=kick), "kick_id": kick["id"]}
+            question = self._question(arguments)
+            tick = robot.command("kick", kick=arguments)
+            self._forecast(question, arguments["id"])
+            return {"tick": tick, "kick_id": arguments["id"]}
         raise WrongUse(f"there is no command '{printable(command)}'", "reload the page")
 
     def _perform(self, robot: Robot, primitive: str) -> dict[str, Any]:

@@ -30,7 +30,7 @@ def compute_in_processes(
         return
     others = set(active_children())
     # Spawned, because a fork would copy locks that other threads hold, but not the threads.
-    pool = ProcessPoolExecutor(processes, get_context("spawn"), _begin)
+    pool = ProcessPoolExecutor(processes, get_context("spawn"), begin_process)
     try:
         futures = {pool.submit(simulate, cell, setting): cell for cell in cells}
         for future in as_completed(futures):
@@ -48,7 +48,7 @@ def compute_in_processes(
         pool.shutdown(cancel_futures=True)
 
 
-def _begin() -> None:
+def begin_process() -> None:
     """Set a new process up.
 
     A terminal sends ^C to all processes; only the first one obeys it. If that is killed, nothing

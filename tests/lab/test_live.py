@@ -129,9 +129,9 @@ def test_it_drives_and_gives_the_robot_back(station, observer):
         started(station)
         assert controller(observer) is not None
         answers = Answers()
-        station.do("kick", {"mode": "membrane", "wheel": None}, answers)
+        station.do("kick", {"mode": "membrane", "id": "one"}, answers)
         assert answers.next()["kick_id"]
-        station.do("kick", {"mode": "fly"}, answers)
+        station.do("kick", {"mode": "fly", "id": "three"}, answers)
         assert isinstance(answers.next(), KickctlError)
         assert state(observer) == "running"
     station.abandon("the test ends")
@@ -212,7 +212,7 @@ def test_a_primitive_is_reached_and_a_stop_ends_it_at_once(station, observer):
     with Beating(station):
         answers = Answers()
         station.do("primitive", {"name": "spin-left"}, answers)
-        station.do("kick", {"mode": "membrane"}, answers)
+        station.do("kick", {"mode": "membrane", "id": "two"}, answers)
         assert "into a primitive" in answers.next().message
         assert answers.next()["after"] == {"left": "backward", "right": "forward"}
         station.do("primitive", {"name": "forward"}, answers)
