@@ -260,6 +260,11 @@ class LiveStation(Station):
             driver.answer_s, driver.reconnect_s = ANSWER_S, 0.0
             driver.attended = self._attended
             self._driver = driver
+            if self.rule == STOP and self._follower.params["link_loss"] == "continue":
+                self._say(
+                    "its parameter link_loss is continue: if the lab dies, it drives on",
+                    "set link_loss to stop",
+                )
         return driver
 
     # Stop.
