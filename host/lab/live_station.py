@@ -31,6 +31,7 @@ STATUS_S = 1.0
 AGAIN_S, REFUSED_S = 0.5, 10.0
 # A command that the robot has not answered by then is not repeated: a stop may have come since.
 ANSWER_S = 3.0
+MOST_JOBS = 20
 # Commands that a stop leaves alone.
 _HARMLESS = ("identify", "record")
 
@@ -162,6 +163,9 @@ class LiveStation(Station):
         if self._performs and command not in _HARMLESS:
             answer(NotDone("the robot is being brought into a primitive", "wait, or stop it"))
             return
+        if self._jobs.qsize() >= MOST_JOBS:
+            answer(NotDone("the robot has not done the last commands yet", "wait, or stop it"))
+            return
         self._performs = self._performs or command == "primitive"
         self._jobs.put(_Job(command, arguments, answer, self._stops))
 
@@ -172,7 +176,7 @@ class LiveStation(Station):
     def _attended(self) -> bool:
         return self.rule != STOP or self.clock() < self._attended_until
 
-    def abandon(self, why: str) -> None:
+    def abandon(self) -> None:
         """By the rule, stop, and give the robot back once it has stopped; or give it back as it is.
 
         Without a confirmed stop the robot is not given back: it misses the heartbeats and stops.
@@ -180,7 +184,7 @@ class LiveStation(Station):
         self._attended_until = 0.0
         if self.rule == STOP:
             self._release_wanted = True
-            self.stop(why)
+            self.stop()
         else:
             self._jobs.put(_Job("release", {}, lambda result: None, self._stops))
 
@@ -269,7 +273,7 @@ class LiveStation(Station):
 
     # Stop.
 
-    def stop(self, who: str) -> None:
+    def stop(self) -> None:
         """Have the stop's own thread stop the robot, and cancel the commands that wait."""
         self._stops += 1
         self._stop_wanted.set()

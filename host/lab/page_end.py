@@ -11,7 +11,7 @@ from host.errors import KickctlError
 from host.lab.station import HISTORY
 
 # How many messages a second a page may send, and how many at once. Stops are not counted.
-RATE_PER_S, BURST = 60.0, 120.0
+RATE_PER_S, BURST = 150.0, 300.0
 # How many messages may wait for a page that reads none.
 MAX_WAITING = 400
 
@@ -62,6 +62,7 @@ class Page:
         role: The role that its key gives.
         places: How far it has read the ring of each robot, by the robot's name.
         waiting: The messages that are still to be sent.
+        predicts: Whether it waits for a prediction.
         closed: Whether it has been refused or is gone: nothing more comes for it.
         awake: Called when something waits.
     """
@@ -76,6 +77,7 @@ class Page:
         self.score = Score()
         self.places: dict[str, int] = {}
         self.waiting: deque[dict[str, Any]] = deque()
+        self.predicts = False
         self.closed = False
         self.awake: Callable[[], object] = lambda: None
         self.allowance = Allowance(now)

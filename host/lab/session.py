@@ -95,7 +95,7 @@ class Session:
             message = requests.parse(text)
             request = requests.request_of(message)
             if message["type"] == "stop" and page.number:
-                self._stop(page, message)  # before anything that could be in its way
+                self._stop(message)  # before anything that could be in its way
             elif page.allowance.take(now):
                 self._handle(page, message, request, now)
             else:
@@ -110,7 +110,7 @@ class Session:
             page.refuse("this page has not said its key", requests.RELOAD)
             self._strangers.remove(page)
         if self.baton.expire(now):
-            self._abandon(self.baton.why)
+            self._abandon()
         if self.baton.driver is not None:
             for station in self.stations.values():
                 station.attend()
@@ -170,8 +170,7 @@ class Session:
         elif kind == "logs":
             page.answer(request, {"logs": self.logs()})
         elif kind == "predict":
-            kick = requests.kick_of(message.get("kick"))
-            self._station(message).predict(kick, lambda result: page.answer(request, result))
+            self._predict(page, message, request)
         else:
             raise WrongUse(f"there is no message '{quotable(kind)}'", requests.RELOAD)
 
@@ -227,11 +226,11 @@ class Session:
         page.send(self._baton_for(page))
         self._counted = (-1, -1)  # the newcomer has to be told, too
 
-    def _stop(self, page: Page, message: Message) -> None:
+    def _stop(self, message: Message) -> None:
         name = message.get("robot")
         stations = list(self.stations.values()) if name is None else [self._station(message)]
         for station in stations:
-            station.stop(f"page {page.number}")
+            station.stop()
 
     def _pass(self, kind: str, page: Page, message: Message, now: float) -> None:
         """Pass the baton on."""
@@ -243,7 +242,7 @@ class Session:
             self.baton.give(page.number, requests.whole_of(message, "page"), now)
         else:
             self.baton.leave(page.number)
-            self._abandon(self.baton.why)
+            self._abandon()
 
     def _do(self, page: Page, message: Message, request: int | None, now: float) -> None:
         station = self._station(message)
@@ -284,6 +283,18 @@ class Session:
             )
         return checked
 
+    def _predict(self, page: Page, message: Message, request: int | None) -> None:
+        station, kick = self._station(message), requests.kick_of(message.get("kick"))
+        if page.predicts:
+            raise NotDone("this page waits for a prediction already", "wait a moment")
+        page.predicts = True
+
+        def answered(result: Message | KickctlError) -> None:
+            page.predicts = False
+            page.answer(request, result)
+
+        station.predict(kick, answered)
+
     def _hand(self, page: Page, message: Message, now: float) -> None:
         station = self._station(message)
         wheel, angle_rad = requests.wheel_of(message), requests.angle_of(message)
@@ -322,9 +333,9 @@ class Session:
 
     # What all have to know.
 
-    def _abandon(self, why: str) -> None:
+    def _abandon(self) -> None:
         for station in self.stations.values():
-            station.abandon(why)
+            station.abandon()
 
     def _baton_for(self, page: Page) -> Message:
         baton = self.baton

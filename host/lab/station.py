@@ -258,14 +258,14 @@ class Station:
         if self.forecasts is not None and question is not None:
             self.forecasts.ask(question, done)
 
-    def stop(self, who: str) -> None:
+    def stop(self) -> None:
         """Stop the motors. It returns at once and waits for nothing."""
         raise NotImplementedError
 
     def attend(self) -> None:
         """Somebody drives and is there; said several times a second."""
 
-    def abandon(self, why: str) -> None:
+    def abandon(self) -> None:
         """Nobody drives any more. By the rule the robot stops, or goes on as it is."""
         raise NotImplementedError
 

@@ -61,15 +61,15 @@ class SteppedStation(Station):
                 result = NotDone(f"the operating system refuses: {error}", "is the disk full?")
         answer(result)
 
-    def stop(self, who: str) -> None:
+    def stop(self) -> None:
         with self._lock:
             self._robot.stop_at_once()
             self._robot.pump(0.0)
 
-    def abandon(self, why: str) -> None:
+    def abandon(self) -> None:
         with self._lock:
             if self.rule == STOP:
-                self.stop(why)
+                self.stop()
             self._robot.release()
 
     def close(self) -> None:

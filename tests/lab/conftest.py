@@ -28,11 +28,11 @@ class NotingStation(Station):
         self.told.append((command, arguments))
         self.answers.append(answer)
 
-    def stop(self, who):
-        self.told.append(("stop", who))
+    def stop(self):
+        self.told.append(("stop",))
 
-    def abandon(self, why):
-        self.told.append(("abandon", why))
+    def abandon(self):
+        self.told.append(("abandon",))
 
     def attend(self):
         self.attended_at = self.now

@@ -134,7 +134,7 @@ def test_it_drives_and_gives_the_robot_back(station, observer):
         station.do("kick", {"mode": "fly", "id": "three"}, answers)
         assert isinstance(answers.next(), KickctlError)
         assert state(observer) == "running"
-    station.abandon("the test ends")
+    station.abandon()
     wait_until(lambda: state(observer) == "stopped", "the robot stops")
     wait_until(lambda: controller(observer) is None, "the robot is given back")
 
@@ -142,7 +142,7 @@ def test_it_drives_and_gives_the_robot_back(station, observer):
 def test_a_robot_that_may_go_on_goes_on(desk, observer):
     with station_at(desk.uri, desk.token, CONTINUE) as station:
         started(station)
-        station.abandon("nobody looks")
+        station.abandon()
         wait_until(lambda: controller(observer) is None, "the robot is given back")
         assert state(observer) == "running"
 
@@ -175,7 +175,7 @@ def test_a_stop_passes_a_drive_thread_that_hangs_and_cancels_what_waits(station,
         station.do("set", {"set": {"k": 8.0}}, answers)
         station.do("start", {}, answers)
         assert hangs.wait(20.0)
-        station.stop("page 1")
+        station.stop()
         wait_until(lambda: state(observer) == "stopped", "the robot stops")
         free.set()
         answers.next()
@@ -188,7 +188,7 @@ def test_a_command_that_was_under_way_when_the_stop_came_is_stopped_too(station,
         carry_out, late = station._carry_out, threading.Event()
 
         def stopped_first(robot, command, arguments):
-            station.stop("page 1")
+            station.stop()
             wait_until(lambda: not station._stop_wanted.is_set(), "the stop goes out")
             result = carry_out(robot, command, arguments)
             late.set()
@@ -204,7 +204,7 @@ def test_a_stop_passes_a_connection_that_waits_for_an_answer(station, observer):
     with Beating(station):
         started(station)
         with station._watcher._lock, station._driver._lock:
-            station.stop("page 1")
+            station.stop()
             wait_until(lambda: state(observer) == "stopped", "the robot stops")
 
 
@@ -217,7 +217,7 @@ def test_a_primitive_is_reached_and_a_stop_ends_it_at_once(station, observer):
         assert answers.next()["after"] == {"left": "backward", "right": "forward"}
         station.do("primitive", {"name": "forward"}, answers)
         observer.wait(0.2)
-        station.stop("page 1")
+        station.stop()
         assert "stopped meanwhile" in answers.next().message
         assert state(observer) == "stopped"
         started(station)
@@ -267,7 +267,7 @@ def test_a_connection_that_died_for_good_is_replaced(station, observer):
         started(station)
         station._driver.link.close()
         station._driver.close()
-        station.stop("page 1")
+        station.stop()
         wait_until(lambda: state(observer) == "stopped", "the robot stops")
         started(station)
 
@@ -280,7 +280,7 @@ def test_a_robot_that_is_not_there_is_lost_and_a_stop_says_so():
         wait_until(lambda: station.trouble, "the station says what is wrong")
         assert station.state()["link"] == "lost"
         assert "no robot" in station.state()["hint"]
-        station.stop("page 1")
+        station.stop()
         wait_until(lambda: station.pages.heard, "the stop says that it has not arrived")
         assert "anna: " in station.pages.heard[0]["message"]
     finally:

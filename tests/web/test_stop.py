@@ -65,7 +65,7 @@ def test_without_a_link_it_says_so_and_stops_when_it_is_back(visit, lab, station
 def test_it_is_not_confirmed_by_a_robot_that_is_away(visit, station):
     visitor = visit()
     rolls(visitor, station)
-    station.stop = lambda who: None
+    station.stop = lambda: None
     visitor.page.keyboard.press("Escape")
     visitor.until("s.stop.anna === 'unconfirmed'")
     visitor.page.wait_for_function(
