@@ -79,7 +79,11 @@ def run_batch(brick, start, records, kick, changes):
     ("seed", "changes", "motor"),
     [
         (1, {"k": 8.0}, "pybricks"),
-        (2, {"k": 2.0, "rods": 1, "max_duty_pct": 100.0}, "nxt_unroller"),
+        (
+            2,
+            {"k": 2.0, "rods": 1, "max_duty_pct": 100.0, "duty_scale": 0.8},
+            "nxt_unroller",
+        ),
     ],
 )
 def test_a_wheel_in_a_batch_equals_the_robots_loop(request_, seed, changes, motor):
@@ -89,6 +93,59 @@ def test_a_wheel_in_a_batch_equals_the_robots_loop(request_, seed, changes, moto
         for channel, name in enumerate(batch.CHANNELS):
             expected = [getattr(record, f"{side}_{name}") for record in records]
             assert np.array_equal(result.records[wheel, :, channel], expected), name
+
+
+@pytest.mark.parametrize("request_", REQUESTS[1:5], ids=lambda request: request["mode"])
+def test_wheels_that_run_already_go_on_as_in_the_robots_loop(request_):
+    """The kick begins in the first tick; each wheel has its own battery voltage."""
+    brick = SimBrick(1, jitter=False)
+    brick.motors[1].set_supply(6.0)
+    loop = Loop(brick.motors, brick.battery, brick.clock, 1)
+    loop.start()
+    for tick in range(BEGIN + 100):
+        brick.clock.wait(loop.deadline, lambda timeout_s: None)
+        if tick == BEGIN:
+            brick.truth()
+            states = np.array([wheel.state for wheel in brick.motors])
+            loop.kick({"id": "k", **request_})
+        loop.tick()
+    records = unpack(loop.blackbox.read(BEGIN - 1, 101))
+    last, records = records[0], records[1:]
+    start = batch.Start(
+        states,
+        np.array([[last.left_x1, last.left_x2], [last.right_x1, last.right_x2]]),
+        np.array([last.left_duty_pct, last.right_duty_pct]),
+    )
+    events = map(loop.blackbox.event, range(loop.blackbox.next_event))
+    kick = Kick(**next(event["kick"] for event in events if event["event"] == "kick"))
+    kick.begin = 0
+    result = batch.run(
+        2,
+        100,
+        0,
+        kick=kick,
+        motors=tuple(motor.constants for motor in brick.motors),
+        battery_v=np.array([7.5, 6.0]),
+        start=start,
+        times=0.03 * np.arange(100),
+        record=2,
+    )
+    assert result.before.tolist() == [0, 0]
+    for wheel, side in enumerate(WHEELS):
+        logged = [getattr(record, side + "_phi_rad") for record in records]
+        assert np.ptp(logged) > 2.0
+        assert result.records[wheel, :, 0].tolist() == logged
+    alone = start.of(slice(1, 2))
+    assert (alone.states == states[1]).all()
+    assert alone.duties.tolist() == [last.right_duty_pct]
+
+
+def test_a_kick_of_wheels_that_run_needs_its_sign_at_once():
+    start = batch.Start(np.zeros((1, 6)), np.zeros((1, 2)), np.zeros(1, dtype=np.int64))
+    kick = phase_kick(4)
+    kick.begin = 0
+    with pytest.raises(ValueError, match="to tell directions"):
+        batch.run(1, 100, 0, start=start, kick=kick)
 
 
 def test_a_phase_kick_takes_its_sign_from_each_wheel():
