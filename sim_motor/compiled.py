@@ -4,7 +4,8 @@ What is compiled is kept on disk (sim_motor.compiled_cache), so that only the fi
 machine compiles it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from typing import Any, TypeVar, cast
 
@@ -53,3 +54,17 @@ def parallel_jit(function: F) -> F:
 def compiled(function: F) -> F:
     """A plain Python function compiled with the functions it calls. Its source stays as it is."""
     return with_mathematics(function, {}, njit)
+
+
+@contextmanager
+def on_one_core() -> Iterator[None]:
+    """Let `parallel_jit` loops run on one core: to spread a short one takes longer than to run it.
+
+    It counts for the calling thread.
+    """
+    before = numba.get_num_threads()
+    numba.set_num_threads(1)
+    try:
+        yield
+    finally:
+        numba.set_num_threads(before)

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from math import pi
 from typing import Any
@@ -104,7 +104,7 @@ class Constants:
 
 
 def tables(motors: Sequence[Constants]) -> Array:
-    """Exact solutions of motors over one substep.
+    """Exact solutions of motors over one substep. Not to be changed: those of few are kept.
 
     Returns:
         Coefficients, (motors, alone or with wheel, |duty| in % or COAST, 14): new speed from speed,
@@ -114,11 +114,16 @@ def tables(motors: Sequence[Constants]) -> Array:
     Raises:
         ValueError: A motor is too fast for the step.
     """
-    groups = [motors[first : first + _GROUP] for first in range(0, len(motors), _GROUP)]
+    groups = [tuple(motors[first : first + _GROUP]) for first in range(0, len(motors), _GROUP)]
     if len(groups) == 1:
-        return _tables(motors)
+        return _tables_of_few(groups[0])
     with ThreadPoolExecutor() as pool:  # numpy multiplies matrices on all cores
         return np.concatenate(list(pool.map(_tables, groups)))
+
+
+@lru_cache(maxsize=8)
+def _tables_of_few(motors: tuple[Constants, ...]) -> Array:
+    return _tables(motors)
 
 
 def _tables(motors: Sequence[Constants]) -> Array:

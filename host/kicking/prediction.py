@@ -28,6 +28,7 @@ from robot.kicks import DIRECTION_TICKS, MEMBRANE, WHEELS, Kick
 from robot.params import TABLE, Params
 from robot.record import STATES, Record
 from sim_motor.batch import Start, random_times, run
+from sim_motor.compiled import on_one_core
 from sim_motor.constants import Array, Constants, load
 from sim_motor.motor import ANGLE, GAP, LAST_ANGLE, SPEED, WHEEL_SPEED
 from sim_motor.replay import replay
@@ -41,7 +42,7 @@ LEAST_RECORDS = DIRECTION_TICKS + 1
 
 _RUNNING = STATES.index("running")
 # Simulated wheels for each delay, and how many specimens of the motor they share.
-_EACH, _SPECIMENS = 16, 8
+_EACH, _SPECIMENS = 32, 8
 # The speed of a wheel that has come this far in the replayed time tells the battery's voltage,
 # as far as it is within these factors.
 _TELLING_RAD = pi / 2
@@ -100,46 +101,35 @@ def predict(
     in_force = Params()
     in_force.apply(in_force.check({name: params[name] for name in TABLE if name in params}))
     before = {side: heading_of(_column(recent, side + "_phi_rad")) for side in WHEELS}
-    try:
-        asked = parse(
-            {"id": "prediction", **kick},
-            [
-                next(way for way, word in HEADINGS.items() if word == before[side])
-                for side in WHEELS
-            ],
-            in_force,
-            0,
-        )
-    except Refused as refusal:
-        raise from_robot(refusal.as_dict()) from refusal
+    asked = _parse(kick, before, in_force)
     rng = np.random.default_rng(seed)
     motors = motor.specimens(_SPECIMENS, rng)
     members = _EACH * len(delays)
-    start, volts = _ensemble(
-        recent, motors, battery_v or motor.battery_v, in_force.tick_s, members, rng
-    )
     shares = {side: dict.fromkeys(RESULTS, 0) for side in WHEELS}
-    for number, (index, side) in product(range(len(delays)), enumerate(WHEELS)):
-        first = index * members + number * _EACH
-        rows = slice(first, first + _EACH)
-        one = Kick(**{**asked.as_dict(), "begin": delays[number] - 1})
-        one.values = (one.values[index],) * 2
-        try:
-            after = _after(
-                one if side in asked.wheels else None,
-                start.of(rows),
-                volts[rows],
-                motors,
-                in_force,
-                rng,
-            )
-        except ValueError as error:
-            raise WrongUse(
-                f"this robot's kicks cannot be predicted: {error}", "take a longer tick_s"
-            ) from error
-        for way in after:
-            shares[side][compare(before[side], HEADINGS[way])] += 1
+    with on_one_core():
+        start, volts = _ensemble(
+            recent, motors, battery_v or motor.battery_v, in_force.tick_s, members, rng
+        )
+        for number, (index, side) in product(range(len(delays)), enumerate(WHEELS)):
+            first = index * members + number * _EACH
+            rows = slice(first, first + _EACH)
+            one = Kick(**{**asked.as_dict(), "begin": delays[number] - 1})
+            one.values = (one.values[index],) * 2
+            own = one if side in one.wheels else None
+            for way in _after(own, start.of(rows), volts[rows], motors, in_force, rng):
+                shares[side][compare(before[side], HEADINGS[way])] += 1
     return Prediction(shares, members)
+
+
+def _parse(kick: Mapping[str, Any], before: Mapping[str, str], params: Params) -> Kick:
+    """The kick that a request asks for while wheels have these headings."""
+    ways = {word: way for way, word in HEADINGS.items()}
+    directions = [ways[before[side]] for side in WHEELS]
+    try:
+        asked: Kick = parse({"id": "prediction", **kick}, directions, params, 0)
+    except Refused as refusal:
+        raise from_robot(refusal.as_dict()) from refusal
+    return asked
 
 
 def warm_up(motor: Constants | None = None) -> None:
@@ -241,18 +231,26 @@ def _after(
     watch_s = min(_PATIENCE_S, _WATCH_S + _MEMORY_TAU * params.tau_s)
     ticks = (kick.begin + kick.ticks if kick else 0) + round(watch_s / params.tick_s)
     wheels = len(volts)
-    result = run(
-        wheels,
-        ticks,
-        0,
-        params=params,
-        kick=kick,
-        motors=motors,
-        battery_v=volts,
-        start=start,
-        times=random_times(wheels, ticks, params.tick_s, rng)
+    times = (
+        random_times(wheels, ticks, params.tick_s, rng)
         if params.tick_s >= _LEAST_LATE_TICK_S
-        else np.arange(ticks) * params.tick_s,
+        else np.arange(ticks) * params.tick_s
     )
+    try:
+        result = run(
+            wheels,
+            ticks,
+            0,
+            params=params,
+            kick=kick,
+            motors=motors,
+            battery_v=volts,
+            start=start,
+            times=times,
+        )
+    except ValueError as error:
+        raise WrongUse(
+            f"this robot's kicks cannot be predicted: {error}", "take a longer tick_s"
+        ) from error
     ways: list[int] = result.after.tolist()
     return ways

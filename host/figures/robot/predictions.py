@@ -57,7 +57,7 @@ def _draw_reliability(axes: Axes, numbers: Numbers) -> None:
     axes.set_ylim(-0.06, 1.16)
     axes.set_aspect("equal")
     axes.set_xlabel("predicted share that reverses")
-    axes.set_ylabel("share that reversed (95 % intervals, wheels)")
+    axes.set_ylabel("share that reversed (95 % intervals; numbers of wheels)")
     axes.legend(loc="upper left", fontsize=11)
 
 
@@ -81,7 +81,7 @@ def _draw_scores(axes: Axes, numbers: Numbers) -> None:
             edgecolor="white",
             label=label,
         )
-    axes.set_xticks(places, names, fontsize=11)
+    axes.set_xticks(places, names, fontsize=9.5)
     axes.set_ylabel("Brier score")
     axes.set_ylim(0, 1.0)
     axes.legend(fontsize=11)

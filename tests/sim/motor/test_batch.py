@@ -22,7 +22,7 @@ from robot.record import unpack
 from robot.safety import limit_duty
 from sim_motor import batch
 from sim_motor.brick import SimBrick
-from sim_motor.compiled import compiled
+from sim_motor.compiled import compiled, on_one_core
 from sim_motor.constants import load
 
 TICKS, BEGIN = 600, 250
@@ -264,3 +264,9 @@ def test_compiling_leaves_the_robots_functions_alone():
     assert type(controller.step_wheel) is type(controller.motor_torque) is type(lambda: None)
     arguments = (0.1, -0.2, 0.54, 0.84, 0.5, 0.8, 0.031, 4.0, 0.25, 8.0, 2)
     assert fast(*arguments) == controller.step_wheel(*arguments)
+
+
+def test_on_one_core_wheels_are_the_same():
+    spread = batch.run(40, 60, 1, record=40).records
+    with on_one_core():
+        assert np.array_equal(batch.run(40, 60, 1, record=40).records, spread)
