@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stdout, suppress
+from functools import cache
 from typing import Any
 
 from host.commands._options import EVERY, asks_for_json, common, join_places, refuse_unused
@@ -55,6 +56,7 @@ Exit status: 0 it worked; 1 tried, and not or not wholly done; 2 wrong use; 3 no
 4 refused (version, token, lease); 5 fault on the robot; 130 interrupted (but 0 for `watch`)."""
 
 
+@cache
 def make_parser() -> argparse.ArgumentParser:
     """The parser of the whole command line. It raises WrongUse for one that is wrong."""
     parents: list[Any] = [common(defaults=True)]
@@ -77,7 +79,7 @@ def make_parser() -> argparse.ArgumentParser:
         )
         module.add_arguments(verb)
         verb.set_defaults(
-            run=module.run, verb=name, in_one_line=getattr(module, "in_one_line", None)
+            module=module, verb=name, in_one_line=getattr(module, "in_one_line", None)
         )
     return parser
 
@@ -146,7 +148,7 @@ def _run_verb(options: argparse.Namespace) -> int:
 
         if is_several(text):
             return on_each(options, text, options.in_one_line)
-    return int(options.run(options))
+    return int(options.module.run(options))
 
 
 def _report(error: BaseException, interrupts: Interrupts, *, in_json: bool) -> int:

@@ -20,7 +20,7 @@ from sim_motor.brick import SimBrick
 from sim_motor.clock import VirtualClock
 from sim_motor.hand import SILENCE_S, Hand
 from sim_motor.mount import serve
-from sim_motor.world import Scene
+from sim_motor.scene import Scene
 
 
 def main() -> int:

@@ -19,8 +19,9 @@ from robot.params import Params
 from robot.safety import limit_duty
 from sim_motor.clock import lateness_s
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
+from sim_motor.compiled_motor import advance, encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
-from sim_motor.motor import ANGLE, LAST_ANGLE, advance, encoder, substep_at, substep_from
+from sim_motor.motor import ANGLE, LAST_ANGLE
 from sim_motor.settling import settling_s
 
 _actual_positions, _step_wheel, _limit_duty = (

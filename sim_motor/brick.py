@@ -1,13 +1,19 @@
 """A simulated brick: two motors under the robot, and a battery."""
 
+from __future__ import annotations
+
 from math import isfinite, pi, radians
 from random import Random
+from typing import TYPE_CHECKING
 
 from robot.motors import Battery
 from sim_motor.clock import Clock, VirtualClock
 from sim_motor.constants import Constants, data, load
+from sim_motor.scene import Scene
 from sim_motor.wheel_motor import SimMotor, Truth
-from sim_motor.world import Scene, World, alone
+
+if TYPE_CHECKING:
+    from sim_motor.world import World
 
 HIGHEST_BATTERY_V = 10.0  # six fresh AA cells
 
@@ -57,6 +63,8 @@ class SimBrick:
         random = Random(f"brick {seed}")
         model, published = (motor, load(motor)) if isinstance(motor, str) else ("", motor)
         open_v = _checked(published.battery_v if battery_v is None else battery_v)
+        if scene is not None:  # only who has walls waits for compiled code
+            from sim_motor.world import World, alone
         self.clock: Clock = VirtualClock(seed, jitter=jitter) if clock is None else clock
         self.seed = seed
 

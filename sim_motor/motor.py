@@ -1,4 +1,4 @@
-"""The EV3 large motor, its gear train's play and its wheel, as compiled scalar functions.
+"""The EV3 large motor, its gear train's play and its wheel, as pure scalar functions.
 
 Electrical: L di/dt = V - R i - Ke w. Mechanical: J dw/dt = Kt i - B w - friction - contact. Between
 events this is linear, so every substep of 1 ms applies the exact solution for constant V and
@@ -10,14 +10,20 @@ stop, a break-away, a separation or an impact of the two sides of the backlash.
 - Motor and wheel touch at either end of the backlash. A touching pair moves as one while the
   contact pushes; impacts are plastic.
 - Duty 0 shorts the motor (brake); COAST opens the circuit.
+
+They run as they stand here, and compiled (sim_motor.compiled_motor), with the same bits.
 """
 
+from collections.abc import Mapping, Sequence
 from math import copysign, floor, pi
 
-from sim_motor.compiled import inlined_jit
 from sim_motor.constants import COAST, SUBSTEP_S, SUBSTEPS_PER_S, Array
 
 State = tuple[float, float, float, float, float, float]
+Row = Sequence[float] | Array
+# Those of Constants.tables, or its rows by (alone or with wheel, |duty|): what plain Python reads
+# fast.
+Tables = Array | Mapping[tuple[int, int], Row]
 
 SAMPLE_SUBSTEPS = 2  # the kernel samples the encoder at 500 Hz
 
@@ -29,19 +35,16 @@ ANGLE, LAST_ANGLE, SPEED, CURRENT, GAP, WHEEL_SPEED = range(6)
 TORQUE_CONSTANT, VISCOUS, KINETIC, STATIC, ROLLING, WHEEL_INERTIA, WHEEL_SHARE, HALF_PLAY = range(8)
 
 
-@inlined_jit
 def substep_at(time_s: float) -> int:
     """The number of whole substeps up to a time; rounding errors of the time do not count."""
     return floor(time_s * SUBSTEPS_PER_S + 1e-6)
 
 
-@inlined_jit
 def substep_from(time_s: float) -> int:
     """The first substep that begins at a time or after it."""
     return -floor(1e-6 - time_s * SUBSTEPS_PER_S)
 
 
-@inlined_jit
 def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int:
     """The tacho position in degrees that the kernel reports.
 
@@ -52,7 +55,6 @@ def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int
     return raw // 2 if raw >= 0 else -(-raw // 2)
 
 
-@inlined_jit
 def _sense(speed: float, torque: float, static: float) -> float:
     """The sign of the motion that friction opposes.
 
@@ -63,8 +65,7 @@ def _sense(speed: float, torque: float, static: float) -> float:
     return copysign(1.0, torque) if abs(torque) > static else 0.0
 
 
-@inlined_jit
-def _leaves(sense: float, speed: float, drive: float, load: float, end: float, c: Array) -> bool:
+def _leaves(sense: float, speed: float, drive: float, load: float, end: float, c: Row) -> bool:
     """Whether a touching pair parts: its contact, at this end of the play, would have to pull."""
     side = copysign(1.0, end)
     if sense == 0.0:
@@ -75,9 +76,8 @@ def _leaves(sense: float, speed: float, drive: float, load: float, end: float, c
     return leaves
 
 
-@inlined_jit
 def _turn_motor(
-    sense: float, speed: float, current: float, volts: float, torque: float, row: Array
+    sense: float, speed: float, current: float, volts: float, torque: float, row: Row
 ) -> tuple[float, float, float]:
     """(turned angle, speed, current) after a substep.
 
@@ -95,7 +95,6 @@ def _turn_motor(
     return turned, 0.0, row[12] * current + row[13] * volts
 
 
-@inlined_jit
 def _turn_wheel(sense: float, speed: float, acceleration: float) -> tuple[float, float]:
     """(turned angle, speed) of a wheel within the play after a substep.
 
@@ -107,7 +106,6 @@ def _turn_wheel(sense: float, speed: float, acceleration: float) -> tuple[float,
     return (0.5 * SUBSTEP_S * speed * speed / (speed - new_speed) if speed != 0.0 else 0.0), 0.0
 
 
-@inlined_jit
 def advance(
     substeps: int,
     duty: int,
@@ -119,8 +117,8 @@ def advance(
     current: float,
     gap: float,
     wheel_speed: float,
-    tables: Array,
-    c: Array,
+    tables: Tables,
+    c: Row,
 ) -> State:
     """The state of one wheel after some substeps.
 
@@ -191,24 +189,3 @@ def advance(
             if copysign(1.0, gap) * (speed - wheel_speed) > 0.0:
                 speed = wheel_speed = speed + c[WHEEL_SHARE] * (wheel_speed - speed)
     return angle, last_angle, speed, current, gap, wheel_speed
-
-
-@inlined_jit
-def advance_in_place(
-    state: Array, substeps: int, duty: int, battery_v: float, load: float, tables: Array, c: Array
-) -> None:
-    """`advance` for a state kept in an array."""
-    state[0], state[1], state[2], state[3], state[4], state[5] = advance(
-        substeps,
-        duty,
-        battery_v,
-        load,
-        state[0],
-        state[1],
-        state[2],
-        state[3],
-        state[4],
-        state[5],
-        tables,
-        c,
-    )

@@ -5,26 +5,36 @@ substeps. So the result does not depend on how often anybody looks, and is the s
 in real time.
 """
 
+from __future__ import annotations
+
+import sys
 from collections import deque
 from math import inf, pi
-from typing import NamedTuple
+from time import monotonic
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from robot.motors import Motor, MotorFault
 from sim_motor.clock import Clock
-from sim_motor.constants import COAST, Constants
+from sim_motor.constants import COAST, SUBSTEPS_PER_S, Constants
 from sim_motor.motor import (
     ANGLE,
     CURRENT,
     GAP,
     LAST_ANGLE,
-    advance_in_place,
+    advance,
     encoder,
     substep_at,
     substep_from,
 )
-from sim_motor.world import Drive, World
+
+if TYPE_CHECKING:
+    from sim_motor.world import Drive, World
+
+# In plain Python this takes about as long as compiled code takes to load.
+PLAIN_SUBSTEPS = 1_000_000
+COMPILED = "sim_motor.compiled_motor"
 
 
 class Truth(NamedTuple):
@@ -75,18 +85,17 @@ class SimMotor(Motor):
         self._clock = clock
         self._epoch = clock.now()
         self._battery_v = battery_v
-        self._tables = constants.tables()
-        self._scalars = constants.scalars()
+        self._arrays = constants.tables(), constants.scalars()
+        table, scalars = self._arrays
+        rows = {(side, duty): table[side, duty].tolist() for side, duty in np.ndindex(2, COAST + 1)}
+        self._plain = rows, scalars.tolist()
+        self._began = monotonic()
         self._counts = constants.encoder_counts
         self._latency_s = constants.latency_s
         self._substep = 0
         self._duty = 0
         self._load = 0.0
         self._pending: deque[tuple[int, int]] = deque()  # (substep from which it acts, duty)
-        # No time passes in this; but compiled code is loaded here, where nobody waits for it, and
-        # not in the first tick.
-        advance_in_place(self.state, 0, 0, battery_v, 0.0, self._tables, self._scalars)
-        self.angle_rad()
 
     def angle_rad(self) -> float:
         self._catch_up()
@@ -176,14 +185,25 @@ class SimMotor(Motor):
         self._advance(present)
 
     def _advance(self, substep: int) -> None:
-        if substep > self._substep:
-            advance_in_place(
-                self.state,
-                substep - self._substep,
-                self._duty,
-                self._battery_v,
-                self._load,
-                self._tables,
-                self._scalars,
-            )
-            self._substep = substep
+        count = substep - self._substep
+        if count <= 0:
+            return
+        self._substep = substep
+        drive = count, self._duty, self._battery_v, self._load
+        if self._is_compiled_code_due(count):
+            from sim_motor.compiled_motor import advance_in_place
+
+            advance_in_place(self.state, *drive, *self._arrays)
+        else:
+            angle, last_angle, speed, current, gap, wheel_speed = self.state.tolist()
+            motion = angle, last_angle, speed, current, gap, wheel_speed
+            self.state[:] = advance(*drive, *motion, *self._plain)
+
+    def _is_compiled_code_due(self, count: int) -> bool:
+        """Whether the time that it takes to load compiled code is saved by it.
+
+        In real time it never is, and no tick could wait so long. So it is due to who is ahead of
+        real time, or who slept.
+        """
+        ahead = self._substep - SUBSTEPS_PER_S * (monotonic() - self._began)
+        return max(count, ahead) > (SUBSTEPS_PER_S if COMPILED in sys.modules else PLAIN_SUBSTEPS)

@@ -13,15 +13,16 @@ from where things are, then speeds, then places (symplectic Euler).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import cos, hypot, pi, sin
+from math import cos, hypot, sin
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from sim_motor.compiled import jit
+from sim_motor.compiled_motor import advance
 from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
-from sim_motor.motor import WHEEL_SPEED, advance
+from sim_motor.motor import WHEEL_SPEED
+from sim_motor.scene import Scene
 
 BodyNumbers = tuple[float, float, float, float, float, float]
 TyreNumbers = tuple[float, float]
@@ -29,46 +30,6 @@ WallNumbers = tuple[float, float, float]
 Drive = tuple[int, float, float]
 
 PARTS = 8
-
-
-@dataclass(frozen=True)
-class Scene:
-    """A robot between two parallel walls. What is None is as in motors.toml.
-
-    Attributes:
-        walls: The distance between them, m.
-        grip: The tyres' friction coefficient, 1.
-        stiffness: That of a wall at one corner of the body, N/m.
-        bumper: The width of the body's front and rear, m.
-        apart: How far the right wheel is ahead of the left one, rad, when the left one stands at
-            zero in the beginning. The robot's own program resets both when it starts.
-
-    Raises:
-        ValueError: A number is out of its LIMITS.
-    """
-
-    walls: float
-    grip: float | None = None
-    stiffness: float | None = None
-    bumper: float | None = None
-    apart: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name, (least, most, unit) in LIMITS.items():
-            value = getattr(self, name)
-            if value is not None and not least <= value <= most:
-                bounds = f"from {least:g} to {most:g} {unit}".rstrip()
-                raise ValueError(f"{name} cannot be {value!r}: give a number {bounds}")
-
-
-# Walls that leave room for the body, and springs that the steps can follow.
-LIMITS = {
-    "walls": (0.4, 100.0, "m"),
-    "grip": (0.0, 10.0, ""),
-    "stiffness": (100.0, 100000.0, "N/m"),
-    "bumper": (0.05, 0.4, "m"),
-    "apart": (-pi, pi, "rad"),
-}
 
 
 class Place(NamedTuple):

@@ -149,7 +149,7 @@ def _run_alone(robot: Chosen, options: argparse.Namespace) -> None:
         os.environ["KICK_SSH_OPTIONS"] = f"{options_of_ssh} -o BatchMode=yes"
         options.brick, options.json = robot.name, True
         name_robot(robot.name, options.token)
-        status = int(options.run(options))
+        status = int(options.module.run(options))
         print_answer(None)
     except BaseException as error:  # noqa: BLE001 - nothing may return into the copy of a parent
         failure = in_words(error)

@@ -23,7 +23,7 @@ from robot.params import TABLE
 from robot.server import Server
 from robot.wire import TOKEN_BYTES
 from sim_motor.brick import SimBrick
-from sim_motor.world import Scene
+from sim_motor.scene import Scene
 
 _READ_BYTES = 65536
 _SCENE = tuple(field.name for field in fields(Scene))
@@ -68,7 +68,7 @@ class SimLink:
 
         Args:
             uri: The whole address, for messages.
-            options: seed, idle=1, motor=NAME, battery=V, the fields of sim_motor.world.Scene, and
+            options: seed, idle=1, motor=NAME, battery=V, the fields of sim_motor.scene.Scene, and
                 the robot's parameters.
             seed: Overrides the seed among the options.
 

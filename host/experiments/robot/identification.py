@@ -19,8 +19,9 @@ from host.errors import NotDone
 from host.experiments.robot.motor_traits import Traits, constants_of, traits
 from host.util.intervals import CONFIDENCE
 from sim_motor.compiled import jit
+from sim_motor.compiled_motor import advance, substep_at, substep_from
 from sim_motor.constants import Array, Constants
-from sim_motor.motor import ANGLE, LAST_ANGLE, SAMPLE_SUBSTEPS, advance, substep_at, substep_from
+from sim_motor.motor import ANGLE, LAST_ANGLE, SAMPLE_SUBSTEPS
 
 Interval = tuple[float, float]
 

@@ -54,7 +54,7 @@ from robot.kicks import DIRECTION_TICKS, PHASE
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.constants import GRAVITY
-from sim_motor.world import Scene
+from sim_motor.scene import Scene
 
 # The values that the maps vary.
 KS, GRIPS = (1.5, 2.0, 2.5, 3.0, 4.0), (0.7, 1.0, 1.34, 1.7, 2.0, 2.5)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
+from sim_motor.compiled_motor import advance_in_place
 from sim_motor.constants import load, names
-from sim_motor.motor import CURRENT, SPEED, WHEEL_SPEED, advance_in_place
+from sim_motor.motor import CURRENT, SPEED, WHEEL_SPEED
 
 
 def bare(constants):

@@ -8,7 +8,7 @@ import pytest
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.hand import MOST_NM, SILENCE_S, Hand, pull
-from sim_motor.world import Scene
+from sim_motor.scene import Scene
 
 
 class Desk:

@@ -13,7 +13,8 @@ from host.link.addresses import make_link
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.constants import GRAVITY, SUBSTEP_S, data
-from sim_motor.world import PARTS, Scene, World, move_body, tyre_force
+from sim_motor.scene import Scene
+from sim_motor.world import PARTS, World, move_body, tyre_force
 
 ROBOT = {name: entry[0] for name, entry in data()["robot"].items()}
 MASS, TRACK, RADIUS = ROBOT["mass"], ROBOT["track"], ROBOT["wheel_radius"]
