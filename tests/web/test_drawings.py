@@ -163,15 +163,15 @@ def test_a_spike_of_one_tick_is_as_high_as_a_lasting_one(page):
 
 
 def test_a_ring_is_drawn_from_its_start(page):
-    straight = strips(left_x1=WAVE, left_torque=WAVE)
-    turned = {**straight, "start": 250}
+    wave = [*WAVE, *WAVE[:40]]
+    straight = strips(640, left_x1=wave, left_torque=wave)
+    turned = {**straight, "start": 256}
     turned["columns"] = {
-        name: values[-250:] + values[:-250] for name, values in straight["columns"].items()
+        name: values[-256:] + values[:-256] for name, values in straight["columns"].items()
     }
     assert _draw(page, "strips", turned, **LARGE) == _draw(page, "strips", straight, **LARGE)
-    loop = plane(WAVE, WAVE)
-    rolled = plane(WAVE[-100:] + WAVE[:-100], WAVE[-100:] + WAVE[:-100])
-    rolled["start"] = 100
+    loop = plane(wave, wave)
+    rolled = {**plane(wave[-256:] + wave[:-256], wave[-256:] + wave[:-256]), "start": 256}
     assert _draw(page, "plane", rolled, **LARGE) == _draw(page, "plane", loop, **LARGE)
 
 
@@ -192,6 +192,12 @@ def test_the_newest_record_is_at_the_right_edge(page):
     left, right = min(columns), max(columns)
     assert right > 1270
     assert (right - left) / 60 == pytest.approx((right - 39) / 600, rel=0.05)
+
+
+@pytest.mark.parametrize("count", [60, 6000])
+def test_what_is_not_known_leaves_no_mark(page, count):
+    nothing = _draw(page, "strips", strips(count), **LARGE)
+    assert _draw(page, "strips", strips(count, left_x1=[float("nan")] * count), **LARGE) == nothing
 
 
 def test_a_kick_is_a_band_as_long_as_it_acts(page):

@@ -77,8 +77,11 @@ const PROJECTED = 1 / 40;
  * @property {number} scale device pixels per CSS pixel
  * @property {number} text height of the text, CSS pixels
  * @property {number} line width of an ordinary line, CSS pixels
+ * @property {number[]} dash of a dashed line, for setLineDash
  * @property {function} start see `start`
  * @property {function} write see `write`
+ * @property {function} measure see `measure`
+ * @property {function} rule see `rule`
  * @property {function} arrowHead see `arrowHead`
  * @property {function} ticks see `ticks`
  * @property {function} number see `number`
@@ -113,7 +116,10 @@ export function theme({ dark, scale, height }, projector = false) {
         grey[name] = DECORATION.includes(name) ? colour : colours.faint;
     }
     const text = projector ? Math.max(TEXT, height * PROJECTED) : TEXT;
-    return { colours, grey, scale, text, line: text / 8, start, write, arrowHead, ticks, number };
+    const line = text / 8;
+    const dash = [3 * line, 2 * line];
+    const tools = { start, write, measure, rule, arrowHead, ticks, number };
+    return { colours, grey, scale, text, line, dash, ...tools };
 }
 
 /**
@@ -151,20 +157,53 @@ function start(canvas, stale) {
  * @returns {number} its width, CSS pixels
  */
 function write(ctx, text, x, y, how) {
-    const { colour, align = "left", size = 1, bold = false, symbol = false, halo = "" } = how;
-    const slant = symbol ? "italic " : "";
-    const height = size * this.text * (symbol ? 1.12 : 1);
-    ctx.font = `${slant}${bold ? "bold " : ""}${height}px ${symbol ? SYMBOLS : FAMILY}`;
-    ctx.textAlign = align;
+    const width = this.measure(ctx, text, how);
+    ctx.textAlign = how.align ?? "left";
     ctx.textBaseline = "middle";
-    if (halo) {
-        ctx.strokeStyle = halo;
+    if (how.halo) {
+        ctx.strokeStyle = how.halo;
         ctx.lineWidth = this.text / 3;
         ctx.strokeText(text, x, y);
     }
-    ctx.fillStyle = colour;
+    ctx.fillStyle = how.colour;
     ctx.fillText(text, x, y);
+    return width;
+}
+
+/**
+ * How wide a text is.
+ *
+ * @param {CanvasRenderingContext2D} ctx where
+ * @param {string} text what
+ * @param {Object} how as in `write`
+ * @returns {number} its width, CSS pixels
+ */
+function measure(ctx, text, { size = 1, bold = false, symbol = false }) {
+    const height = size * this.text * (symbol ? 1.12 : 1);
+    const style = (symbol ? "italic " : "") + (bold ? "bold " : "");
+    ctx.font = `${style}${height}px ${symbol ? SYMBOLS : FAMILY}`;
     return ctx.measureText(text).width;
+}
+
+/**
+ * Draw a level line.
+ *
+ * @param {CanvasRenderingContext2D} ctx where
+ * @param {number} from its left end, CSS pixels
+ * @param {number} to its right end, CSS pixels
+ * @param {number} y its height, CSS pixels
+ * @param {string} colour its colour
+ * @param {boolean} dashed whether it is dashed
+ */
+function rule(ctx, from, to, y, colour, dashed) {
+    ctx.beginPath();
+    ctx.moveTo(from, y);
+    ctx.lineTo(to, y);
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = this.line;
+    if (dashed) ctx.setLineDash(this.dash);
+    ctx.stroke();
+    ctx.setLineDash([]);
 }
 
 /**

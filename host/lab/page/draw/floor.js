@@ -8,6 +8,8 @@
 const ROOM_M = 0.25;
 const NARROW = 0.4;
 const SPANS_M = [1, 1.5, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 200, 500, 1000];
+// How many points are drawn in one go: Chromium paints long paths slowly.
+const PIECE = 64;
 // Outline of the robot, in tracks: ahead of and behind its axle.
 const AHEAD = 0.75;
 const BACK = 0.5;
@@ -106,17 +108,23 @@ function walls({ ctx, colours, theme, x, height }, distance) {
 function trail({ ctx, colours, theme, x, y }, state) {
     const { x_m: xs, y_m: ys, start = 0, count = 0 } = state;
     if (!xs || !ys) return;
-    let pen = false;
+    let [px, py, points] = [NaN, NaN, 0];
+    ctx.strokeStyle = colours.right1;
+    ctx.lineWidth = theme.line;
     ctx.beginPath();
     for (let n = 0; n < count; n++) {
         const index = (start + n) % xs.length;
-        const there = Number.isFinite(xs[index] + ys[index]);
-        if (there && pen) ctx.lineTo(x(xs[index]), y(ys[index]));
-        else if (there) ctx.moveTo(x(xs[index]), y(ys[index]));
-        pen = there;
+        const [at, up] = [x(xs[index]), y(ys[index])];
+        // What is nearer than a pixel is the same place.
+        if (Math.abs(at - px) + Math.abs(up - py) < 1 && n < count - 1) continue;
+        if (!Number.isNaN(px + py)) ctx.lineTo(at, up);
+        if (++points % PIECE === 0 || Number.isNaN(px + py)) {
+            ctx.stroke();
+            ctx.beginPath();
+            ctx.moveTo(at, up);
+        }
+        [px, py] = [at, up];
     }
-    ctx.strokeStyle = colours.right1;
-    ctx.lineWidth = theme.line;
     ctx.stroke();
     ctx.beginPath();
     ctx.arc(x(0), y(0), 0.3 * theme.text, 0, 2 * Math.PI);

@@ -9,25 +9,24 @@
 
 // A line does not bridge a longer gap, s: there, records are lost.
 const GAP_S = 0.25;
+// With more records than this for each column of pixels, a line shows only the extremes of each.
+const DENSE = 1.5;
+// How many records are drawn in one go: Chromium paints long paths slowly.
+const PIECE = 32;
 const ROWS = [
     {
         symbol: "x",
         weight: 1.5,
         limits: [1, 2, 5, 10, 20],
-        lines: [
-            { column: "left_x1", colour: "left1", name: "x₁" },
-            { column: "left_x2", colour: "left2", name: "x₂" },
-            { column: "right_x1", colour: "right1", name: "x₁", right: true },
-            { column: "right_x2", colour: "right2", name: "x₂", right: true },
-        ],
+        lines: wheels(["x1", "x2"], ["x₁", "x₂"]),
     },
-    { symbol: "M", weight: 1, limits: [1], lines: wheels("torque") },
+    { symbol: "M", weight: 1, limits: [1], lines: wheels(["torque"]) },
     {
         symbol: "ω",
         unit: "rad/s",
         weight: 1,
         limits: [5, 10, 20, 50, 100],
-        lines: wheels("omega_rad_s"),
+        lines: wheels(["omega_rad_s"]),
     },
     {
         symbol: "Δt",
@@ -40,12 +39,15 @@ const ROWS = [
     },
 ];
 
-/** The lines of a channel of both wheels. */
-function wheels(name) {
-    return [
-        { column: "left_" + name, colour: "left" },
-        { column: "right_" + name, colour: "right", right: true },
-    ];
+/** The lines of both wheels' channels; names are for people. */
+function wheels(channels, names = []) {
+    const line = (side, channel, n) => ({
+        column: side + "_" + channel,
+        colour: side + (names.length ? n + 1 : ""),
+        name: names[n],
+        right: side === "right",
+    });
+    return ["left", "right"].flatMap((side) => channels.map((name, n) => line(side, name, n)));
 }
 
 /**
@@ -90,10 +92,10 @@ export function draw(canvas, state, theme) {
     const bottom = height - 1.7 * text;
     const view = { ctx, colours, theme, left, right, now, pixels: (right - left) / seconds };
     const shown = recent(state, now - seconds);
-    const weights = ROWS.reduce((sum, row) => sum + row.weight, 0);
     const header = 1.5 * text;
-    let y = top;
+    const weights = ROWS.reduce((sum, row) => sum + row.weight, 0);
     const share = (bottom - top - ROWS.length * header) / weights;
+    let y = top;
     times(view, state, seconds, top, bottom);
     for (const row of ROWS) {
         const box = { top: y + header, bottom: y + header + share * row.weight };
@@ -139,12 +141,11 @@ function times({ ctx, colours, theme, left, right, now, pixels }, state, seconds
         ctx.fillRect(begin, top, wide, bottom - top);
         ctx.globalAlpha = 1;
         ctx.fillRect(begin - 0.5, top - 0.2 * text, 1, bottom - top + 0.2 * text);
-        ctx.font = `${text}px sans-serif`;
-        const name = kick.name ?? "";
-        const long = ctx.measureText(name).width;
+        const how = { colour: colours.kick, bold: true };
+        const long = theme.measure(ctx, kick.name ?? "", how);
         const x = Math.min(begin, right - long);
         if (x + long > free) continue;
-        theme.write(ctx, name, x, top - 0.8 * text, { colour: colours.kick, bold: true });
+        theme.write(ctx, kick.name ?? "", x, top - 0.8 * text, how);
         free = x - text;
     }
 }
@@ -163,20 +164,9 @@ function legend({ ctx, colours, theme, left, right }, row, state, y) {
         const how = { colour: colours.faint, size: 0.9, align: "right" };
         if (last && side) x -= theme.write(ctx, side, x, y, how) + 0.4 * text;
         if (line.name) x -= theme.write(ctx, line.name, x, y, how) + 0.3 * text;
-        ctx.beginPath();
-        ctx.moveTo(x - 1.6 * text, y);
-        ctx.lineTo(x, y);
-        ink(ctx, colours[line.colour], theme, line.right);
+        theme.rule(ctx, x - 1.6 * text, x, y, colours[line.colour], line.right);
         x -= 1.6 * text + 0.8 * text;
     }
-}
-
-function ink(ctx, colour, theme, dashed) {
-    ctx.strokeStyle = colour;
-    ctx.lineWidth = theme.line;
-    if (dashed) ctx.setLineDash([3 * theme.line, 2 * theme.line]);
-    ctx.stroke();
-    if (dashed) ctx.setLineDash([]);
 }
 
 function strip(view, row, state, shown, box) {
@@ -209,21 +199,19 @@ function strip(view, row, state, shown, box) {
     }
     if (row.positive && state.tick_s > 0) {
         const y = zero - state.tick_s * (row.factor ?? 1) * unit;
-        ctx.beginPath();
-        ctx.moveTo(left, y);
-        ctx.lineTo(right, y);
-        ink(ctx, colours.target, theme, true);
+        theme.rule(ctx, left, right, y, colours.target, true);
         note(state.labels?.period, y, colours.target);
     }
     ctx.save();
     ctx.beginPath();
     ctx.rect(left, box.top, right - left, box.bottom - box.top);
     ctx.clip();
+    const many = shown.last - shown.first > DENSE * (right - left) * theme.scale;
+    const channel = many ? bars : polyline;
     for (const line of row.lines) {
-        const data = state.columns?.[line.column];
-        if (!data) continue;
-        trace(view, state, shown, data, zero, unit * (row.factor ?? 1));
-        ink(ctx, colours[line.colour], theme, line.right);
+        if (!state.columns?.[line.column]) continue;
+        ctx.strokeStyle = ctx.fillStyle = colours[line.colour];
+        channel(view, state, shown, line, zero, unit * (row.factor ?? 1));
     }
     ctx.restore();
 }
@@ -245,51 +233,67 @@ function limit(row, state, { first, last }) {
     return fits ?? row.limits[row.limits.length - 1];
 }
 
-/** The path of a channel: exact where records are few, least and greatest of a column otherwise. */
-function trace({ ctx, theme, right, now, pixels }, state, { first, last }, data, zero, unit) {
+/** A line through a channel's values, while they are few. */
+function polyline({ ctx, theme, right, now, pixels }, state, shown, line, zero, unit) {
     const t = state.columns.t_s;
-    const columns = pixels * theme.scale;
-    let index = (state.start + first) % data.length;
-    let column = NaN;
+    const data = state.columns[line.column];
     let before = NaN;
-    let least = 0;
-    let greatest = 0;
-    let rising = true;
-    let single = 0;
+    ctx.lineWidth = theme.line;
+    ctx.lineCap = "butt";
+    ctx.setLineDash(line.right ? theme.dash : []);
+    ctx.beginPath();
+    // Pieces begin at fixed records, so that dashes stay where they are while time goes on.
+    const ahead = (state.start + shown.first) % PIECE;
+    for (let n = Math.max(0, shown.first - ahead); n < shown.last; n++) {
+        const index = (state.start + n) % data.length;
+        const [x, y] = [right - (now - t[index]) * pixels, zero - data[index] * unit];
+        // NaN in either is a gap.
+        const joined = t[index] - before <= GAP_S && y - y === 0;
+        if (joined) ctx.lineTo(x, y);
+        if (!joined || index % PIECE === 0) {
+            ctx.stroke();
+            ctx.beginPath();
+            ctx.moveTo(x, y);
+        }
+        before = y - y === 0 ? t[index] : NaN;
+    }
+    ctx.stroke();
+}
+
+/** A bar from the least to the greatest value in each column of pixels, where values are many. */
+function bars({ ctx, theme, right, now, pixels }, state, shown, line, zero, unit) {
+    const t = state.columns.t_s;
+    const data = state.columns[line.column];
+    const { scale } = theme;
+    const rate = pixels * scale;
+    // Columns are fixed in time, and stand on whole pixels: nothing flickers while time goes on.
+    const shift = Math.round(right * scale - now * rate);
+    let [column, least, greatest, last, before] = [NaN, 0, 0, NaN, NaN];
     const flush = () => {
         if (Number.isNaN(column)) return;
-        const x = least === greatest ? single : right - now * pixels + (column + 0.5) / theme.scale;
-        ctx.lineTo(x, zero - (rising ? least : greatest) * unit);
-        if (least !== greatest) ctx.lineTo(x, zero - (rising ? greatest : least) * unit);
+        // In place of dashes, which would hide a spike.
+        if (line.right) ctx.globalAlpha = (column / scale) % 8 >= 5 ? 0.4 : 1;
+        const high = (greatest - least) * unit + theme.line;
+        ctx.fillRect((shift + column) / scale, zero - greatest * unit - theme.line / 2, 1, high);
     };
-    ctx.beginPath();
-    for (let n = first; n < last; n++) {
-        const time = t[index];
-        const value = data[index];
+    let index = (state.start + shown.first) % data.length;
+    for (let n = shown.first; n < shown.last; n++) {
+        const [time, value] = [t[index], data[index]];
         if (++index === data.length) index = 0;
-        // A NaN in either is a gap.
-        if (!(time - before <= GAP_S) || Number.isNaN(value)) {
+        const here = Math.floor(time * rate);
+        if (here !== column || value - value !== 0) {
             flush();
-            column = NaN;
-            before = NaN;
-            if (Number.isNaN(value)) continue;
-            ctx.moveTo(right - (now - time) * pixels, zero - value * unit);
-        }
-        before = time;
-        const here = Math.floor(time * columns);
-        if (here !== column) {
-            flush();
-            column = here;
+            column = value - value === 0 ? here : NaN;
             least = greatest = value;
-            rising = true;
-            single = right - (now - time) * pixels;
-        } else if (value < least) {
-            least = value;
-            rising = false;
-        } else if (value > greatest) {
-            greatest = value;
-            rising = true;
-        }
+            // What joins two columns belongs to the second one. A NaN in either is a gap.
+            if (time - before <= GAP_S) {
+                if (last < least) least = last;
+                else if (last > greatest) greatest = last;
+            }
+        } else if (value < least) least = value;
+        else if (value > greatest) greatest = value;
+        [last, before] = [value, time];
     }
     flush();
+    ctx.globalAlpha = 1;
 }

@@ -14,7 +14,7 @@ export const RAIL = 2.55;
 export const SPRING = 0.36;
 const SCALE = 0.68;
 const BEFORE = 1.45;
-const BEHIND = 3.9;
+const BEHIND = 4;
 const COILS = 6;
 // The arc that shows the speed: its length in rad for each rad/s, and at most, rad.
 const ARC_S = 0.09;
