@@ -13,6 +13,7 @@ import time
 from math import cos, exp, sin, tanh
 from pathlib import Path
 
+from tests.bench_drawings import drawings
 from tests.bench_io import reads_and_writes
 from tests.bench_lab import lab_page
 from tests.bench_starts import starts
@@ -38,6 +39,7 @@ def main() -> None:
         stop_from_a_shell,
         stop_of_all,
         many_hosts,
+        drawings,
         lab_page,
     ):
         measure()

@@ -68,6 +68,12 @@ export class Views {
         const value = (name) => (known ? ring.columns[`${side}_${name}`][place] : NaN);
         state.phi_rad = known ? this.angle(side) : NaN;
         for (const name of WHEEL_CHANNELS) state[name] = value(name);
+        // Between two records the seen positions turn on with the wheel.
+        const turned = state.phi_rad - value("phi_rad");
+        const [cos, sin] = [Math.cos(turned), Math.sin(turned)];
+        const { seen1, seen2 } = state;
+        state.seen1 = seen1 * cos - seen2 * sin;
+        state.seen2 = seen1 * sin + seen2 * cos;
         state.kick = this.#kickOn(side, place);
         state.stale = this.stale;
     }
@@ -141,6 +147,7 @@ export class Views {
                 jumped: this.robot.jumped[side],
                 colour: SIDE_COLOURS[side],
                 dashed: side === "right",
+                name: texts.stripLabels[side],
                 ghost: null,
             }));
         const turns = () => ({ symbol: "ω/2π", unit: "1/s", minimum: -3, maximum: 3 });
