@@ -42,6 +42,7 @@ REAL_TIME = (
     "tests/deploy/",
     "tests/lab/test_forecasts.py",
     "tests/lab/test_live.py",
+    "tests/lab/test_serial_station.py",
     "tests/lab/test_web.py",
     "tests/link/test_own_motors.py",
     "tests/link/test_neighbours.py",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-import threading
 import webbrowser
 from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING
@@ -72,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
         with suppress(KeyboardInterrupt):
             forecasts.begin()
             _tell(lab, stations, options)
-            threading.Event().wait()
+            lab.wait()
     return 0
 
 

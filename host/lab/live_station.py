@@ -98,6 +98,7 @@ class LiveStation(Station):
         self._release_wanted = False
         self._who = own_name()
         self._performs = False
+        self._driven = False
         self._threads = [
             threading.Thread(target=work, name=f"lab {what} {name}", daemon=True)
             for what, work in (
@@ -167,6 +168,7 @@ class LiveStation(Station):
             answer(NotDone("the robot has not done the last commands yet", "wait, or stop it"))
             return
         self._performs = self._performs or command == "primitive"
+        self._driven = self._driven or command not in _HARMLESS
         self._jobs.put(_Job(command, arguments, answer, self._stops))
 
     def attend(self) -> None:
@@ -182,6 +184,9 @@ class LiveStation(Station):
         Without a confirmed stop the robot is not given back: it misses the heartbeats and stops.
         """
         self._attended_until = 0.0
+        if not self._driven:  # it may be somebody else's
+            return
+        self._driven = False
         if self.rule == STOP:
             self._release_wanted = True
             self.stop()
@@ -209,8 +214,9 @@ class LiveStation(Station):
         except Exception as error:  # the thread must go on
             logging.getLogger("kickctl").exception("a command of the lab failed")
             result = NotDone(f"the lab failed: {error!r}", "please report this")
-        if self.pages is not None:
-            self.pages.call(lambda: job.answer(result))
+        pages = self.pages
+        if pages is not None:
+            pages.call(lambda: job.answer(result))
 
     def _result(self, job: _Job) -> dict[str, Any]:
         if job.command in _HARMLESS:

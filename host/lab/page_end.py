@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from host.errors import KickctlError
-from host.lab.station import HISTORY
 
 # How many messages a second a page may send, and how many at once. Stops are not counted.
 RATE_PER_S, BURST = 150.0, 300.0
@@ -66,8 +65,6 @@ class Page:
         closed: Whether it has been refused or is gone: nothing more comes for it.
         awake: Called when something waits.
     """
-
-    history = HISTORY
 
     def __init__(self, now: float, local: bool) -> None:
         self.number = 0

@@ -6,6 +6,7 @@ import asyncio
 import errno
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -19,7 +20,6 @@ from host.lab.session import Session
 from host.lab.station import Station
 from host.lab.web import PAGE_FOLDER, Site
 
-PORT = 5426
 LOOPBACK = "127.0.0.1"
 TICK_S = 0.1
 STOP_PATIENCE_S = 5.0
@@ -47,7 +47,7 @@ class Lab:
     def __init__(
         self,
         stations: Sequence[Station],
-        port: int = PORT,
+        port: int = 0,
         host: str | None = None,
         folder: Path = PAGE_FOLDER,
         forecasts: Forecasts | None = None,
@@ -63,6 +63,7 @@ class Lab:
         self._hosts = [LOOPBACK, *([host] if host not in (None, LOOPBACK) else [])]
         self._loop = asyncio.new_event_loop()
         self._ready = threading.Event()
+        self._ended = threading.Event()
         self._end = asyncio.Event()
         self._failure: BaseException | None = None
         self._woken = False
@@ -85,6 +86,12 @@ class Lab:
         self.call(self._end.set)
         self._thread.join()
 
+    def wait(self) -> None:
+        """Wait until the server ends, which it does by itself only if it fails. Raises that."""
+        self._ended.wait()
+        if self._failure is not None:
+            raise self._failure
+
     # What stations call, from any thread.
 
     def hear(self, message: dict[str, Any]) -> None:
@@ -99,7 +106,7 @@ class Lab:
 
     def call(self, function: Callable[[], object]) -> None:
         """Call a function in the server's thread; never after the server's end."""
-        if not self._loop.is_closed():
+        with suppress(RuntimeError):  # the loop is closed
             self._loop.call_soon_threadsafe(function)
 
     def _look(self) -> None:
@@ -117,6 +124,7 @@ class Lab:
         finally:
             self._loop.close()
             self._ready.set()
+            self._ended.set()
 
     async def _serve(self) -> None:
         runner = web.AppRunner(self._site.application(), access_log=None, shutdown_timeout=1.0)

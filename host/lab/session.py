@@ -18,7 +18,7 @@ from host.lab.baton import Baton
 from host.lab.keys import DRIVE, Keys
 from host.lab.page_end import Departed, Page, Score
 from host.lab.presets import PRESETS, PRIMITIVES, describe_presets, describe_primitives
-from host.lab.station import STOP, Station
+from host.lab.station import HISTORY, STOP, Station
 
 # How many pages there may be; some of the places are kept for those that may drive.
 MAX_PAGES, KEPT_FOR_DRIVERS = 64, 4
@@ -73,7 +73,7 @@ class Session:
             self._strangers.pop(0).refuse("too many pages come at once", "try again in a moment")
         return page
 
-    def leave(self, page: Page, now: float) -> None:
+    def leave(self, page: Page) -> None:
         """A connection is gone. If its page drove, it has a moment to come back."""
         if page in self._strangers:
             self._strangers.remove(page)
@@ -208,7 +208,7 @@ class Session:
             page.number, page.role = self._numbers, role
         self.pages[page.number] = page
         for station in self.stations.values():
-            page.places[station.name] = station.ring.latest(page.history)
+            page.places[station.name] = station.ring.latest(HISTORY)
         page.send(
             {
                 "type": "welcome",
@@ -227,9 +227,10 @@ class Session:
         self._counted = (-1, -1)  # the newcomer has to be told, too
 
     def _stop(self, message: Message) -> None:
+        """Stop one robot, or all: also if the page names one that is not there."""
         name = message.get("robot")
-        stations = list(self.stations.values()) if name is None else [self._station(message)]
-        for station in stations:
+        one = self.stations.get(name) if isinstance(name, str) else None
+        for station in self.stations.values() if one is None else [one]:
             station.stop()
 
     def _pass(self, kind: str, page: Page, message: Message, now: float) -> None:

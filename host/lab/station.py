@@ -266,7 +266,10 @@ class Station:
         """Somebody drives and is there; said several times a second."""
 
     def abandon(self) -> None:
-        """Nobody drives any more. By the rule the robot stops, or goes on as it is."""
+        """Nobody drives any more.
+
+        By the rule the robot stops, or goes on as it is. One that nobody here has driven is let be.
+        """
         raise NotImplementedError
 
     def hand(self, wheel: str, angle_rad: float | None) -> None:
@@ -324,12 +327,14 @@ class Station:
         self._say(error.message, error.hint)
 
     def _hear(self, message: dict[str, Any]) -> None:
-        if self.pages is not None:
-            self.pages.hear(message)
+        pages = self.pages
+        if pages is not None:
+            pages.hear(message)
 
     def _wake(self) -> None:
-        if self.pages is not None:
-            self.pages.wake()
+        pages = self.pages
+        if pages is not None:
+            pages.wake()
 
 
 def stop_words(stopped: Stopped) -> str:

@@ -68,7 +68,7 @@ class SteppedStation(Station):
 
     def abandon(self) -> None:
         with self._lock:
-            if self.rule == STOP:
+            if self._robot.drives and self.rule == STOP:
                 self.stop()
             self._robot.release()
 

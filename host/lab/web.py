@@ -131,7 +131,7 @@ class Site:
                     session.receive(page, text, now())
                     await asyncio.sleep(0)  # who sends much must not keep others waiting
         finally:
-            session.leave(page, now())
+            session.leave(page)
             self._sockets.discard(socket)
             sender.cancel()
             with suppress(asyncio.CancelledError, ConnectionError):

@@ -78,7 +78,7 @@ class Visit:
         return self.latest("reply")
 
     def leave(self):
-        self.lab.session.leave(self.page, self.lab.now)
+        self.lab.session.leave(self.page)
 
     @property
     def drives(self):

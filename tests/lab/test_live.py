@@ -223,6 +223,17 @@ def test_a_primitive_is_reached_and_a_stop_ends_it_at_once(station, observer):
         started(station)
 
 
+def test_a_robot_that_this_lab_has_not_driven_is_let_be(desk, station, observer):
+    with connect(desk.uri, token=desk.token) as other:
+        other.start()
+        station.abandon()
+        station.do("identify", {}, answers := Answers())
+        assert answers.next()
+        observer.wait(0.3)
+        assert state(observer) == "running"
+        assert other.drives
+
+
 def test_it_identifies_and_records_without_driving(station, observer, tmp_path):
     answers = Answers()
     station.do("identify", {}, answers)

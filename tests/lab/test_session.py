@@ -77,8 +77,9 @@ def test_who_may_only_watch_does_nothing_but_stop(lab):
     )
     visit.send("stop", robot="bert")
     assert (lab.anna.take(), lab.bert.take()) == ([], [("stop",)])
-    visit.send("stop", robot=None)
-    assert lab.anna.take() == lab.bert.take() == [("stop",)]
+    for robot in (None, "carl", 7):
+        visit.send("stop", robot=robot)
+        assert lab.anna.take() == lab.bert.take() == [("stop",)]
 
 
 def test_the_driver_gives_the_baton_to_who_asks_and_the_teacher_takes_it_back(lab):
