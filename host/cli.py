@@ -57,8 +57,13 @@ Exit status: 0 it worked; 1 tried, and not or not wholly done; 2 wrong use; 3 no
 
 
 @cache
-def make_parser() -> argparse.ArgumentParser:
-    """The parser of the whole command line. It raises WrongUse for one that is wrong."""
+def make_parser(needed: tuple[str, ...] = VERBS) -> argparse.ArgumentParser:
+    """The parser of the whole command line. It raises WrongUse for one that is wrong.
+
+    Args:
+        needed: The verbs of which it knows more than the name. To import them all takes longer than
+            a stop.
+    """
     parents: list[Any] = [common(defaults=True)]
     parser = Parser(
         prog="kickctl",
@@ -70,6 +75,9 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"kickctl {__version__}")
     verbs: Any = parser.add_subparsers(metavar="VERB", required=True)
     for name in VERBS:
+        if name not in needed:
+            verbs.choices[name] = None
+            continue
         module = importlib.import_module("host.commands." + name)
         verb = verbs.add_parser(
             name,
@@ -82,6 +90,13 @@ def make_parser() -> argparse.ArgumentParser:
             module=module, verb=name, in_one_line=getattr(module, "in_one_line", None)
         )
     return parser
+
+
+def _needed(arguments: list[str]) -> tuple[str, ...]:
+    """The verbs that stand in a command line; all of them for help, and for what completes it."""
+    named = tuple(name for name in VERBS if name in arguments)
+    helps = any(argument.startswith(("-h", "--h")) for argument in arguments)
+    return VERBS if helps or "_ARGCOMPLETE" in os.environ else named or VERBS
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -111,7 +126,7 @@ def _run(arguments: list[str]) -> int:
     from host.commands._terminal import begin, print_answer, print_result, show
 
     begin()
-    parser = make_parser()
+    parser = make_parser(_needed(arguments))
     if "_ARGCOMPLETE" in os.environ:
         import argcomplete
 

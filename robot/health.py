@@ -11,7 +11,8 @@ import sys
 import time
 
 from robot import __version__, sources, token, wire
-from robot.program import PORT, say
+from robot.program import say
+from robot.wire import PORT
 
 # Where a program that listens on every address of its machine is asked.
 LOOPBACK = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104

@@ -14,8 +14,7 @@ from robot.errors import Refused
 from robot.loop import Loop
 from robot.serial_line import BAUD, SerialLine
 from robot.server import Server
-
-PORT = 5425  # KICK on a telephone's keys
+from robot.wire import PORT
 
 
 def say(text, stream):

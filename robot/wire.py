@@ -7,6 +7,8 @@ import struct
 import zlib
 
 PROTOCOL = (1, 2)
+# Where robots listen: KICK on a telephone's keys.
+PORT = 5425
 
 SYNC = b"\xa5K"
 _HEADER = struct.Struct(">2sBH")

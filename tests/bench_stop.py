@@ -113,6 +113,7 @@ def _three_robots() -> Iterator[tuple[dict[str, str], dict[str, str]]]:
         (folder / "kickctl" / "robots.toml").write_text("".join(lines), encoding="utf-8")
         environment = {**os.environ, "XDG_CONFIG_HOME": name}
         environment.pop("KICK_BRICK", None)
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # as on a user's machine
         yield tokens, environment
 
 

@@ -12,7 +12,6 @@ import os
 import selectors
 import signal
 import sys
-import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import Any, NamedTuple
@@ -154,6 +153,8 @@ def _run_alone(robot: Chosen, options: argparse.Namespace) -> None:
     except BaseException as error:  # noqa: BLE001 - nothing may return into the copy of a parent
         failure = in_words(error)
         if failure is None:
+            import traceback
+
             traceback.print_exc()
         else:
             status = failure.status

@@ -12,13 +12,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from host.client.robot import Robot, connect
 from host.commands._hints import as_typed, name_robot
 from host.errors import Interrupted, KickctlError, NoLink, NotDone
 from host.util.interrupts import uninterrupted
 
 if TYPE_CHECKING:
     from rich.table import Table
+
+    from host.client.robot import Robot
 
 
 class _Answer(NamedTuple):
@@ -141,6 +142,8 @@ def robot_of(
     Yields:
         The robot.
     """
+    from host.client.robot import connect
+
     robot = None
     try:
         with connect(

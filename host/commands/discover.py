@@ -14,7 +14,7 @@ from host.link.addresses import place_of, with_host
 from host.link.names import Saved, same_robot, save
 from host.link.robots_file import is_hardware_id
 from host.util.numbers import Number
-from robot.program import PORT
+from robot.wire import PORT
 
 if TYPE_CHECKING:
     from host.link.discovery import Found

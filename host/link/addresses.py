@@ -6,9 +6,9 @@ sim:// (embedded, in virtual time), tcp://HOST:PORT, ssh://USER@HOST and serial:
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from difflib import get_close_matches
 from ipaddress import IPv6Address
+from typing import NamedTuple
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from host.errors import WrongUse, quotable
@@ -17,8 +17,8 @@ from host.link.settings import parse_setting
 from host.link.transport import Link, TcpLink
 from host.util.arguments import need_seed
 from host.util.interrupts import uninterrupted
-from robot.program import PORT
 from robot.serial_line import BAUD, FASTEST_BAUD
+from robot.wire import PORT
 
 SIM = "sim://"
 
@@ -30,8 +30,7 @@ _AUTHORITY = re.compile(
 )
 
 
-@dataclass(frozen=True)
-class _Parts:
+class _Parts(NamedTuple):
     """An address in pieces, whose scheme is known."""
 
     uri: str

@@ -24,7 +24,7 @@ from zeroconf import (
 from host.errors import NoLink, printable
 from host.util.arguments import need_seconds, wrong
 from host.util.installation import deploy_command
-from robot.program import PORT
+from robot.wire import PORT
 
 # What a brick with the robot's program as a service announces, and what every ev3dev brick does
 # (with the user's name in its record).

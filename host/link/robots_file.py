@@ -13,13 +13,11 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from host.errors import WrongUse, quotable
-from host.util.whole_files import write_text
 from robot.user_folders import config_folder
 
 LONGEST_NAME = 40
@@ -39,8 +37,7 @@ _NEW_FILE = (
 )
 
 
-@dataclass(frozen=True)
-class Known:
+class Known(NamedTuple):
     """A robot that has a name.
 
     Attributes:
@@ -264,6 +261,8 @@ def _change(change: Callable[[str, dict[str, dict[str, str]]], str]) -> None:
         change: Gets the text and the entries by name; returns the new text, and changes the entries
             to what the new text should say.
     """
+    from host.util.whole_files import write_text
+
     path = file_path()
     if path is None:
         raise WrongUse(

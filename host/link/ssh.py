@@ -21,7 +21,7 @@ from host.errors import NoLink, WrongUse, printable, quotable
 from host.link.logins import Login, parse_login, ssh_options
 from host.link.ssh_failures import remedy
 from host.link.transport import CONNECT_TIMEOUT_S, READ_BYTES, LinkLost, TcpLink
-from robot.program import PORT
+from robot.wire import PORT
 
 _FORM = (
     "give it as ssh://robot@ev3dev.local, with ?port= if the robot's program listens at another"

@@ -8,7 +8,7 @@ import subprocess
 
 from host.link.logins import Login
 from host.util.installation import deploy_command
-from robot.program import PORT
+from robot.wire import PORT
 
 _ANSWER_S = 10.0
 # What ssh says and the remedy; the first that fits. The words in braces are in `_words_for`.

@@ -1,6 +1,8 @@
 """No command line, however odd, ends in a traceback; with --json each is one JSON object."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 from host import cli
 from host.cli import VERBS, main, make_parser
 from host.commands._terminal import show
+from tests.lint.sources import ROOT
 
 # Verbs that do little, and so may run; the others are only parsed.
 QUICK = (
@@ -206,3 +209,26 @@ def test_odd_values_are_answered_in_words(kickctl, capsys, short, line, word):
     if word in ("", "sim://?k=nan") and line[0] in ("experiment", "reproduce"):
         word = "nothing"  # which means the simulated robot, or all claims
     check([part.replace("{}", word) for part in line] + ["--json"], capsys)
+
+
+def test_a_stop_imports_next_to_nothing():
+    """It must not wait for what other verbs need."""
+    program = (
+        "import sys; from host.cli import main; main(['--brick', 'tcp://127.0.0.1:1', 'stop']);"
+        "print(*sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    modules = set(done.stdout.split())
+    assert "host.client.stop" in modules
+    foreign = {name.partition(".")[0] for name in modules} & {"numpy", "rich", "zeroconf", "mcap"}
+    assert foreign == set()
+    others = ("asyncio", "dataclasses", "host.client.robot", "host.commands.kick", "robot.session")
+    assert [name for name in others if name in modules] == []
+
+
+def test_a_wrong_verb_and_help_still_know_all_verbs(kickctl):
+    assert "did you mean stop?" in kickctl("stpo")[2]
+    assert "blink its lights" in " ".join(kickctl("--help", "stop")[1].split())
+    assert kickctl("--name", "kick")[0] == 2

@@ -77,7 +77,7 @@ def test_before_the_kick_it_is_said_that_none_was_sent(kickctl, monkeypatch, met
 
 
 def test_while_connecting_it_is_said_too(kickctl, monkeypatch):
-    monkeypatch.setattr(_terminal, "connect", interrupted)
+    monkeypatch.setattr("host.client.robot.connect", interrupted)
     assert "no kick was sent" in end_of(kickctl, *KICK)
 
 

@@ -77,7 +77,7 @@ def late_robot(monkeypatch):
     """A robot that has missed some deadlines at known ticks, embedded in the command."""
     link = RigLink()
     link.loop.clock.lates.extend([0.0] * 10 + [0.1] + [0.0] * 20 + [0.07])
-    monkeypatch.setattr("host.commands._terminal.connect", lambda *_, **__: Robot(link, link.token))
+    monkeypatch.setattr("host.client.robot.connect", lambda *_, **__: Robot(link, link.token))
     return link
 
 

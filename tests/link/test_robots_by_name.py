@@ -244,8 +244,8 @@ def test_names_are_given_and_taken_on_the_command_line(tmp_path, capsys):
     assert run("add", "bert", "ssh://robot@h?port=7")[0] == 0
     assert json.loads(run("list", "--json")[1]) == {
         "robots": {
-            "anna": {"address": "tcp://h", "token": str(token)},
-            "bert": {"address": "ssh://robot@h?port=7", "token": None},
+            "anna": {"address": "tcp://h", "token": str(token), "hardware_id": None},
+            "bert": {"address": "ssh://robot@h?port=7", "token": None, "hardware_id": None},
         }
     }
     assert run("rename", "anna", "zoe")[0] == 0
