@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from host.commands._watched import event_words
 from robot.kicks import WHEELS
+from robot.words import duration
 
 if TYPE_CHECKING:
     from rich.console import Group
@@ -204,7 +205,7 @@ def _wheels(line: dict[str, Any]) -> Table:
 def _facts(line: dict[str, Any]) -> list[str]:
     """Why it is in its state, who drives it, and how punctual it is."""
     held_s = line["controller_held_s"]
-    since = "" if line["controller"] is None or held_s is None else f", for {_time(held_s)}"
+    since = "" if line["controller"] is None or held_s is None else f", for {duration(held_s)}"
     restarts = line["restarts"]
     again = f"; its program has started again {restarts} times" if restarts else ""
     punctual = (
@@ -213,7 +214,3 @@ def _facts(line: dict[str, Any]) -> list[str]:
     )
     driver = line["controller"] or "nobody"
     return [f"{line['state']}: {line['reason']}", f"driven by {driver}{since}", punctual]
-
-
-def _time(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 120.0 else f"{seconds / 60:.0f} min"
