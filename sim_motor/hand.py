@@ -69,14 +69,15 @@ class Hand:
         if not self._read(now):
             loop.done = True
         polarities = loop.params.polarity_left, loop.params.polarity_right
-        for index, (side, truth) in enumerate(zip(WHEELS, self._brick.truth(), strict=True)):
-            target, heard_s = self._holds.get(side, (0.0, 0.0))
-            if side in self._holds and (now - heard_s > SILENCE_S or loop.done):
+        for side, (target, heard_s) in list(self._holds.items()):
+            if loop.done or now - heard_s > SILENCE_S:
                 self._let_go(side)
-            elif side in self._holds:
-                sense = polarities[index] * self._brick.motors[index].mount
-                away_rad = sense * target - truth.wheel_angle
-                self._brick.set_load(index, pull(away_rad, truth.wheel_speed))
+                continue
+            index = WHEELS.index(side)
+            motor = self._brick.motors[index]
+            truth = motor.truth()
+            away_rad = polarities[index] * motor.mount * target - truth.wheel_angle
+            self._brick.set_load(index, pull(away_rad, truth.wheel_speed))
 
     def close(self) -> None:
         """Let go of both wheels."""

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_motor.compiled import parallel_jit, prange
+from sim_motor.compiled_motor import advance, substep_at, substep_from
 from sim_motor.constants import Array, Constants, tables
-from sim_motor.motor import ANGLE, advance, substep_at, substep_from
+from sim_motor.motor import ANGLE
 
 
 def replay(
