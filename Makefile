@@ -16,7 +16,7 @@ PEERS := build/peers
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak \
-	stress mutants lock clean
+	stress mutants lock screenshots clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
@@ -85,6 +85,9 @@ lock: .venv-lock/.complete ## renew requirements.lock with the newest versions t
 	.venv-lock/bin/uv pip compile pyproject.toml --group dev --output-file requirements.lock \
 		--upgrade --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 		--custom-compile-command 'make lock'
+
+screenshots: $(STAMP) ## take pictures of the lab's page in Chromium: build/screenshots, docs/pictures
+	$(BIN)/python -m tests.screenshots
 
 clean: ## remove everything that can be made again
 	rm -rf .venv .venv-lock build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis \

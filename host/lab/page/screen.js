@@ -7,7 +7,7 @@ const PROJECTOR = "lab.projector";
 // The names of the theme's colours that the key beside the wheels shows.
 const MARKS = ["target", "actual", "force", "memory"];
 // A drawing has room for a line of this many letters' heights, and for this many lines.
-const LETTERS = 17.5;
+const LETTERS = 19;
 const LINES = 6;
 const WIDE = matchMedia("(min-width: 1600px)");
 

@@ -49,7 +49,7 @@ export const texts = {
     phiPlane: "Angle and speed",
     xPlane: "Memory",
     sliceNote: "a slice",
-    slice: "each a slice of four dimensions",
+    slice: "slices of four dimensions",
     lagNote:
         "The four dimensions are angle, speed, x₁ and x₂. Lag says how far the angle that the" +
         " neurons remember lies behind the wheel. A membrane kick makes it jump by half a turn.",

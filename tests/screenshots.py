@@ -1,0 +1,93 @@
+"""Pictures of a pupil's path through the lab's page, for people to look at: `make screenshots`.
+
+All of them go to build/screenshots; one of each size goes to docs/pictures, too, for README.md.
+"""
+
+import io
+import shutil
+import sys
+
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+from host.lab.server import Lab
+from host.lab.station import CONTINUE
+from host.lab.stepped_station import SteppedStation
+from tests.lint.sources import ROOT
+
+SIZES = {"desk": (1280, 720), "phone": (390, 844), "projector": (1920, 1080)}
+ALL = ROOT / "build/screenshots"
+BEST = ROOT / "docs/pictures"
+# Flat drawings need no more colours, and then a picture is small.
+COLOURS = 96
+FOREVER_MS = 60000
+
+
+def walk(page, station):
+    """Go along the path, and yield the name of each picture when its moment has come."""
+
+    def until(condition):
+        known = "const s = lab.state(), r = s.robots[s.selected]"
+        page.wait_for_function(f"() => {{ {known}; return {condition}; }}", timeout=FOREVER_MS)
+
+    until("r && r.records > 200")
+    yield "1-wheels-turn"
+    page.check("#guess-0", force=True)
+    yield "2-guess"
+    page.click("#kick-phase")
+    until("r.kicks.length > 0 && r.kicks.at(-1).mode === 'phase'")
+    station.step(0.06)
+    yield "3-kicked"
+    station.step(2.4)
+    until("r.kicks.at(-1).outcome && r.kicks.at(-1).prediction")
+    yield "4-reversed"
+    page.keyboard.press("Escape")
+    station.step(1.5)
+    until("r.state === 'stopped' && Object.values(s.stop)[0] === 'confirmed'")
+    yield "5-stopped"
+
+
+def save(png, name):
+    """Write a picture with few colours. Returns its path."""
+    ALL.mkdir(parents=True, exist_ok=True)
+    path = ALL / f"{name}.png"
+    picture = Image.open(io.BytesIO(png)).convert("RGB")
+    picture.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    return path
+
+
+def main():
+    """Take all pictures. Returns the exit status."""
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        print("there is no Chromium here; get one by `apt-get install chromium`", file=sys.stderr)
+        return 1
+    BEST.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        for place, (width, height) in SIZES.items():
+            take(browser, place, {"width": width, "height": height})
+        browser.close()
+    return 0
+
+
+def take(browser, place, viewport):
+    """Take the pictures of one size, each size with a robot of its own."""
+    station = SteppedStation("sim://?seed=3", "simulated", CONTINUE)
+    station.step(10)
+    with Lab([station], port=0) as lab:
+        page = browser.new_page(viewport=viewport)
+        page.goto(lab.drive_url)
+        for moment in walk(page, station):
+            page.mouse.move(0, 0)
+            page.wait_for_timeout(400)  # so that what has just changed is on the screen
+            path = save(page.screenshot(), f"{place}-{moment}")
+            print(path.relative_to(ROOT), f"{path.stat().st_size / 1000:.0f} kB")
+            if moment == "4-reversed":
+                shutil.copy(path, BEST / f"lab-{place}.png")
+        page.close()
+    station.close()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
