@@ -86,7 +86,7 @@ lock: .venv-lock/.complete ## renew requirements.lock with the newest versions t
 		--upgrade --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 		--custom-compile-command 'make lock'
 
-screenshots: $(STAMP) ## take pictures of the lab's page in Chromium: build/screenshots, docs/pictures
+screenshots: $(STAMP) ## take pictures of the lab's page, in build/ and docs/
 	$(BIN)/python -m tests.screenshots
 
 clean: ## remove everything that can be made again

@@ -10,6 +10,7 @@ import sys
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
+from host.lab.forecasts import Forecasts
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
@@ -19,7 +20,7 @@ SIZES = {"desk": (1280, 720), "phone": (390, 844), "projector": (1920, 1080)}
 ALL = ROOT / "build/screenshots"
 BEST = ROOT / "docs/pictures"
 # Flat drawings need no more colours, and then a picture is small.
-COLOURS = 96
+COLOURS = 256
 FOREVER_MS = 60000
 
 
@@ -65,17 +66,19 @@ def main():
     BEST.mkdir(parents=True, exist_ok=True)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        forecasts = Forecasts()
         for place, (width, height) in SIZES.items():
-            take(browser, place, {"width": width, "height": height})
+            take(browser, place, {"width": width, "height": height}, forecasts)
+        forecasts.close()
         browser.close()
     return 0
 
 
-def take(browser, place, viewport):
+def take(browser, place, viewport, forecasts):
     """Take the pictures of one size, each size with a robot of its own."""
     station = SteppedStation("sim://?seed=3", "simulated", CONTINUE)
     station.step(10)
-    with Lab([station], port=0) as lab:
+    with Lab([station], port=0, forecasts=forecasts) as lab:
         page = browser.new_page(viewport=viewport)
         page.goto(lab.drive_url)
         for moment in walk(page, station):

@@ -53,8 +53,11 @@ export class Hand {
     }
 
     #grab(event) {
-        const theme = this.screen.themeFor(this.canvas);
-        if (!this.allowed || angleAt(this.canvas, theme, ...this.#place(event)) === null) return;
+        if (
+            !this.allowed ||
+            angleAt(this.canvas, this.screen.theme, ...this.#place(event)) === null
+        )
+            return;
         event.preventDefault();
         this.canvas.setPointerCapture(event.pointerId);
         this.before = this.#pointed(event);
@@ -97,7 +100,7 @@ export class Hand {
 
     /** The angle at which the pointer is, seen from the axle, rad. */
     #pointed(event) {
-        const axle = layout(this.canvas, this.screen.themeFor(this.canvas));
+        const axle = layout(this.canvas, this.screen.theme);
         const [x, y] = this.#place(event);
         return Math.atan2(axle.y - y, x - axle.x);
     }

@@ -33,8 +33,12 @@ export function createKicks(root, lab) {
     const verdict = createVerdict(lab);
 
     const kick = async (fields) => {
-        const done = await lab.try("kick", { ...fields, wheel: wheel.value, guess: guess.value });
-        if (done) guess.choose(null);
+        const { robot } = lab.store;
+        const guessed = guess.value;
+        const done = await lab.try("kick", { ...fields, wheel: wheel.value, guess: guessed });
+        if (!done) return;
+        if (guessed) robot.takeVerdict({ type: "guess", kick_id: done.kick_id, guess: guessed });
+        guess.choose(null);
     };
     const predict = async (fields) => {
         const kick = { ...fields, wheel: wheel.value };

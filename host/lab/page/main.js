@@ -94,21 +94,22 @@ const hands = ["left", "right"].map(
 const frames = new Frames(update, () => {
     if (lab.store.baton.you) lab.send({ type: "beat" });
 });
+// Each with the room that its text needs: letters in a line, and lines.
 const drawings = [
-    ["left-wheel", drawWheel, () => views.wheels.left],
-    ["right-wheel", drawWheel, () => views.wheels.right],
-    ["strips", drawStrips, () => views.strips],
-    ["lag-plane", drawPlane, () => views.lag],
-    ["phi-plane", drawPlane, () => views.phi],
-    ["x-plane", drawPlane, () => views.x],
-    ["floor", drawFloor, () => views.floor],
+    ["left-wheel", drawWheel, () => views.wheels.left, 21, 19],
+    ["right-wheel", drawWheel, () => views.wheels.right, 21, 19],
+    ["strips", drawStrips, () => views.strips, 30, 16],
+    ["lag-plane", drawPlane, () => views.lag, 17, 10],
+    ["phi-plane", drawPlane, () => views.phi, 17, 10],
+    ["x-plane", drawPlane, () => views.x, 17, 10],
+    ["floor", drawFloor, () => views.floor, 17, 10],
 ];
-for (const [id, draw, view] of drawings) {
+for (const [id, draw, view, letters, lines] of drawings) {
     const canvas = byId(id);
-    frames.add(canvas, draw, () => views && [view(), screen.themeFor(canvas)]);
+    frames.add(canvas, draw, () => views && [view(), screen.themeFor(canvas, letters, lines)]);
 }
 const { canvas: score, draw: drawScore, view: scoreView } = kicks.verdict;
-frames.add(score, drawScore, () => [scoreView(), screen.themeFor(score)]);
+frames.add(score, drawScore, () => [scoreView(), screen.themeFor(score, 22, 6)]);
 
 window.lab = { state: () => snapshot(lab, stop, frames, views) };
 source.open();

@@ -6,9 +6,6 @@ import { media, theme } from "./theme.js";
 const PROJECTOR = "lab.projector";
 // The names of the theme's colours that the key beside the wheels shows.
 const MARKS = ["target", "actual", "force", "memory"];
-// A drawing has room for a line of this many letters' heights, and for this many lines.
-const LETTERS = 19;
-const LINES = 6;
 const WIDE = matchMedia("(min-width: 1600px)");
 
 export class Screen {
@@ -41,12 +38,14 @@ export class Screen {
     }
 
     /**
-     * The theme for a drawing; a narrow one has a smaller text.
+     * The theme for a drawing; a small one has a smaller text.
      * @param {HTMLCanvasElement} canvas
+     * @param {number} letters For how many letters' heights the drawing needs room in a line.
+     * @param {number} lines For how many lines it needs room.
      * @returns {object}
      */
-    themeFor(canvas) {
-        const room = Math.min(canvas.clientWidth / LETTERS, canvas.clientHeight / LINES);
+    themeFor(canvas, letters, lines) {
+        const room = Math.min(canvas.clientWidth / letters, canvas.clientHeight / lines);
         const text = Math.min(this.theme.text, room);
         return text < this.theme.text ? { ...this.theme, text } : this.theme;
     }

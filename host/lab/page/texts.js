@@ -38,7 +38,8 @@ export const texts = {
     wheels: "Wheels",
     key: {
         target: "target",
-        actual: "actual position",
+        actual: "actual",
+        seen: "seen in a kick",
         force: "force",
         memory: "memory",
     },
@@ -57,7 +58,7 @@ export const texts = {
     floorNote: "Calculated from the turns of the wheels since the lab began.",
 
     kicks: "Kick",
-    guess: "What will the wheels do? Guess first.",
+    guess: "My guess: the wheels will …",
     guesses: { reverses: "Reverse", continues: "Continue", stops: "Stop", none: "No guess" },
     whichWheel: "Wheels",
     wheelChoices: { both: "Both", left: "Left", right: "Right" },
@@ -104,12 +105,16 @@ export const texts = {
             (best, entry) => (entry[1] > best[1] ? entry : best),
             ["", -1],
         );
-        const expected = result ? `${count} of ${of} will ${VERBS[result]}.` : "…";
-        return [`${name}:`, expected, outcome ? `It ${DONE[outcome]}.` : ""].join(" ").trim();
+        if (!outcome) return result ? `${name}: ${count} of ${of} will ${VERBS[result]}.` : name;
+        const did = `${name} ${DONE[outcome]}`;
+        if (!result) return `${did}.`;
+        return outcome === result
+            ? `${did}, as ${count} of ${of} predicted.`
+            : `${did}, but ${count} of ${of} said: ${VERBS[result]}.`;
     },
     unknown: "–",
     ownGuess: (guess, right) =>
-        `Your guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Right." : "Not this time."}`,
+        `Guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Right." : "Not this time."}`,
     score: ({ guesses, right }) =>
         guesses ? `${right} of ${counted(guesses, "guess", "guesses")} right so far.` : "",
     ifNow: (kick) => `Now, a ${texts.kickLine(kick).toLowerCase()} would:`,
@@ -231,8 +236,6 @@ export const texts = {
         reverses: "reverses",
         continues: "continues",
         stops: "stops",
-        outcome: "what it did",
-        guess: "your guess",
     },
 
     said: {

@@ -34,7 +34,6 @@ export function createVerdict(lab) {
         show(sentences, known);
         const sides = SIDES.filter((side) => kick && (kick.wheels ?? SIDES).includes(side));
         view.of = prediction?.of ?? 0;
-        view.guess = outcome?.guess ?? null;
         view.wheels = sides.map((side) => ({
             name: texts.sides[side],
             shares: prediction?.shares?.[side] ?? null,
@@ -45,8 +44,9 @@ export function createVerdict(lab) {
             sentences.replaceChildren(...said.map((words) => element("li", {}, words)));
         }
         const results = Object.values(outcome?.result ?? {});
-        const right = results.length ? results.every((done) => done === outcome.guess) : null;
-        setText(guess, outcome?.guess ? texts.ownGuess(outcome.guess, right) : "");
+        const guessed = outcome?.guess ?? kick?.guess?.guess;
+        const right = results.length ? results.every((done) => done === guessed) : null;
+        setText(guess, guessed ? texts.ownGuess(guessed, right) : "");
         setText(score, texts.score(lab.store.score));
     };
 
