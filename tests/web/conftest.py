@@ -71,6 +71,13 @@ class Visitor:
         known = "const s = lab.state(), r = s.robots[s.selected]"
         self.page.wait_for_function(f"() => {{ {known}; return {condition}; }}")
 
+    def reads(self, selector, words):
+        """Wait until a part of the page says some words."""
+        self.page.wait_for_function(
+            "([selector, words]) => document.querySelector(selector).innerText.includes(words)",
+            arg=[selector, words],
+        )
+
 
 @pytest.fixture
 def station():

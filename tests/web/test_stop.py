@@ -27,7 +27,7 @@ def test_a_key_stops_wherever_a_click_has_left_the_focus(visit, station, focus, 
     assert not kicks
     visitor.page.keyboard.press(key)
     visitor.until("r.state === 'stopped' && s.stop.anna === 'confirmed'")
-    assert visitor.page.inner_text("#stop-words") == "Stopped. The robot confirms it."
+    visitor.reads("#stop-words", "Stopped. The robot confirms it.")
 
 
 def test_space_does_what_a_control_does_if_the_keyboard_led_there(visit, station):
@@ -68,9 +68,7 @@ def test_it_is_not_confirmed_by_a_robot_that_is_away(visit, station):
     station.stop = lambda: None
     visitor.page.keyboard.press("Escape")
     visitor.until("s.stop.anna === 'unconfirmed'")
-    visitor.page.wait_for_function(
-        "document.getElementById('stop-words').textContent.startsWith('NOT confirmed')"
-    )
+    visitor.reads("#stop-words", "NOT confirmed")
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (390, 844), (320, 568), (1920, 1080), (844, 390)])
