@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict
 from multiprocessing import active_children, get_context
 from typing import Any, NamedTuple
@@ -72,9 +74,9 @@ class Forecasts:
             return
         try:
             future = pool.submit(_answer, question)
-        except RuntimeError as error:  # its process has died, or the lab ends
+        except RuntimeError:  # its process has died, or the lab ends
             future = Future()
-            future.set_exception(error)
+            future.cancel()
         future.add_done_callback(lambda future: self._end(pool, future, done))
 
     def _end(
@@ -86,13 +88,16 @@ class Forecasts:
         result: dict[str, Any] | KickctlError
         try:
             result = future.result()
-        except (RuntimeError, CancelledError):
+        except (BrokenProcessPool, CancelledError):
             result = NotDone(
                 "the process that predicts kicks has ended", "try again: it begins anew"
             )
             with self._lock:
                 if self._pool is pool:
                     self._pool = None
+        except Exception as error:  # whoever waits must hear of it, whatever it is
+            logging.getLogger("kickctl").exception("a kick could not be predicted")
+            result = NotDone(f"the simulation failed: {error!r}"[:300], "please report this")
         with self._lock:
             self._waiting -= 1
         done(result)

@@ -53,6 +53,16 @@ def test_a_question_is_answered_and_a_wrong_one_in_words(forecasts):
     assert "fly" in answers.next().message
 
 
+def test_a_failure_of_the_simulation_is_an_answer_too(forecasts):
+    answers = Answers()
+    forecasts.ask(question(mode="membrane")._replace(motor=None), answers)
+    assert "the simulation failed" in answers.next().message
+    forecasts.ask(question(mode="membrane")._replace(params=(one for one in ())), answers)
+    assert "the simulation failed" in answers.next().message
+    forecasts.ask(question(mode="fly"), answers)
+    assert "fly" in answers.next().message
+
+
 def test_too_many_questions_are_refused_at_once(forecasts):
     answers = Answers()
     for _ in range(MOST_WAITING + 1):
