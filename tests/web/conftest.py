@@ -10,6 +10,7 @@ from playwright.sync_api import sync_playwright
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
+from tests.web.visitor import Visitor
 
 CHROMIUM = shutil.which("chromium")
 
@@ -24,59 +25,6 @@ def browser():
         chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         yield chromium
         chromium.close()
-
-
-class Visitor:
-    """A browser's page in the lab. It fails its test if it complains, or asks elsewhere.
-
-    Attributes:
-        page: The page, of playwright.
-    """
-
-    def __init__(self, browser, lab, url, **context):
-        self._home = lab.drive_url.partition("#")[0]
-        self.complaints = []
-        self.context = browser.new_context(
-            **{"viewport": {"width": 1280, "height": 720}, **context}
-        )
-        self.page = self.context.new_page()
-        self.page.on("console", self._hear)
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("request", self._look)
-        self.page.goto(url)
-
-    def _hear(self, message):
-        if message.type in ("error", "warning"):
-            self.complaints.append(message.text)
-
-    def _look(self, request):
-        if not request.url.startswith((self._home, self._home.replace("http", "ws"), "blob:")):
-            self.complaints.append("a request to " + request.url)
-
-    def forgive(self, beginning):
-        """Take no offence at complaints that begin like this."""
-        self.complaints = [one for one in self.complaints if not one.startswith(beginning)]
-
-    def state(self):
-        """What the page knows."""
-        return self.page.evaluate("lab.state()")
-
-    def robot(self):
-        """What the page knows of the robot that it shows."""
-        state = self.state()
-        return state["robots"][state["selected"]]
-
-    def until(self, condition):
-        """Wait until a condition on `s`, the page's state, and `r`, its robot, is true."""
-        known = "const s = lab.state(), r = s.robots[s.selected]"
-        self.page.wait_for_function(f"() => {{ {known}; return {condition}; }}")
-
-    def reads(self, selector, words):
-        """Wait until a part of the page says some words."""
-        self.page.wait_for_function(
-            "([selector, words]) => document.querySelector(selector).innerText.includes(words)",
-            arg=[selector, words],
-        )
 
 
 @pytest.fixture

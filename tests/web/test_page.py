@@ -1,6 +1,13 @@
 """The lab's page in a real Chromium, on a real server, with a robot that the test steps."""
 
+from math import pi
+
 import pytest
+
+from host.lab.server import Lab
+from host.lab.station import CONTINUE
+from host.lab.stepped_station import SteppedStation
+from tests.web.visitor import Visitor
 
 
 def turns(visitor):
@@ -146,3 +153,91 @@ def test_a_fault_has_a_button_that_clears_it(visit, station):
     visitor.page.click(".remedy")
     station.step(0.3)
     visitor.until("r.state === 'running'")
+
+
+def test_a_guess_stands_beside_prediction_and_outcome(visit, lab, station):
+    station.forecasts = Forecast({"reverses": 31, "continues": 1, "stops": 0}, 32)
+    visitor = visit()
+    visitor.page.check("#guess-0", force=True)
+    kick(visitor, station, "#kick-phase")
+    visitor.reads(".verdict", "Left reversed, as 31 of 32 predicted.")
+    visitor.reads(".verdict", "Guess: reverse. Right.")
+    visitor.reads(".verdict", "1 of 1 guess right so far.")
+    visitor.reads("#said", "Left wheel reversed, Right wheel reversed.")
+
+
+def test_the_simulation_is_asked_before_a_kick(visit, lab, station):
+    station.forecasts = Forecast({"reverses": 2, "continues": 30, "stops": 0}, 32)
+    visitor = visit(lab.view_url)
+    visitor.page.click(".own summary")
+    visitor.page.click("text=What does the simulation expect?")
+    visitor.reads(".verdict", "Right: 30 of 32 will continue.")
+    assert visitor.robot()["kicks"] == []
+
+
+class Forecast:
+    """Says the same of every kick."""
+
+    def __init__(self, shares, of):
+        self.said = {"shares": {"left": shares, "right": shares}, "of": of}
+
+    def ask(self, question, done):
+        done(self.said)
+
+
+def test_a_wheel_is_pulled_by_the_pointer_and_by_a_key(visit, station):
+    pulls = []
+    station.hand_possible = True
+    station.hand = lambda wheel, angle_rad: pulls.append((wheel, angle_rad))
+    visitor = visit()
+    canvas = visitor.page.locator("#left-wheel")
+    canvas.wait_for()
+    box = canvas.bounding_box()
+    axle = visitor.page.evaluate(
+        """async () => {
+            const { layout } = await import("/draw/wheel.js");
+            return layout(document.querySelector("#left-wheel"), { scale: devicePixelRatio });
+        }"""
+    )
+    visitor.page.fill("#param-k", "7")  # takes the baton
+    visitor.page.keyboard.press("Enter")
+    visitor.until("s.baton.you")
+    x, y = box["x"] + axle["x"], box["y"] + axle["y"]
+    visitor.page.evaluate("scrollTo(0, 0)")
+    visitor.page.mouse.move(x + 0.8 * axle["radius"], y)
+    visitor.page.mouse.down()
+    visitor.page.mouse.move(x, y - 0.8 * axle["radius"], steps=5)
+    wait_for(visitor, lambda: len(pulls) > 1 and pulls[-1][1] - pulls[0][1] > 1.4)
+    visitor.page.mouse.up()
+    wait_for(visitor, lambda: pulls[-1] == ("left", None))
+    assert pulls[-2][1] - pulls[0][1] == pytest.approx(pi / 2, abs=0.1)
+    visitor.page.focus("#right-wheel")
+    visitor.page.keyboard.down("ArrowUp")
+    wait_for(visitor, lambda: pulls[-1][0] == "right" and pulls[-1][1] is not None)
+    visitor.page.keyboard.up("ArrowUp")
+    wait_for(visitor, lambda: pulls[-1] == ("right", None))
+
+
+def wait_for(visitor, condition):
+    """Let the page go on until a condition on this side holds."""
+    while not condition():
+        visitor.page.evaluate("new Promise(requestAnimationFrame)")
+
+
+def test_several_robots_one_is_shown_and_stop_means_all(browser, station):
+    station.step(1)
+    other = SteppedStation("sim://?seed=2", "bert", CONTINUE)
+    other.step(1)
+    with Lab([station, other], port=0) as lab:
+        visitor = Visitor(browser, lab, lab.drive_url)
+        visitor.until("s.robots.length === 2 && s.robots.every((one) => one.records > 0)")
+        visitor.page.click("#robots >> text=bert")
+        visitor.until("r.name === 'bert'")
+        visitor.page.click("#kick-membrane")
+        visitor.until("r.kicks.length === 1 && s.robots[0].kicks.length === 0")
+        visitor.page.keyboard.press("Escape")
+        visitor.until("s.robots.every((one) => one.state === 'stopped')")
+        visitor.reads("#stop-words", "Stopped.")
+        visitor.context.close()
+        assert visitor.complaints == []
+    other.close()

@@ -33,7 +33,7 @@ export function createDesigner(lab, kick, predict) {
         arrange();
     });
     const value = numberField("pulse-value", texts.pulseValue(""), { step: "any", value: 0 });
-    const variable = choices("variable", texts.variable, options({ x1: "x1", x2: "x2" }), "x1");
+    const variable = choices("variable", texts.variable, options(texts.variables), "x1");
     const delta = numberField("jump-delta", texts.delta, { min: -2, max: 2, step: 0.1, value: 1 });
 
     const fields = () => {

@@ -1,7 +1,7 @@
 /** What the robot says of itself. */
 
 import { button, element, setText, show } from "./dom.js";
-import { texts } from "./texts.js";
+import { sentences, texts } from "./texts.js";
 
 /**
  * @param {HTMLElement} root
@@ -33,10 +33,12 @@ export function createState(root, lab) {
             punctual: texts.punctual(status),
             driver: status.controller ?? texts.nobody,
             unattended: texts.unattended[welcome.unattended?.[robot.name]] ?? texts.unknown,
+            reason: sentences(status.reason, status.hint),
             missed: String(robot.missed),
         };
         for (const [name, value] of Object.entries(facts)) setText(values[name], value);
         show(values.missed.parentElement, robot.missed > 0);
+        show(values.reason.parentElement, robot.lost || robot.state !== "running");
         root.classList.toggle("stale", robot.lost);
     };
 }

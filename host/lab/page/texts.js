@@ -90,6 +90,7 @@ export const texts = {
     pulsedNames: { a: "a", tau_s: "τ", k: "k", beta: "beta", shift_rad: "shift" },
     pulseValue: (unit) => `Value at its height${unit ? ` (${unit})` : ""}`,
     variable: "What jumps",
+    variables: { x1: "x₁", x2: "x₂" },
     delta: "By how much",
 
     lastKick: (kick) => `Last: ${texts.kickLine(kick)}`,
@@ -153,6 +154,7 @@ export const texts = {
         battery: "Battery",
         punctual: "Ticks",
         driver: "Controlled by",
+        reason: "Why it does not run",
         unattended: "If the driver's page closes",
         missed: "Records this page missed",
     },
