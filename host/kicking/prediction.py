@@ -27,9 +27,9 @@ from robot.kick_requests import parse
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, WHEELS, Kick
 from robot.params import TABLE, Params
 from robot.record import STATES, Record
-from sim_motor.batch import Start, random_times, run
+from sim_motor.batch import Start, run
 from sim_motor.compiled import on_one_core
-from sim_motor.constants import Array, Constants, load
+from sim_motor.constants import SUBSTEP_S, Array, Constants, load
 from sim_motor.motor import ANGLE, GAP, LAST_ANGLE, SPEED, WHEEL_SPEED
 from sim_motor.replay import replay
 from sim_motor.settling import COUNT_RAD
@@ -52,8 +52,6 @@ _SPEED_TICKS = 4
 # How long a wheel is watched after a kick: a part for friction and inertia, and one for the memory
 # of the potentials.
 _WATCH_S, _MEMORY_TAU, _PATIENCE_S = 2.0, 4.0, 15.0
-# With a shorter control period, a tick as late as on the brick would be missed.
-_LEAST_LATE_TICK_S = 0.02
 
 
 @dataclass(frozen=True)
@@ -82,7 +80,8 @@ def predict(
     """What a kick will probably do that a person asks for now.
 
     Args:
-        records: The robot's newest records, oldest first; a second of them or more.
+        records: The robot's newest records, oldest first; a second of them or more. Those from
+            before that second tell only how late ticks are.
         params: The robot's parameters in force, by name.
         kick: The request, as robot.kick_requests.parse takes it; its id may be missing.
         motor: The robot's motors, see host.kicking.robot_motor. The simulated ones are specimens
@@ -116,7 +115,7 @@ def predict(
             one = Kick(**{**asked.as_dict(), "begin": delays[number] - 1})
             one.values = (one.values[index],) * 2
             own = one if side in one.wheels else None
-            for way in _after(own, start.of(rows), volts[rows], motors, in_force, rng):
+            for way in _after(own, start.of(rows), volts[rows], motors, in_force, records, rng):
                 shares[side][compare(before[side], HEADINGS[way])] += 1
     return Prediction(shares, members)
 
@@ -219,23 +218,40 @@ def _within_count(phi: Array, rng: np.random.Generator) -> Array:
     return phi + COUNT_RAD * rng.uniform(least, most)
 
 
+def _random_times(
+    records: Sequence[Record],
+    wheels: int,
+    ticks: int,
+    tick_s: float,
+    latency_s: float,
+    rng: np.random.Generator,
+) -> Array:
+    """When ticks begin, s, (wheels, ticks): as late as the robot's ticks were, or missed as they.
+
+    A later one than the batch can follow is taken to be as late as it can.
+    """
+    late = np.array(_column(records, "late_s"))
+    missed = np.array(_column(records, "missed"))
+    chosen = rng.integers(len(records), size=(wheels, ticks))
+    deadlines = tick_s * (np.arange(ticks) + np.cumsum(missed[chosen], axis=1))
+    times: Array = deadlines + np.clip(late[chosen], 0.0, tick_s - latency_s - 3 * SUBSTEP_S)
+    return times
+
+
 def _after(
     kick: Kick | None,
     start: Start,
     volts: Array,
     motors: tuple[Constants, ...],
     params: Params,
+    records: Sequence[Record],
     rng: np.random.Generator,
 ) -> list[int]:
     """The direction of each simulated wheel when it has had the time to settle."""
     watch_s = min(_PATIENCE_S, _WATCH_S + _MEMORY_TAU * params.tau_s)
     ticks = (kick.begin + kick.ticks if kick else 0) + round(watch_s / params.tick_s)
     wheels = len(volts)
-    times = (
-        random_times(wheels, ticks, params.tick_s, rng)
-        if params.tick_s >= _LEAST_LATE_TICK_S
-        else np.arange(ticks) * params.tick_s
-    )
+    times = _random_times(records, wheels, ticks, params.tick_s, motors[0].latency_s, rng)
     try:
         result = run(
             wheels,

@@ -188,7 +188,7 @@ def trial(cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Trial]:
     outcome = kick_and_watch(robot, log, **kick)
     delay = int(rng.choice(DELAYS))
     found = predict(
-        [record for record in log.records if record.tick <= outcome.applied_tick - delay],
+        [record for record in robot.recent() if record.tick <= outcome.applied_tick - delay],
         status["params"],
         kick,
         motor_of(robot),

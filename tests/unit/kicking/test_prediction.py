@@ -96,6 +96,14 @@ def test_every_control_period_can_be_predicted(tick_s):
     assert min(shares(robot, {"mode": "membrane"}).values()) > 0.9
 
 
+def test_ticks_may_be_as_late_as_they_like_and_missed(rolling):
+    records, params = rolling
+    late = [record._replace(late_s=0.029, missed=1) for record in records]
+    assert shares((late, params), {"mode": "position", "ticks": 4}) != shares(
+        rolling, {"mode": "position", "ticks": 4}
+    )
+
+
 def test_warming_up_needs_no_robot():
     warm_up()
 
