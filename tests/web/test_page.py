@@ -199,9 +199,6 @@ def test_a_wheel_is_pulled_by_the_pointer_and_by_a_key(visit, station):
             return layout(document.querySelector("#left-wheel"), { scale: devicePixelRatio });
         }"""
     )
-    visitor.page.fill("#param-k", "7")  # takes the baton
-    visitor.page.keyboard.press("Enter")
-    visitor.until("s.baton.you")
     x, y = box["x"] + axle["x"], box["y"] + axle["y"]
     visitor.page.evaluate("scrollTo(0, 0)")
     visitor.page.mouse.move(x + 0.8 * axle["radius"], y)

@@ -80,7 +80,10 @@ export class Hand {
     }
 
     #pull(target) {
-        this.robot = this.lab.store.robot.name;
+        const { robot, baton } = this.lab.store;
+        this.robot = robot.name;
+        // Only who drives may pull; a free baton comes at once.
+        if (!baton.you) this.lab.request({ type: "ask" }).catch((no) => this.lab.tell(no));
         this.#target = target;
         this.canvas.classList.add("grasped");
         clearInterval(this.#timer);

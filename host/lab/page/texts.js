@@ -55,7 +55,7 @@ export const texts = {
         "The four dimensions are angle, speed, x₁ and x₂. Lag says how far the angle that the" +
         " neurons remember lies behind the wheel. A membrane kick makes it jump by half a turn.",
     floor: "Path on the floor",
-    floorNote: "Calculated from the turns of the wheels since the lab began.",
+    floorNote: "From the turns of the wheels since the lab began. A wheel that slips misleads it.",
 
     kicks: "Kick",
     guess: "My guess: the wheels will …",
