@@ -233,12 +233,16 @@ class Session(object):
             proof = b""
         self._handshake = wire.Handshake(self._token, self._host_nonce, self._own_nonce)
         if not wire.same(proof, self._handshake.host_proof):
-            return self.refuse(
+            refusal = self.refuse(
                 "token",
                 "this computer has the token of another robot",
                 "copy the robot's ~/.config/kickctl/token to the same place on this computer, then"
                 " type: chmod 600 ~/.config/kickctl/token",
             )
+            # Who may look on says hello again over the same link: a second one through ssh may ask
+            # a person for the password again.
+            self.closing = False
+            return refusal
         self.trusted = True
         robot_proof = binascii.hexlify(self._handshake.robot_proof).decode("ascii")
         return wire.encode_json(wire.AUTH, {"proof": robot_proof})

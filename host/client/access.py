@@ -9,7 +9,7 @@ from pathlib import Path
 from host.client.conversation import Conversation
 from host.errors import NoLink, RefusedByRobot, TokenRefused
 from host.link.patience import Patience
-from host.link.transport import Link
+from host.link.transport import Link, LinkLost
 from host.util.arguments import need_path
 from robot.token import TokenError, default_path, load
 
@@ -77,8 +77,11 @@ def greet(link: Link, talk: Conversation, send: Callable[[bytes], None], patienc
         talk.token = None
         talk.token_refused = True
         try:
-            link.open()
-            _introduce(link, talk, send, patience_s)
+            try:
+                _introduce(link, talk, send, patience_s)
+            except LinkLost:  # an older robot hangs up
+                link.open()
+                _introduce(link, talk, send, patience_s)
         except NoLink:  # such as an ssh that would have to ask for the password again
             raise refusal from None
         logging.getLogger("kickctl").warning(

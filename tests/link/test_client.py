@@ -14,6 +14,7 @@ from host.errors import NoLink, RefusedByRobot, WrongUse
 from host.link.transport import TcpLink
 from host.logs.log import Log
 from host.util.own_name import own_name
+from robot.session import Session
 from tests.link.machines import RigLink, TcpRobot, open_files
 from tests.rig import TOKEN, packed
 from tests.talk import Client
@@ -211,6 +212,7 @@ def test_who_has_another_robots_token_looks_on_and_leaves_nothing_open(link, cap
     gc.collect()
     files = open_files()
     with Robot(link, b"x" * 32) as robot:
+        assert link.opened == 1  # ssh would ask a person for the password again
         assert robot.record(0.3).missing() == []
         for call in (robot.start, robot.lease, robot.clear):
             with pytest.raises(RefusedByRobot, match="the token of another robot"):
@@ -224,6 +226,23 @@ def test_who_has_another_robots_token_looks_on_and_leaves_nothing_open(link, cap
     del robot
     gc.collect()
     assert open_files() == files
+
+
+def test_an_older_robot_hangs_up_on_a_wrong_token_and_is_looked_at_over_a_new_link(
+    link, monkeypatch
+):
+    refuse = Session._authenticate
+
+    def refuse_and_hang_up(session, message):
+        answer = refuse(session, message)
+        session.closing = not session.trusted
+        return answer
+
+    monkeypatch.setattr(Session, "_authenticate", refuse_and_hang_up)
+    with Robot(link, b"x" * 32) as robot:
+        assert link.opened == 2
+        assert robot.status()["state"] == "running"
+        assert robot.token_refused
 
 
 def test_a_session_leaves_nothing_open():

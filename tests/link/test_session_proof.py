@@ -69,9 +69,19 @@ def test_a_wrong_token_ends_the_conversation(rig):
     client.give(client.talk.auth_frame())
     with pytest.raises(RefusedByRobot, match="token"):
         client.talk.raise_refusal()
-    assert client.session.closing
+    assert not client.session.greeted
     assert not client.session.trusted
     assert rig.fingerprint() == before
+
+
+def test_after_a_wrong_token_a_host_looks_on_over_the_same_link(rig):
+    client = Client(rig.loop, token=b"x" * 32)
+    client.give(client.talk.hello_frame())
+    client.give(client.talk.auth_frame())
+    client.talk.token = None
+    client.talk.begin()
+    assert client.greet().ask("status")["state"] == "running"
+    assert not client.session.trusted
 
 
 @pytest.mark.parametrize("proof", [None, 7, "", "zz", "é", "00" * 32, []])
@@ -95,7 +105,7 @@ def test_a_proof_cannot_be_used_again(rig):
     assert not client.session.trusted
     client.give(proof)
     assert not client.session.trusted
-    assert client.session.closing
+    assert not client.session.greeted
 
 
 def test_a_robot_without_the_token_is_found_out(rig):
