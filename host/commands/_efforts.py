@@ -10,7 +10,7 @@ from typing import Any
 from host.commands._terminal import say
 from host.errors import NotDone, WrongUse
 from host.experiments.efforts import EFFORTS, QUICK_MINUTES, in_words, quick_minutes, size
-from host.runs.registry import Entry
+from host.runs.registry import Entry, options_given
 from host.util.numbers import Number
 
 # A real robot is busy for longer than this only after somebody has agreed.
@@ -46,7 +46,7 @@ def add_effort(parser: argparse.ArgumentParser, name: str, entry: Entry) -> None
 
 
 def sized(options: argparse.Namespace, name: str, entry: Entry) -> dict[str, Any]:
-    """The option that --minutes or --quick chooses, by name; empty without these.
+    """The options that --minutes or --quick chooses, by name; empty without these.
 
     Raises:
         WrongUse: It is given as well, or the experiment cannot be as short.
@@ -56,13 +56,14 @@ def sized(options: argparse.Namespace, name: str, entry: Entry) -> dict[str, Any
     option = EFFORTS[name].option
     minutes = None if option == "minutes" else options.minutes
     flag = "--minutes"
+    given = options_given(options, entry)
     if options.quick:
-        minutes, flag = quick_minutes(name, entry), "--quick"
+        minutes, flag = quick_minutes(name, entry, given), "--quick"
     if minutes is None:
         return {}
-    if getattr(options, option) is not None:
+    if option in given:
         raise WrongUse(f"{flag} chooses --{option}, and --{option} is given too", "leave one out")
-    return size(name, entry, minutes)
+    return size(name, entry, minutes, given)
 
 
 def question(options: argparse.Namespace) -> Callable[[float], None]:

@@ -6,7 +6,9 @@ nothing heavy.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import ceil, floor
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse
@@ -23,19 +25,29 @@ class Effort(NamedTuple):
         each_s: How long each unit of it takes, s.
         fixed_s: How long all else takes, s.
         round: How many units are done at once: the run rounds up to these.
+        times: The option that says how often all of the units are done; empty if once.
+        also_s: How long each unit of other options takes, s, by their names.
+        short: The values of other options in a time that is too short for their defaults.
     """
 
     option: str
     each_s: float
     fixed_s: float = 0.0
     round: int = 1
+    times: str = ""
+    also_s: Mapping[str, float] = MappingProxyType({})
+    short: Mapping[str, int] = MappingProxyType({})
 
     def seconds(self, options: dict[str, Any]) -> float:
         """How long a whole run takes with these options, s."""
         rounds = float(options[self.option]) / self.round
-        return self.fixed_s + self.each_s * (
-            rounds if self.round == 1 else ceil(rounds) * self.round
-        )
+        units = rounds if self.round == 1 else ceil(rounds) * self.round
+        also_s = sum(each_s * float(options[name]) for name, each_s in self.also_s.items())
+        return self.fixed_s + also_s + self.unit_s(options) * units
+
+    def unit_s(self, options: dict[str, Any]) -> float:
+        """How long each unit takes with these options, s."""
+        return self.each_s * float(options[self.times] if self.times else 1)
 
 
 EFFORTS = {
@@ -43,7 +55,14 @@ EFFORTS = {
     "timeline": Effort("trials", 30.5),
     "reliability": Effort("trials", 91.0),
     "kick-map": Effort("kicks", 2.9, round=36),
-    "bifurcation": Effort("points", 30.0, 2135.0),
+    "bifurcation": Effort(
+        "points",
+        10.0,
+        95.0,
+        times="rounds",
+        also_s={"rounds": 300.0, "branch": 87.0},
+        short={"rounds": 1, "branch": 0},
+    ),
     "wall": Effort("bounces", 9.8),
     "chaos": Effort("minutes", 60.0, 1.0),
     "starts": Effort("starts", 3.3),
@@ -52,39 +71,57 @@ EFFORTS = {
 }
 
 
-def size(name: str, entry: Entry, minutes: float) -> dict[str, Any]:
-    """The option with which an experiment fits into a time on a robot.
+def size(
+    name: str, entry: Entry, minutes: float, given: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """The options with which an experiment fits into a time on a robot.
 
     Args:
         name: The experiment's name, a key of EFFORTS.
         entry: Its entry.
         minutes: The time, minutes.
+        given: Other options that are wished so; those left out have their defaults, or, if these
+            take too long, fewer repetitions.
 
     Returns:
-        The option's value by its name.
+        The options' values by their names.
 
     Raises:
         WrongUse: The experiment cannot be as short as that.
     """
     effort = EFFORTS[name]
     option = _size_option(entry, effort)
-    value = (60 * minutes - effort.fixed_s) / effort.each_s
-    if value < option.least:
-        shortest = in_words(effort.seconds({option.name: option.least}))
-        raise WrongUse(
-            f"{name} does not fit into {minutes:g} minutes: {option.name} = {option.least:g}"
-            f" takes {shortest} on a robot",
-            "give it more minutes, or take another experiment",
-        )
-    whole = floor(min(value, option.most) / effort.round + 1e-9) * effort.round
-    return {option.name: whole if isinstance(option.default, int) else float(whole)}
+    for shorter in ({}, _shorter(effort, given)):
+        others = _others(entry, given) | shorter
+        fixed_s = effort.seconds({**others, option.name: 0})
+        value = (60 * minutes - fixed_s) / effort.unit_s(others)
+        if value >= option.least:
+            whole = floor(min(value, option.most) / effort.round + 1e-9) * effort.round
+            return {option.name: whole if isinstance(option.default, int) else float(whole)} | (
+                shorter
+            )
+    shortest = in_words(effort.seconds({**others, option.name: option.least}))
+    raise WrongUse(
+        f"{name} does not fit into {minutes:g} minutes: {option.name} = {option.least:g} takes"
+        f" {shortest} on a robot",
+        "give it more minutes, or take another experiment",
+    )
 
 
-def quick_minutes(name: str, entry: Entry) -> float:
+def _others(entry: Entry, given: Mapping[str, Any] | None) -> dict[str, Any]:
+    return {option.name: option.default for option in entry.options} | dict(given or {})
+
+
+def _shorter(effort: Effort, given: Mapping[str, Any] | None) -> dict[str, int]:
+    return {name: value for name, value in effort.short.items() if name not in (given or {})}
+
+
+def quick_minutes(name: str, entry: Entry, given: Mapping[str, Any] | None = None) -> float:
     """QUICK_MINUTES, or the shortest time in which an experiment can be done if that is longer."""
     effort = EFFORTS[name]
     option = _size_option(entry, effort)
-    return max(QUICK_MINUTES, effort.seconds({option.name: option.least}) / 60)
+    others = _others(entry, given) | _shorter(effort, given)
+    return max(QUICK_MINUTES, effort.seconds({**others, option.name: option.least}) / 60)
 
 
 def _size_option(entry: Entry, effort: Effort) -> Option:

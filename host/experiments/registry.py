@@ -105,7 +105,13 @@ ROBOT = {
     "bifurcation": Entry(
         "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable"
         " branch between",
-        (Option("points", 33, 5, 1000, "number of values of k in each sweep"),),
+        (
+            Option("points", 33, 5, 1000, "number of values of k in each sweep"),
+            Option("rounds", 3, 1, 1000, "number of sweeps and descents in each direction"),
+            Option(
+                "branch", 13, 0, 13, "number of speeds at which k is regulated, in each direction"
+            ),
+        ),
         ("R5", "R6"),
     ),
     "wall": Entry(

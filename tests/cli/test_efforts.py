@@ -76,7 +76,11 @@ def test_an_own_option_called_minutes_stays_what_it_was(kickctl):
         (("starts", "--quick", "--starts", "5"), "--quick chooses --starts"),
         (("chaos", "--quick", "--minutes", "5"), "--quick chooses --minutes"),
         (("starts", "--quick", "--minutes", "5"), "not allowed with"),
-        (("bifurcation", "--minutes", "10"), "points = 5 takes 38 minutes on a robot"),
+        (("bifurcation", "--minutes", "7"), "points = 5 takes 7 minutes on a robot"),
+        (
+            ("bifurcation", "--minutes", "10", "--rounds", "3"),
+            "points = 5 takes 19 minutes on a robot",
+        ),
         (("starts", "--minutes", "0"), "--minutes"),
         (("starts", "--minutes", "0.01"), "starts = 1 takes 5 s on a robot"),
         (("starts", "--minutes", "2,5"), "cannot be '2,5'"),

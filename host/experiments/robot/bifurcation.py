@@ -66,7 +66,7 @@ SIGN = {"forward": 1, "backward": -1}
 FOLLOWED = {"forward": "left", "backward": "right"}
 START_K = 8.0
 LEAST_JUMP = 0.15
-ROUNDS, RAMPS = 3, 5
+RAMPS = 5
 SPEEDS_HZ = (0.2, 0.22, 0.24, 0.26, 0.28, 0.3, 0.33, 0.36, 0.4, 0.45, 0.5, 0.6, 0.8)
 
 # k_c from the descents (mean and 95 % interval; each step lowers k by this share) and from the
@@ -118,14 +118,15 @@ class Numbers(TypedDict):
 
 def cells(options: Options, *, batch: bool) -> list[BifurcationCell]:
     """Sweeps, descents to the fold and branches, in both directions, and ramps."""
-    rounds = [(trial, motion) for trial in range(ROUNDS) for motion in SIGN]
+    rounds = [(trial, motion) for trial in range(options["rounds"]) for motion in SIGN]
+    places = np.linspace(0, len(SPEEDS_HZ) - 1, options["branch"]).round().astype(int)
     work: list[BifurcationCell] = []
     work += [{"part": "sweep", "motion": motion, "trial": trial} for trial, motion in rounds]
     work += [{"part": "fold", "motion": motion, "trial": trial} for trial, motion in rounds]
     work += [
-        {"part": "branch", "motion": motion, "held_hz": hertz}
+        {"part": "branch", "motion": motion, "held_hz": SPEEDS_HZ[place]}
         for motion in SIGN
-        for hertz in SPEEDS_HZ
+        for place in places
     ]
     work += [{"part": "ramp", "trial": trial} for trial in range(RAMPS)]
     return work
@@ -207,7 +208,9 @@ def report(rows: list[BifurcationRow], setting: Setting) -> Findings:
     }
     foreign = setting.elsewhere()
     stall = _stall(ramp_rows(rows)).doubted(foreign)
-    jump = _jump(folds, critical, restarts(rows)).doubted(foreign, setting.short_of(points=33))
+    jump = _jump(folds, critical, restarts(rows)).doubted(
+        foreign, setting.short_of(points=33, rounds=3)
+    )
     return Findings([stall, jump], numbers)
 
 

@@ -14,7 +14,7 @@ from host.logs.log import Log
 from host.runs.contract import Setting
 from robot.kicks import WHEELS
 
-SETTING = Setting(1, {"points": 33})
+SETTING = Setting(1, {"points": 33, "rounds": 3})
 
 
 def done(cell, seed=3):
@@ -88,8 +88,11 @@ def test_the_claims_hold(sweep, folds, branch):
     ]
     assert verdict(rows, "R5").holds
     assert verdict(rows, "R6").holds
-    few, weak = Setting(1, {"points": 32}), Setting(1, SETTING.options, battery_v=5.0)
+    few, weak = Setting(1, {"points": 32, "rounds": 3}), Setting(1, SETTING.options, battery_v=5.0)
     assert verdict(rows, "R6", few).holds is None
+    short = verdict(rows, "R6", Setting(1, {"points": 20, "rounds": 1}))
+    assert short.holds is None
+    assert "points = 33 or more (here 20), rounds = 3 or more (here 1)" in short.note
     assert verdict(rows, "R5", few).holds
     assert [claim.holds for claim in bifurcation.report(rows, weak).claims] == [None, None]
 

@@ -83,14 +83,23 @@ def test_what_is_sized_to_a_time_fits_into_it_and_one_more_would_not(name):
 def test_a_quick_run_takes_some_minutes_or_as_long_as_it_must():
     assert quick_minutes("starts", ROBOT["starts"]) == QUICK_MINUTES
     assert size("starts", ROBOT["starts"], QUICK_MINUTES) == {"starts": 90}
-    longest = quick_minutes("bifurcation", ROBOT["bifurcation"])
-    assert longest > 30
-    assert size("bifurcation", ROBOT["bifurcation"], longest) == {"points": 5}
+    shortest = quick_minutes("bifurcation", ROBOT["bifurcation"])
+    assert 7 < shortest < 9
+    assert size("bifurcation", ROBOT["bifurcation"], shortest)["points"] == 5
+
+
+def test_a_time_that_is_too_short_for_all_repetitions_leaves_some_out():
+    entry = ROBOT["bifurcation"]
+    assert size("bifurcation", entry, 60.0) == {"points": 49}
+    assert size("bifurcation", entry, 10.0) == {"points": 20, "rounds": 1, "branch": 0}
+    wished = {"branch": 2}
+    assert size("bifurcation", entry, 15.0, wished) == {"points": 33, "rounds": 1}
+    assert quick_minutes("bifurcation", entry, wished) > quick_minutes("bifurcation", entry)
 
 
 def test_what_cannot_be_as_short_is_refused_with_the_time_that_it_takes():
-    with pytest.raises(WrongUse, match="points = 5 takes 38 minutes on a robot"):
-        size("bifurcation", ROBOT["bifurcation"], 10.0)
+    with pytest.raises(WrongUse, match="points = 5 takes 7 minutes on a robot"):
+        size("bifurcation", ROBOT["bifurcation"], 7.0)
 
 
 def test_more_time_than_an_option_can_take_gives_the_most():
