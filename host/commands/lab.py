@@ -7,6 +7,7 @@ import os
 import sys
 import webbrowser
 from contextlib import ExitStack, suppress
+from ipaddress import ip_address
 from typing import TYPE_CHECKING
 
 from host.commands._terminal import print_result, say, show_next
@@ -39,6 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--host",
+        type=_address,
         metavar="ADDRESS",
         help="an address of this computer in its network: others may watch there, but not drive"
         " (default: this computer only)",
@@ -69,10 +71,24 @@ def run(options: argparse.Namespace) -> int:
         stations = [_station(robot, options, stack) for robot in _robots(options)]
         lab = stack.enter_context(Lab(stations, options.port, options.host, forecasts=forecasts))
         with suppress(KeyboardInterrupt):
-            forecasts.begin()
             _tell(lab, stations, options)
+            forecasts.begin()
             lab.wait()
     return 0
+
+
+def _address(text: str) -> str:
+    """The address for others. A name or 'every address' would let foreign sites in by a name."""
+    try:
+        address = ip_address(text)
+    except ValueError:
+        address = None
+    if address is None or address.is_unspecified or address.is_multicast:
+        raise argparse.ArgumentTypeError(
+            f"cannot be '{text}'; give one IP address of this computer, as in 192.168.1.5;"
+            " `ip address` shows them"
+        )
+    return str(address)
 
 
 def _robots(options: argparse.Namespace) -> list[Chosen]:

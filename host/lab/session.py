@@ -133,6 +133,9 @@ class Session:
         """Take in what a station says, and tell all pages."""
         if message["type"] == "outcome":
             self._tell_outcome(message)
+        elif message["type"] == "welcome":
+            for page in self.pages.values():
+                self._greet(page)
         else:
             self.broadcast(message)
 
@@ -207,13 +210,17 @@ class Session:
             self._numbers += 1
             page.number, page.role = self._numbers, role
         self.pages[page.number] = page
+        self._greet(page)
+        self._counted = (-1, -1)  # the newcomer has to be told, too
+
+    def _greet(self, page: Page) -> None:
         for station in self.stations.values():
             page.places[station.name] = station.ring.latest(HISTORY)
         page.send(
             {
                 "type": "welcome",
                 "page": page.number,
-                "role": role,
+                "role": page.role,
                 "robots": [station.description() for station in self.stations.values()],
                 "presets": describe_presets(),
                 "primitives": describe_primitives(),
@@ -224,7 +231,6 @@ class Session:
         for station in self.stations.values():
             page.send(station.state())
         page.send(self._baton_for(page))
-        self._counted = (-1, -1)  # the newcomer has to be told, too
 
     def _stop(self, message: Message) -> None:
         """Stop one robot, or all: also if the page names one that is not there."""

@@ -109,6 +109,7 @@ class Station:
         self._heard_at: float | None = None
         self._began_at = self.clock()
         self.trouble = ""
+        self._known = False
         self._tick = 0
         self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
         self._kicks = Kicks()
@@ -195,6 +196,9 @@ class Station:
             self._events.clear()
         self._events.append(event)
         self._kicks.take_event(event)
+        if event["event"] == "snapshot" and not self._known:
+            self._known = True
+            self._hear({"type": "welcome"})  # pages that came before know only what is usual
         if event["event"] in _STATE_OF and self._status:
             self._status["state"] = _STATE_OF[event["event"]]
             self._status["reason"] = event.get("reason", "")

@@ -76,9 +76,11 @@ class Site:
             page.awake()
 
     async def _hang_up(self, application: web.Application) -> None:
-        for socket in list(self._sockets):
-            with suppress(TimeoutError, ConnectionError):
-                await asyncio.wait_for(socket.close(message=b"the lab ends"), 0.5)
+        ends = [
+            asyncio.create_task(socket.close(message=b"the lab ends")) for socket in self._sockets
+        ]
+        if ends:
+            await asyncio.wait(ends, timeout=GOODBYE_S)
 
     # Files.
 

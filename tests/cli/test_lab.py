@@ -81,7 +81,7 @@ def test_an_interrupt_stops_what_it_drives_and_is_no_error(desk, observer):
     with lab("--brick", desk.uri, "--token", desk.token) as (process, info):
         started(info)
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0
+        assert process.wait(20.0) == 0, process.said()
         assert "Traceback" not in process.said()
         assert observer.status()["state"] == "stopped"
         assert process.stdout.read() == ""
@@ -92,7 +92,7 @@ def test_an_interrupt_lets_a_robot_go_on_that_may(desk, observer):
     with lab(*arguments) as (process, info):
         started(info)
         process.send_signal(signal.SIGTERM)
-        assert process.wait(20.0) == 0
+        assert process.wait(20.0) == 0, process.said()
         status = observer.status()
         assert (status["state"], status["controller"]) == ("running", None)
 
@@ -102,9 +102,8 @@ def test_without_a_robot_it_simulates_one_between_walls_with_a_hand():
 
         async def scenario(browser):
             tab = await browser.open(info["drive"])
-            welcome = await tab.latest("welcome")
             await tab.until(lambda tab: tab.records)
-            return welcome["robots"][0]
+            return (await tab.latest("welcome"))["robots"][0]
 
         robot = browse(scenario)
         assert (robot["name"], robot["label"]) == ("simulated", "simulated")
@@ -113,7 +112,7 @@ def test_without_a_robot_it_simulates_one_between_walls_with_a_hand():
         with connect(robot["uri"], observe=True) as observer:
             assert observer.hello["seed"] == 3
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0
+        assert process.wait(20.0) == 0, process.said()
 
 
 def test_a_robot_that_is_away_is_said_and_the_page_is_there():
@@ -135,6 +134,8 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--brick", "tcp://127.0.0.1:1", "--seed", "2"), 2, "--seed fixes"),
         (("--brick", "sim://?grip=1"), 2, "walls"),
         (("--host", "192.0.2.1"), 2, "cannot listen at 192.0.2.1"),
+        (("--host", "::"), 2, "give one IP address of this computer"),
+        (("--host", "lab.example"), 2, "give one IP address of this computer"),
         (("--set", "k=-1"), 2, "k cannot be"),
     ],
 )

@@ -133,6 +133,18 @@ def test_the_stall_band_is_that_of_the_paper_and_unknown_for_an_unknown_motor(la
     assert stall({}, {**in_force, "max_duty_pct": 0.0}) == 1.0
 
 
+def test_a_page_that_came_before_its_robot_is_welcomed_again(lab):
+    visit = lab.driver()
+    visit.got.clear()
+    lab.station._known = False
+    lab.station.take_event(lab.station._follower.snapshot(lab.station._tick))
+    welcome = visit.latest("welcome")
+    assert welcome["page"] == 1
+    assert welcome["robots"][0]["motor"] == "pybricks"
+    assert visit.latest("baton")["driver"] is None
+    assert visit.page.places["anna"] < lab.station.ring.end
+
+
 def test_a_refused_kick_is_not_predicted(lab):
     visit = lab.driver()
     reply = visit.ask("do", robot="anna", command="kick", arguments={"mode": "fly"})

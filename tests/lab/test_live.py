@@ -234,6 +234,23 @@ def test_a_robot_that_this_lab_has_not_driven_is_let_be(desk, station, observer)
         assert other.drives
 
 
+def test_a_robot_that_would_drive_on_without_a_lab_is_told_of(desk, station, observer):
+    with connect(desk.uri, token=desk.token) as other:
+        other.set(link_loss="continue")
+        other.release()
+        try:
+            wait_until(
+                lambda: station.state()["params"]["link_loss"] == "continue", "the lab knows"
+            )
+            with Beating(station):
+                started(station)
+            assert any(
+                "link_loss is continue" in one.get("message", "") for one in station.pages.heard
+            )
+        finally:
+            other.set(link_loss="stop")
+
+
 def test_it_identifies_and_records_without_driving(station, observer, tmp_path):
     answers = Answers()
     station.do("identify", {}, answers)
