@@ -108,9 +108,10 @@ def test_the_wheels_marks_are_where_the_positions_are(page, size, phi, targets):
 @pytest.mark.parametrize(("torque", "forward"), [(0.9, True), (-0.9, False)])
 def test_a_positive_torque_points_counterclockwise(page, torque, forward):
     _draw(page, "wheel", {**WHEEL, "phi_rad": 0.0, "torque": torque}, **LARGE)
-    above = _pixel(page, *_wheel_at(page, 1, 0.5)) == _colour(page, "force")
-    below = _pixel(page, *_wheel_at(page, 1, -0.5)) == _colour(page, "force")
-    assert (above, below) == (forward, not forward)
+    for height in (0.5, 0.86):  # its shaft, its head
+        above = _pixel(page, *_wheel_at(page, 1, height)) == _colour(page, "force")
+        below = _pixel(page, *_wheel_at(page, 1, -height)) == _colour(page, "force")
+        assert (above, below) == (forward, not forward)
 
 
 def test_the_memory_lies_where_the_potentials_are(page):
@@ -135,6 +136,15 @@ def test_ghosts_appear_only_while_a_quenched_kick_acts(page):
     assert _draw(page, "wheel", {**WHEEL, **seen}, **LARGE) == plain
     _draw(page, "wheel", {**WHEEL, "kick": "membrane"}, **LARGE)
     assert _ghost_pixels(page, seen["seen1"]) == 0
+
+
+@pytest.mark.parametrize("width", [200, 220, 400])
+def test_no_word_is_cut_at_an_edge(page, width):
+    without = {**WHEEL, "labels": {}}
+    words = _added(page, "wheel", without, WHEEL, width=width, height=width)
+    columns = {x for x, _ in words}
+    assert min(columns) >= 1
+    assert max(columns) < width - 1
 
 
 def test_a_kick_is_named_and_framed(page):
@@ -162,9 +172,14 @@ def test_a_spike_of_one_tick_is_as_high_as_a_lasting_one(page):
     assert len({x for x, _ in short}) < 10
 
 
-def test_a_ring_is_drawn_from_its_start(page):
-    wave = [*WAVE, *WAVE[:40]]
-    straight = strips(640, left_x1=wave, left_torque=wave)
+# So many that each has its pixels, and so many that they share them.
+FEW, MANY = 640, 2560
+
+
+@pytest.mark.parametrize("count", [FEW, MANY])
+def test_a_ring_is_drawn_from_its_start(page, count):
+    wave = [sin(number / 8) for number in range(count)]
+    straight = strips(count, left_x1=wave, left_torque=wave)
     turned = {**straight, "start": 256}
     turned["columns"] = {
         name: values[-256:] + values[:-256] for name, values in straight["columns"].items()
@@ -175,14 +190,21 @@ def test_a_ring_is_drawn_from_its_start(page):
     assert _draw(page, "plane", rolled, **LARGE) == _draw(page, "plane", loop, **LARGE)
 
 
-def test_no_line_bridges_lost_records(page):
-    state = strips(left_x1=[0.8] * 600)
-    state["columns"]["t_s"] = [n / 100 + (3.0 if n >= 300 else 0.0) for n in range(600)]
-    state["now_s"] = state["seconds"] = state["columns"]["t_s"][-1]
-    without = {**state, "columns": {**state["columns"], "left_x1": [float("nan")] * 600}}
-    line = {x for x, _ in _added(page, "strips", without, state, **LARGE)}
-    assert line > {*range(100, 400), *range(900, 1200)}
-    assert not line & set(range(500, 800))
+@pytest.mark.parametrize("count", [FEW, MANY])
+def test_no_line_bridges_lost_records(page, count):
+    half = count // 2
+    state = strips(count, left_x1=[-0.8] * half + [0.8] * half)
+    times = [(n + (half if n >= half else 0)) / 100 for n in range(count)]
+    state["columns"]["t_s"] = times
+    state["now_s"] = state["seconds"] = times[-1]
+    without = {**state, "columns": {"t_s": times}}
+    line = _added(page, "strips", without, state, **LARGE)
+    columns = {x for x, _ in line}
+    assert columns > {*range(50, 400), *range(900, 1260)}
+    assert not columns & set(range(480, 830))
+    # Nor does it climb where records begin again.
+    rows = {y for _, y in line}
+    assert len(rows) < 10
 
 
 def test_the_newest_record_is_at_the_right_edge(page):
@@ -253,8 +275,12 @@ def test_the_ghost_is_drawn_where_the_state_seems_to_be(page):
 def test_older_parts_of_a_trace_are_fainter(page):
     x = [0.5 + 0.05 * n for n in range(100)]
     _draw(page, "plane", plane(x, [0.0] * 100), **LARGE)
-    full = {px for px, _ in _places(page, "left1")}
-    assert min(full) > 640
+
+    def blue(column):
+        """How bright the line is there; it has no blue."""
+        return min(int(_pixel(page, column, y)[5:], 16) for y in range(340, 372))
+
+    assert blue(700) > blue(1000) + 30
 
 
 def test_the_floors_view_does_not_follow_every_step(page):

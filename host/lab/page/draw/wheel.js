@@ -3,9 +3,10 @@
  *
  * Forward is counterclockwise. The first rod lies right of the wheel, the second one below it. On
  * each rail, a spring lies between the target position (green square) and the actual position
- * (orange circle). The arrow at the rim is the tangential force; its length is |M|. The diamond
- * inside is what the neurons remember, (x1, x2). Hollow dashed circles are the positions that a
- * quenched kick shows to the neurons.
+ * (orange circle). The arrow at the rim is the paper's tangential force, and its length is |M|; the
+ * paper's sign is opposite to the pull of springs that lie like this. The diamond inside is what
+ * the neurons remember, (x1, x2). Hollow dashed circles are the positions that a quenched kick
+ * shows to the neurons.
  */
 
 // In radii of the wheel: from the axle to the middle of a rail, from a rail aside to its spring and
@@ -31,7 +32,6 @@ const ROUNDING = 1e-3;
  * @property {number} target2 where the second neuron wants its rod, 1
  * @property {number} seen1 first position that the neurons see, 1
  * @property {number} seen2 second position that the neurons see, 1
- * @property {number} force F_tan, 1
  * @property {number} torque M, 1
  * @property {number} omega_rad_s angular velocity, rad/s
  * @property {number} duty_pct duty cycle of the motor, %
@@ -68,8 +68,7 @@ export function layout(canvas, theme) {
  */
 export function angleAt(canvas, theme, x, y) {
     const at = layout(canvas, theme);
-    const right = (x - at.x) / at.radius;
-    const up = (at.y - y) / at.radius;
+    const [right, up] = [(x - at.x) / at.radius, (at.y - y) / at.radius];
     return Math.hypot(right, up) > 1.2 ? null : Math.atan2(up, right);
 }
 
@@ -82,10 +81,9 @@ export function angleAt(canvas, theme, x, y) {
  */
 export function draw(canvas, state, theme) {
     const { ctx, width, height, colours } = theme.start(canvas, state.stale);
-    const { x, y, radius } = layout(canvas, theme);
+    const sheet = { ctx, colours, theme, line: theme.line, ...layout(canvas, theme) };
     // Half the size of a mark, in radii.
-    const mark = Math.max(0.12, (0.36 * theme.text) / radius);
-    const sheet = { ctx, colours, theme, x, y, radius, mark, line: theme.line };
+    sheet.mark = Math.max(0.12, (0.36 * theme.text) / sheet.radius);
     const pin = [Math.cos(state.phi_rad), Math.sin(state.phi_rad)];
     dot(sheet, [0, 0], 1.1, colours.ink, colours.ink);
     dot(sheet, [0, 0], 1.04, colours.rim, colours.ink);
@@ -230,8 +228,9 @@ function force(sheet, torque, pin) {
 function directions(sheet, { omega_rad_s: omega, labels }) {
     const { ctx, colours, theme, x, y, radius } = sheet;
     arc(sheet, 3.4, 4.0, colours.faint, 0.8 * theme.line);
-    const how = { colour: colours.faint, align: "right" };
-    theme.write(ctx, labels?.forward ?? "", x - 0.45 * radius, y + 1.42 * radius, how);
+    const how = { colour: colours.faint };
+    const left = x - 0.45 * radius - theme.measure(ctx, labels?.forward ?? "", how);
+    theme.write(ctx, labels?.forward ?? "", Math.max(2, left), y + 1.42 * radius, how);
     const half = Math.max(-LONGEST_ARC, Math.min(LONGEST_ARC, omega * ARC_S)) / 2;
     if (!(Math.abs(half) > 0.02)) return;
     arc(sheet, Math.PI / 2 - half, Math.PI / 2 + half, colours.ink, 1.8 * theme.line);
@@ -267,7 +266,7 @@ function readout({ ctx, colours, theme, x, y, radius }, state, width) {
     const row = (name, value, unit, colour) => {
         line += step;
         theme.write(ctx, name, left, line, { colour, symbol: name.length === 1, bold: true });
-        const numbers = left + 5.4 * text;
+        const numbers = left + Math.min(5.4 * text, room - 3.7 * text);
         theme.write(ctx, value, numbers, line, { colour, align: "right" });
         theme.write(ctx, unit, numbers + 0.4 * text, line, { colour: colours.faint });
     };
