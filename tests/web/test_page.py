@@ -94,7 +94,7 @@ def test_a_log_is_recorded_and_downloaded(visit, station):
     assert download.value.path().read_bytes().startswith(b"\x89MCAP0\r\n")
 
 
-def test_a_reload_in_the_middle_keeps_page_and_baton(visit, station):
+def test_a_reload_in_the_middle_is_still_the_same_page(visit, station):
     visitor = visit()
     visitor.page.click("#kick-phase")
     visitor.until("s.baton.you && r.kicks.length === 1")
@@ -102,6 +102,19 @@ def test_a_reload_in_the_middle_keeps_page_and_baton(visit, station):
     visitor.page.reload()
     visitor.until("r && r.records > 0")
     assert visitor.state()["page"] == page
+
+
+def test_a_browser_that_keeps_nothing_opens_it_too(visit):
+    visitor = visit()
+    page = visitor.context.new_page()
+    page.add_init_script(
+        "for (const name of ['localStorage', 'sessionStorage'])"
+        " Object.defineProperty(window, name, { get() { throw new Error('no storage') } });"
+    )
+    page.goto(visitor.page.url)
+    page.wait_for_function("() => lab.state().role === 'drive'")
+    page.click("#projector")
+    page.wait_for_selector("#projector[aria-pressed=true]")
 
 
 def test_a_copied_address_opens_a_second_page(visit):

@@ -1,5 +1,7 @@
 /** The key that lets this page into the lab. It stands in the address, behind the `#`. */
 
+import { keep, recall } from "./storage.js";
+
 const KEY = "lab.key";
 const PAGE = "lab.page";
 
@@ -10,8 +12,9 @@ const PAGE = "lab.page";
  */
 export function readKey() {
     const match = /^#(?:drive|view)=(.+)$/.exec(location.hash);
-    if (match) sessionStorage.setItem(KEY, decodeURIComponent(match[1]));
-    return sessionStorage.getItem(KEY) ?? "";
+    if (!match) return recall("sessionStorage", KEY) ?? "";
+    keep("sessionStorage", KEY, match[1]);
+    return match[1];
 }
 
 /**
@@ -19,11 +22,11 @@ export function readKey() {
  * @returns {number | null}
  */
 export function readPage() {
-    const page = sessionStorage.getItem(PAGE);
+    const page = recall("sessionStorage", PAGE);
     return page === null ? null : Number(page);
 }
 
 /** @param {number} page The number of this page, to come back with. */
 export function keepPage(page) {
-    sessionStorage.setItem(PAGE, String(page));
+    keep("sessionStorage", PAGE, String(page));
 }

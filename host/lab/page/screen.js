@@ -1,6 +1,7 @@
 /** How the page is shown: light or dark, for a desk or for a projector. */
 
 import { byId } from "./dom.js";
+import { keep, recall } from "./storage.js";
 import { media, theme } from "./theme.js";
 
 const PROJECTOR = "lab.projector";
@@ -10,9 +11,11 @@ const WIDE = matchMedia("(min-width: 1600px)");
 
 export class Screen {
     constructor() {
+        this.chosen = recall("localStorage", PROJECTOR);
         this.button = byId("projector");
         this.button.onclick = () => {
-            localStorage.setItem(PROJECTOR, String(!this.projector));
+            this.chosen = String(!this.projector);
+            keep("localStorage", PROJECTOR, this.chosen);
             this.#renew();
         };
         addEventListener("resize", () => this.#renew());
@@ -22,8 +25,7 @@ export class Screen {
 
     /** @returns {boolean} Whether the text is as large as a projector needs it. */
     get projector() {
-        const chosen = localStorage.getItem(PROJECTOR);
-        return chosen === null ? WIDE.matches : chosen === "true";
+        return this.chosen === null ? WIDE.matches : this.chosen === "true";
     }
 
     #renew() {

@@ -59,6 +59,7 @@ export class Stop {
         const lines = progress.map(([name, stage]) =>
             several && !same ? `${name}: ${texts.stop[stage]}` : texts.stop[stage],
         );
+        if (this.#owed && !lines.length) lines.push(texts.stop.waiting);
         setText(this.words, [...new Set(lines)].join(" "));
         const worst = progress.some(([, stage]) => stage !== "confirmed" && stage !== "sent");
         this.words.classList.toggle("alarm", worst);
