@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 # How long an open link that carries other things may take to confirm a stop, and how often to look.
 THROUGH_S = 1.0
 LOOK_S = 0.005
+# How long closing waits for one who may be looking for a lost robot before it looks whether so.
+LEAVE_S = 0.1
 
 
 class Connection(LastingLink):
@@ -49,13 +51,25 @@ class Connection(LastingLink):
         self.close()
 
     def close(self) -> None:
-        """Give control back and hang up. The robot goes on as it is."""
-        with self._lock:
+        """Give control back and hang up. The robot goes on as it is.
+
+        A robot that is being looked for gets nothing back, and is not waited for.
+        """
+        self._leaving.set()
+        locked = False
+        try:
+            # Whoever looks for a lost robot holds the lock, for as long as a login by ssh takes.
+            while not (locked := self._lock.acquire(timeout=LEAVE_S)) and self._whole:
+                pass
             if self._closed.is_set():
                 return
-            with suppress(KickctlError):
-                self.release()
+            if locked:
+                with suppress(KickctlError):
+                    self.release()
             self._end("this connection has been closed")
+        finally:
+            if locked:
+                self._lock.release()
 
     def lease(self) -> None:
         """Take control. Others may look on and stop the robot.

@@ -77,6 +77,7 @@ class LastingLink:
         self._whole = False
         self._pause_s = 0.0
         self._closed = threading.Event()
+        self._leaving = threading.Event()  # set before it is closed: nobody looks for the robot
         self._broken: KickctlError | None = None
         self._endings: list[Callable[[KickctlError | None], object]] = []
         self._hang_up = finalize(self, _hang_up, link, self._closed, self._endings, self._control)
@@ -125,6 +126,7 @@ class LastingLink:
         return self._broken is None and self.trusted
 
     def _end(self, why: str) -> None:
+        self._leaving.set()
         self._control.held = False
         self._broken = NoLink(why, "call connect again")
         self._hang_up()
@@ -269,7 +271,7 @@ class LastingLink:
         failure = NoLink(why, "is its program alive? Look at its screen")
         pause_s = 0.05
         self._rest(self._pause_s)
-        while self.link.now() < self._give_up_at and not self._closed.is_set():
+        while self.link.now() < self._give_up_at and not self._leaving.is_set():
             try:
                 self._open()
                 break
@@ -289,6 +291,9 @@ class LastingLink:
             )
             self._give_up(lost)
             raise lost from failure
+        if self._closed.is_set():  # meanwhile, and by somebody who did not wait
+            self.link.close()
+            raise NoLink("this connection has been closed", "call connect again")
         self._opened_s = self.link.now()
         self.stream.interrupt()
         if self._talk.hello["boot"] != self.hello["boot"]:
@@ -312,7 +317,7 @@ class LastingLink:
 
     def _rest(self, seconds: float) -> None:
         """Let time pass before the next attempt, unless the connection is closed."""
-        self._closed.wait(0.0 if self.link.virtual else seconds)
+        self._leaving.wait(0.0 if self.link.virtual else seconds)
 
     def _retake_lease(self) -> None:
         number, frame = self._talk.request("lease", {}, sealed=True)

@@ -3,6 +3,7 @@
 import gc
 import json
 import socket
+import threading
 import time
 
 import pytest
@@ -260,6 +261,19 @@ def machine():
     machine = TcpRobot(link_loss_s=0.2)
     yield machine
     machine.close()
+
+
+def test_closing_waits_for_no_robot_that_is_looked_for(machine):
+    lost = threading.Event()
+    robot = Robot(machine.link(), TOKEN)
+    robot.reconnect_s = 1e9
+    robot.on_trouble = lambda words: lost.set()
+    robot.lease()
+    machine.close()
+    assert lost.wait(60.0)
+    robot.close()
+    with pytest.raises(NoLink, match="closed"):
+        robot.status()
 
 
 def test_an_idle_notebook_keeps_its_lease_and_its_record(machine):
