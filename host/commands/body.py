@@ -13,7 +13,7 @@ from host.commands._failures import os_words
 from host.commands._outputs import add_force, path_argument, require_place
 from host.commands._recording import figure_words
 from host.commands._terminal import print_result, say, show
-from host.errors import KickctlError, NotDone, mark_kept
+from host.errors import KickctlError, NotDone, WrongUse, mark_kept
 from host.util.numbers import Number
 from host.util.whole_files import write_text
 
@@ -115,7 +115,6 @@ def run(options: argparse.Namespace) -> int:
     from host.bodies.build import CARS_OF_A_TRAIN, BodyRequest, build_body, build_scene
     from host.bodies.keeping import BLOCK
     from host.bodies.kicks import parse_kick
-    from host.errors import WrongUse
     from host.runs.folder import digest
     from host.util.provenance import commit, sources
 
@@ -235,7 +234,13 @@ def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dic
     body, folder = result.body, result.folder
     with ExitStack() as stack:
         watchers = [stack.enter_context(watcher) for watcher in _watchers(options, body)]
-        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise WrongUse(
+                f"{folder} cannot hold results: {error.strerror}",
+                "name a folder with --out that you may write to",
+            ) from error
         keeper = Keeper(folder, body, result.settings)
         try:
             advance = stack.enter_context(

@@ -13,6 +13,14 @@ from sim_motor.bodies.model import SCENES
 CAR = ("body", "car", "--time", "1.5", "--seed", "4")
 
 
+def test_a_folder_that_cannot_be_created_is_refused(kickctl, tmp_path):
+    (tmp_path / "file").touch()
+    status, out, err = kickctl(*CAR, "--out", str(tmp_path / "file"))
+    assert (status, out) == (2, "")
+    assert "cannot hold results" in err
+    assert "--out" in err
+
+
 def test_a_car_is_summarized_in_json_and_kept_in_files(kickctl, tmp_path):
     kick = "t=0.5,mode=phase,wheel=left,seconds=0.2,shift=pi/2"
     status, out, _ = kickctl(*CAR, "--json", "--out", str(tmp_path), "--kick", kick)
