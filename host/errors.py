@@ -1,5 +1,7 @@
 """What can go wrong for a person at the host, each kind with its exit status for scripts."""
 
+from typing import Any
+
 
 class KickctlError(Exception):
     """An error in words.
@@ -26,6 +28,18 @@ class KickctlError(Exception):
 def mark_kept(error: BaseException, path: object) -> None:
     """Note in an error, or an interrupt, where what was done until then is kept."""
     vars(error)["kept"] = escaped(str(path))
+
+
+class FigureInterrupted(KeyboardInterrupt):
+    """^C while the figure of a run was drawn, whose results are known and written.
+
+    Attributes:
+        summary: The run's summary.
+    """
+
+    def __init__(self, summary: dict[str, Any]) -> None:
+        super().__init__()
+        self.summary = summary
 
 
 class NotDone(KickctlError):

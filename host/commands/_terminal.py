@@ -8,12 +8,12 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.commands._hints import as_typed, name_robot
-from host.errors import Interrupted, KickctlError, NoLink, NotDone
+from host.errors import FigureInterrupted, Interrupted, KickctlError, NoLink, NotDone
 from host.util.interrupts import uninterrupted
 
 if TYPE_CHECKING:
@@ -222,6 +222,33 @@ def _lines(summary: dict[str, Any]) -> Iterator[str]:
     ):
         if path is not None:
             yield f"{kind} {path}"
+
+
+def answer_run(
+    options: argparse.Namespace,
+    run: Callable[[], dict[str, Any]],
+    as_json: Callable[[dict[str, Any]], dict[str, Any]] = lambda summary: summary,
+) -> int:
+    """Answer with the results of a run, also if ^C ends it while its figure is drawn.
+
+    Args:
+        options: Say whether to answer in JSON.
+        run: Does it, and returns its summary.
+        as_json: The summary as the JSON object to answer.
+
+    Returns:
+        0.
+
+    Raises:
+        NotDone: A claim does not hold, or the table or the summary is missing.
+    """
+    try:
+        summary = run()
+    except FigureInterrupted as interrupt:
+        with suppress(NotDone):
+            finish(options, interrupt.summary, as_json(interrupt.summary))
+        raise
+    return finish(options, summary, as_json(summary))
 
 
 def finish(options: argparse.Namespace, summary: dict[str, Any], result: dict[str, Any]) -> int:

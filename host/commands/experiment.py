@@ -4,7 +4,7 @@ import argparse
 
 from host.commands._efforts import add_effort, question, sized
 from host.commands._options import add_take_over, common
-from host.commands._terminal import finish, say
+from host.commands._terminal import answer_run, say
 from host.experiments.registry import ROBOT, TABLE
 from host.runs.registry import add_options, options_given
 
@@ -35,16 +35,18 @@ def run(options: argparse.Namespace) -> int:
 
     name = options.experiment
     arguments = {**options_given(options, TABLE[name]), **sized(options, name, TABLE[name])}
-    summary = perform(
-        name,
-        options.brick,
-        options.seed,
-        token=options.token,
-        out=options.out,
-        scheduler=options.scheduler,
-        take_over=getattr(options, "take_over", False),
-        say=say,
-        ask=question(options),
-        **arguments,
+    return answer_run(
+        options,
+        lambda: perform(
+            name,
+            options.brick,
+            options.seed,
+            token=options.token,
+            out=options.out,
+            scheduler=options.scheduler,
+            take_over=getattr(options, "take_over", False),
+            say=say,
+            ask=question(options),
+            **arguments,
+        ),
     )
-    return finish(options, summary, summary)

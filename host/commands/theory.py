@@ -1,9 +1,10 @@
 """kickctl theory."""
 
 import argparse
+from typing import Any
 
 from host.commands._options import common
-from host.commands._terminal import finish, say
+from host.commands._terminal import answer_run, say
 from host.runs.registry import add_options, options_given
 from host.theory.studies.registry import TABLE
 
@@ -38,17 +39,22 @@ def run(options: argparse.Namespace) -> int:
     from host.perform.run import perform
 
     name = options.study
-    summary = perform(
-        name,
-        None,
-        options.seed,
-        out=options.out,
-        scheduler=options.scheduler,
-        say=say,
-        **options_given(options, TABLE[name]),
-    )
-    facts = {key: value for key, value in summary.items() if key != "numbers"}
-    numbers = summary["numbers"]
-    return finish(
-        options, summary, facts | (numbers if isinstance(numbers, dict) else {name: numbers})
+
+    def as_json(summary: dict[str, Any]) -> dict[str, Any]:
+        facts = {key: value for key, value in summary.items() if key != "numbers"}
+        numbers = summary["numbers"]
+        return facts | (numbers if isinstance(numbers, dict) else {name: numbers})
+
+    return answer_run(
+        options,
+        lambda: perform(
+            name,
+            None,
+            options.seed,
+            out=options.out,
+            scheduler=options.scheduler,
+            say=say,
+            **options_given(options, TABLE[name]),
+        ),
+        as_json,
     )

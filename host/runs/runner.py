@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from host.errors import KickctlError, mark_kept
+from host.errors import FigureInterrupted, KickctlError, mark_kept
 from host.runs.contract import Cell, Findings, Row, Setting
 from host.runs.folder import Study
 from host.util.progress import progress
@@ -133,6 +133,9 @@ def finish(
 
     Returns:
         The summary. Under "unwritten" it says which files are missing, and why.
+
+    Raises:
+        FigureInterrupted: ^C came while the figure was drawn; all else is written.
     """
     unwritten: dict[str, str] = {}
 
@@ -151,7 +154,13 @@ def finish(
     kept = [attempt(file, partial(study.write, file, text), None) for file, text in texts]
     table = attempt("table", lambda: study.write_table(name, rows), None)
     none: list[Path] = []
-    figures = attempt("figure", lambda: draw(rows, findings, study.folder / name), none)
+    interrupted = False
+    figures = none
+    try:
+        figures = attempt("figure", lambda: draw(rows, findings, study.folder / name), none)
+    except KeyboardInterrupt:
+        interrupted = True
+        unwritten["figure"] = "figure: interrupted while it was drawn"
     path = study.folder / "summary.json"
     summary = {
         **about,
@@ -170,4 +179,6 @@ def finish(
     text = json.dumps(summary, indent=1, allow_nan=False) + "\n"
     if attempt("summary", lambda: study.write(path.name, text), None) is None:
         summary["summary"] = None
+    if interrupted:
+        raise FigureInterrupted(summary)
     return summary

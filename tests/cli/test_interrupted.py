@@ -41,6 +41,23 @@ def test_while_the_figure_is_drawn_the_answer_says_so(kickctl, monkeypatch, verb
     assert "interrupted" in err
 
 
+@pytest.mark.parametrize("line", ["theory hopf", "experiment starts --starts 2"])
+def test_while_the_figure_of_a_run_is_drawn_its_results_are_answered(kickctl, monkeypatch, line):
+    monkeypatch.setattr(Figure, "savefig", interrupted)
+    status, out, err = kickctl(*line.split(), "--seed", "1", "--json")
+    answer = json.loads(out)
+    assert status == answer["error"]["status"] == 130
+    assert answer["interrupted"] is True
+    assert "interrupted while it was drawn" in answer["unwritten"]["figure"]
+    assert answer["figures"] == []
+    assert Path(answer["table"]).exists()
+    assert json.loads(Path(answer["summary"]).read_text())["claims"] == answer["claims"]
+    assert answer["error"]["kept"] in err
+    words = kickctl(*line.split(), "--seed", "1")
+    assert words[0] == 130
+    assert f"numbers {answer['summary']}" in words[1]
+
+
 def after_one(function):
     """The function, interrupted when it is called the second time."""
     calls = iter([function])
