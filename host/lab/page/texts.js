@@ -115,9 +115,9 @@ export const texts = {
     },
     unknown: "–",
     ownGuess: (guess, right) =>
-        `Guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Right." : "Not this time."}`,
+        `Guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Correct." : "Not this time."}`,
     score: ({ guesses, right }) =>
-        guesses ? `${right} of ${counted(guesses, "guess", "guesses")} right so far.` : "",
+        guesses ? `${right} of ${counted(guesses, "guess", "guesses")} correct so far.` : "",
     ifNow: (kick) => `Now, a ${texts.kickLine(kick).toLowerCase()} would:`,
 
     moves: "Movements",

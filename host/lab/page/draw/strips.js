@@ -154,8 +154,9 @@ function times({ ctx, colours, theme, left, right, now, pixels }, state, seconds
 function legend({ ctx, colours, theme, left, right }, row, state, y) {
     const words = state.labels ?? {};
     const text = theme.text;
-    theme.write(ctx, row.symbol, 0.4 * text, y, { colour: colours.ink, symbol: true, bold: true });
-    theme.write(ctx, row.unit ?? "", left, y, { colour: colours.faint, size: 0.9 });
+    const strong = { colour: colours.ink, symbol: true, bold: true };
+    const behind = left + theme.write(ctx, row.symbol, left, y, strong) + 0.4 * text;
+    theme.write(ctx, row.unit ?? "", behind, y, { colour: colours.faint, size: 0.9 });
     let x = right;
     for (let n = row.lines.length - 1; n >= 0 && row.lines.length > 1; n--) {
         const line = row.lines[n];
