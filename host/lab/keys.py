@@ -6,7 +6,6 @@ import secrets
 from dataclasses import dataclass, field
 
 DRIVE, VIEW = "drive", "view"
-ROLES = (DRIVE, VIEW)
 _BYTES = 16
 
 

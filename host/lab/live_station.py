@@ -32,6 +32,8 @@ AGAIN_S, REFUSED_S = 0.5, 10.0
 # A command that the robot has not answered by then is not repeated: a stop may have come since.
 ANSWER_S = 3.0
 MOST_JOBS = 20
+# How long a command waits for the stop that came before it (s).
+STOP_S = 7.0
 # Commands that a stop leaves alone.
 _HARMLESS = ("identify", "record")
 
@@ -93,6 +95,9 @@ class LiveStation(Station):
         self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
         self._stops = 0
         self._stop_wanted = threading.Event()
+        # How many of the stops have ended.
+        self._ended = 0
+        self._stop_ended = threading.Condition()
         self._closed = threading.Event()
         self._attended_until = 0.0
         self._release_wanted = False
@@ -199,7 +204,7 @@ class LiveStation(Station):
             self._performs = self._performs and job.command != "primitive"
             if job.stops != self._stops and job.command not in (*_HARMLESS, "release"):
                 # What was under way when the stop came may have moved the robot after it.
-                self._stop_wanted.set()
+                self._stop_once()
         if self._driver is not None:
             self._driver.close()
 
@@ -227,6 +232,7 @@ class LiveStation(Station):
                 return robot.identify()
             return self._record(robot, bool(job.arguments["on"]))
         self._require_no_stop(job)
+        self._await_stop(job)
         if job.command == "primitive":
             return self._bring(job)
         if job.command == "release":
@@ -239,6 +245,12 @@ class LiveStation(Station):
     def _require_no_stop(self, job: _Job) -> None:
         if job.stops != self._stops:
             raise NotDone("the robot was stopped meanwhile", "try it again")
+
+    def _await_stop(self, job: _Job) -> None:
+        """Wait for the end of the stop that came before a command, or it would undo that."""
+        with self._stop_ended:
+            if not self._stop_ended.wait_for(lambda: self._ended >= job.stops, STOP_S):
+                raise NotDone("the stop before it has not come through yet", "try it again")
 
     def _bring(self, job: _Job) -> dict[str, Any]:
         """Bring the robot into a primitive. A stop ends that with the next record."""
@@ -290,18 +302,27 @@ class LiveStation(Station):
             if self._closed.is_set():
                 return
             self._stop_wanted.clear()
+            stops = self._stops
             release, self._release_wanted = self._release_wanted, False
-            try:
-                words = stop_words(self.stop_now())
-                if words:
-                    self._say(words)
-                if release:
-                    self._jobs.put(_Job("release", {}, lambda result: None, self._stops))
-            except KickctlError as error:
-                self._say_error(error)
-            except Exception as error:  # this thread must outlive everything
-                logging.getLogger("kickctl").exception("a stop of the lab failed")
-                self._say(f"the stop failed: {error!r}", "switch the robot off")
+            if self._stop_once() and release:
+                self._jobs.put(_Job("release", {}, lambda result: None, stops))
+            with self._stop_ended:
+                self._ended = stops
+                self._stop_ended.notify_all()
+
+    def _stop_once(self) -> bool:
+        """Stop the robot, and tell the pages what they have to know. Returns whether it obeyed."""
+        try:
+            words = stop_words(self.stop_now())
+            if words:
+                self._say(words)
+            return True
+        except KickctlError as error:
+            self._say_error(error)
+        except Exception as error:  # the thread must outlive everything
+            logging.getLogger("kickctl").exception("a stop of the lab failed")
+            self._say(f"the stop failed: {error!r}", "switch the robot off")
+        return False
 
     def stop_now(self) -> Stopped:
         """Stop the robot, and wait until it has confirmed that. Raises KickctlError."""

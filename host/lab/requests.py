@@ -15,7 +15,6 @@ MAX_BYTES = 4096
 LARGEST_REQUEST = 2**53
 RELOAD = "reload the page"
 GUESSES = ("reverses", "continues", "stops")
-COMMANDS = ("start", "clear", "identify", "kick", "set", "preset", "primitive", "record")
 
 
 def parse(text: str) -> dict[str, Any]:
