@@ -23,7 +23,7 @@ export function createBaton(root, lab) {
         const { baton, role, pages, mayDrive } = lab.store;
         const mine = baton.you ? texts.youDrive : mayDrive ? texts.youMay : "";
         const other = baton.driver === null ? texts.nobodyDrives : texts.pageDrives(baton.driver);
-        setText(who, sentences(mine || other, baton.why));
+        setText(who, sentences(mine || other, baton.you ? "" : baton.why));
         const others = baton.you ? baton.asking : [];
         setText(asking, others.length ? texts.asks(others) : "");
         if (offered !== others.join()) {

@@ -1,7 +1,7 @@
 /** The robot's parameters, from its own table. A change is sent at once. */
 
 import { choices, element } from "./dom.js";
-import { texts } from "./texts.js";
+import { sentences, texts } from "./texts.js";
 
 // What the paper varies stands first; the rest is behind a fold.
 const FIRST = ["a", "tau_s", "k"];
@@ -51,7 +51,7 @@ function choice(param, send) {
     const group = choices(`param-${param.name}`, param.name, options, param.default, (value) =>
         send(row, value),
     );
-    group.append(element("p", { className: "fine" }, param.doc));
+    group.append(element("p", { className: "fine" }, sentences(param.doc)));
     row.root = group;
     row.show = (value) => {
         row.value = value;
