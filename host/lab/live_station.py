@@ -118,6 +118,10 @@ class LiveStation(Station):
         for thread in self._threads:
             thread.start()
 
+    def drives_here(self) -> bool:
+        driver = self._driving
+        return driver is not None and driver.drives
+
     def clock(self) -> float:
         return time.monotonic()
 

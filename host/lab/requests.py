@@ -139,6 +139,7 @@ CHECKS: dict[str, _Check] = {
     "start": lambda fields: {},
     "clear": lambda fields: {},
     "identify": lambda fields: {},
+    "take_over": lambda fields: {},
     "kick": kick_of,
     "set": lambda fields: {"set": changes_of(fields)},
     "record": lambda fields: {"on": flag_of(fields, "on")},

@@ -167,6 +167,7 @@ class Station:
             "params": dict(self._follower.params),
             "battery_v": status["battery_v"],
             "controller": _text(status["controller"]),
+            "here": self.drives_here(),
             "late": sum(n for edge, n in zip([0.0, *edges], counts, strict=True) if edge >= LATE_S),
             "missed": status["missed"],
             "overrun": status["overruns"],
@@ -282,12 +283,19 @@ class Station:
     def close(self) -> None:
         """Hang up."""
 
+    def drives_here(self) -> bool:
+        """Whether this lab drives the robot, and not another host."""
+        raise NotImplementedError
+
     def clock(self) -> float:
         """Seconds on the clock of this station."""
         raise NotImplementedError
 
     def _carry_out(self, robot: Robot, command: str, arguments: dict[str, Any]) -> dict[str, Any]:
         """Have a robot that may be driven do a command. Raises KickctlError."""
+        if command == "take_over":
+            robot.take_over()
+            return {}
         if not robot.drives:
             robot.lease()  # a person has asked for it, so also after somebody's take-over
         if command in ("start", "clear"):

@@ -40,6 +40,9 @@ class SteppedStation(Station):
             self._status = dict(execute(self._link.loop, None, {"do": "status"}, sealed=False))
         self._wake()
 
+    def drives_here(self) -> bool:
+        return self._robot.drives
+
     def clock(self) -> float:
         return self._link.now()
 

@@ -4,6 +4,8 @@ from math import pi
 
 import pytest
 
+from host.client.robot import Robot
+from host.errors import LeaseLost
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
@@ -73,6 +75,25 @@ def test_a_parameter_is_sent_and_a_wrong_one_goes_back(visit, station):
     visitor.until("s.note && s.note.message.includes('tau_s')")
     visitor.page.wait_for_function("() => document.querySelector('#param-tau_s').value === '0.25'")
     assert visitor.robot()["status"]["params"]["k"] == 3.5
+
+
+def test_a_page_takes_over_from_another_host(visit, station, monkeypatch):
+    link = station._link.another()
+    with monkeypatch.context() as patch:
+        patch.setattr("host.client.neighbours.client_id", lambda: "another program")
+        other = Robot(link, link.token, "bert")
+    with other:
+        other.lease()
+        station.step(0.3)
+        visitor = visit()
+        visitor.until("r.status.controller === 'bert' && !r.status.here")
+        visitor.page.get_by_role("button", name="Take over from bert").click()
+        visitor.until("r.status.here")
+        station.step(0.3)
+        visitor.until("r.status.controller !== 'bert'")
+        assert not visitor.page.get_by_role("button", name="Take over").is_visible()
+        with pytest.raises(LeaseLost):
+            other.start()
 
 
 def test_a_preset_sets_what_the_paper_says(visit):

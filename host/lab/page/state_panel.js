@@ -18,7 +18,8 @@ export function createState(root, lab) {
     const identify = button(texts.identify, async () => {
         if (await lab.try("identify")) lab.tell(texts.identified);
     });
-    root.append(list, identify);
+    const takeOver = button("", () => lab.try("take_over"));
+    root.append(list, takeOver, identify);
 
     return () => {
         const { robot, welcome, mayDrive } = lab.store;
@@ -39,6 +40,9 @@ export function createState(root, lab) {
         for (const [name, value] of Object.entries(facts)) setText(values[name], value);
         show(values.missed.parentElement, robot.missed > 0);
         show(values.reason.parentElement, robot.lost || robot.state !== "running");
+        show(takeOver, Boolean(status.controller) && status.here === false);
+        setText(takeOver, texts.takeOver(status.controller));
+        takeOver.disabled = !mayDrive;
         root.classList.toggle("stale", robot.lost);
     };
 }

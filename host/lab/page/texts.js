@@ -178,6 +178,7 @@ export const texts = {
     download: (name, whole) => (whole ? name : `${name} (still growing)`),
     downloadFailed: (why) => ({ message: `the log did not come: ${why}`, hint: "try again" }),
 
+    takeOver: (host) => `Take over from ${host}`,
     driving: "Who drives",
     youDrive: "This page drives.",
     youMay: "Nobody drives. Your first command takes the baton.",
