@@ -278,11 +278,12 @@ def test_closing_waits_for_no_robot_that_is_looked_for(machine):
 
 def test_an_idle_notebook_keeps_its_lease_and_its_record(machine):
     """Real time: nothing but the client's own thread keeps the link alive here."""
+    machine.loop.params.link_loss_s = 1.0
     with Robot(machine.link(), TOKEN) as robot:
         robot.lease()
         log = Log()
         robot.add_tap(log)
-        time.sleep(0.7)
+        time.sleep(1.5)
         assert machine.loop.lease.holder is not None
         assert machine.loop.safety.reason == "started"
         assert len(log) > 40
