@@ -6,6 +6,7 @@ real time are marked.
 
 import os
 import signal
+import sys
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -26,8 +27,11 @@ settings.load_profile("house")
 CACHES = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
 os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
 
-# Tests with real sockets, sshd, mounted files, processes of their own or the watchdog. `make test`
-# runs them after all others, so that nothing that computes slows them down.
+# Where python3 is a script that looks for the right Python, each call would take far longer.
+os.environ["PATH"] = os.pathsep.join((sys.base_prefix + "/bin", os.environ["PATH"]))
+
+# Tests with real sockets, sshd, mounted files, processes of their own or the watchdog: `pytest -m
+# realtime` runs these alone. They hold beside tests that compute, too.
 REAL_TIME = (
     "tests/api/test_listen_page.py",
     "tests/api/test_listeners.py",

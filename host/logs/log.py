@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from difflib import get_close_matches
 from itertools import pairwise
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -148,7 +149,7 @@ class Log:
             )
         index = NAMES.index(name)
         dtype = np.float64 if CHANNELS[index].code in "df" else np.int64
-        return np.fromiter((record[index] for record in self.records), dtype, len(self.records))
+        return np.fromiter(map(itemgetter(index), self.records), dtype, len(self.records))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """All columns as arrays.

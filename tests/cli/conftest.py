@@ -11,7 +11,16 @@ from tests.lint.sources import ROOT
 
 
 @pytest.fixture
-def kickctl(capsys, tmp_path, monkeypatch):
+def figures(monkeypatch):
+    """Figures are small and not laid out: a module whose subject they are has a `figures` too."""
+    from host.figures import style
+
+    monkeypatch.setitem(style.SIZE, "dpi", 40)
+    monkeypatch.setitem(style.SIZE, "layout", None)
+
+
+@pytest.fixture
+def kickctl(capsys, tmp_path, monkeypatch, figures):
     """Run kickctl in an empty folder: (exit status, standard output, standard error)."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "token"))

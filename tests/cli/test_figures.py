@@ -10,7 +10,7 @@ import matplotlib as mpl
 import pytest
 from matplotlib.figure import Figure
 
-from host.figures.robot import kick as figures
+from host.figures.robot import kick as kick_figure
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
 from tests.lint.sources import ROOT
@@ -34,14 +34,19 @@ FOREIGN = {
 }
 
 
+@pytest.fixture
+def figures():
+    """They are as users see them."""
+
+
 @pytest.mark.parametrize("ending", ["png", "svg"])
 def test_figures_are_the_same_whatever_matplotlibrc_says(kickctl, ending):
     log = Log.load(
         json.loads(kickctl("kick", "--mode", "phase", "--seed", "1", "--json")[1])["log"]
     )
-    own = figures.draw(log, Path(f"own.{ending}"), "A kick").read_bytes()
+    own = kick_figure.draw(log, Path(f"own.{ending}"), "A kick").read_bytes()
     with mpl.rc_context(FOREIGN):
-        foreign = figures.draw(log, Path(f"foreign.{ending}"), "A kick").read_bytes()
+        foreign = kick_figure.draw(log, Path(f"foreign.{ending}"), "A kick").read_bytes()
         assert mpl.rcParams["text.usetex"] is True
     if ending == "svg":  # it says when it was drawn
         own, foreign = (_without_date(text) for text in (own, foreign))

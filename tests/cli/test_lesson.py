@@ -25,6 +25,11 @@ DESK = ("4. A rest that stays", "On a real robot")
 TURN = 2 * np.pi
 
 
+@pytest.fixture
+def figures():
+    """They are as users see them."""
+
+
 def commands(title):
     """The lines of a section's blocks of commands; one that ends with a backslash goes on."""
     blocks = re.findall(r"```sh\n(.*?)```", SECTIONS[title], re.DOTALL)

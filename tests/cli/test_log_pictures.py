@@ -9,6 +9,11 @@ from PIL import Image
 from host.logs.log import Log
 
 
+@pytest.fixture
+def figures():
+    """They are as users see them."""
+
+
 def files():
     return sorted(path for path in Path().rglob("*") if path.parts[0] != "cache")
 
