@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from host.commands._streams import OUTPUT
+from host.link.discovery import Found
 
 REPRODUCED = ("reproduce", "report results/report.html")
 DONE = {
@@ -59,8 +60,7 @@ def test_what_was_done_is_said_where_it_can_be(kickctl, monkeypatch, line, numbe
     ("line", "words"), [("discover --save", "anna is tcp://h:5425 from now on"), REPRODUCED]
 )
 def test_what_was_saved_is_said_too(kickctl, monkeypatch, line, words, json_too):
-    facts = {"name": "anna", "uri": "tcp://h:5425", "kind": "robot", "hardware_id": None}
-    found = [SimpleNamespace(**facts, as_dict=dict)]
+    found = [Found("anna", "robot", "tcp://h:5425", "h", ("192.0.2.1",))]
     done = SimpleNamespace(claims=[], skipped={}, page=Path("results/report.html"))
     with monkeypatch.context() as patch:
         patch.setenv("XDG_CONFIG_HOME", str(kickctl.folder))
