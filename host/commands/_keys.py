@@ -89,6 +89,8 @@ class _Terminal:
     def begin(self) -> None:
         if threading.current_thread() is threading.main_thread():
             self._handler = signal.signal(signal.SIGTSTP, self._suspend)
+        with suppress(OSError, ValueError, termios.error):  # the thread tries again
+            self._take()  # before anything is drawn that names keys
         self._thread.start()
 
     def end(self) -> None:

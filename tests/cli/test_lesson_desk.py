@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from host.client.robot import connect
 from host.logs.log import Log
 from robot.kicks import WHEELS
 from tests.cli.test_desk import desk_robot
@@ -34,6 +35,9 @@ def answers(folder):
     assert STEP_4[0] == f"export KICK_BRICK=tcp://127.0.0.1:{number}"
     assert STEP_4[-1] == "unset KICK_BRICK"
     with desk_robot(folder, *arguments) as (uri, _):
+        # A person goes to the other terminal; by then the neurons have settled.
+        with connect(uri, observe=True) as robot:
+            robot.wait(3.0)
         path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
         environment = {
             **os.environ,

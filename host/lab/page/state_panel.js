@@ -19,6 +19,7 @@ export function createState(root, lab) {
         if (await lab.try("identify")) lab.tell(texts.identified);
     });
     const takeOver = button("", () => lab.try("take_over"));
+    show(takeOver, false);
     root.append(list, takeOver, identify);
 
     return () => {
