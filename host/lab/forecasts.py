@@ -13,7 +13,7 @@ from multiprocessing import active_children, get_context
 from typing import Any, NamedTuple
 
 from host.errors import KickctlError, NotDone
-from host.runs.processes import begin_process
+from host.runs.processes import begin_process, beginning_processes
 from robot.record import Record
 from sim_motor.constants import Constants
 
@@ -49,7 +49,7 @@ class Forecasts:
 
     def begin(self) -> None:
         """Begin the process, and compile or load there what predictions need."""
-        with self._lock:
+        with self._lock, beginning_processes():
             if self._pool is None and not self._closed:
                 self._others = set(active_children())
                 # Spawned, because a fork would copy locks that other threads hold.

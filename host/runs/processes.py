@@ -8,13 +8,15 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
 
 from host.errors import NotDone
 from host.runs.contract import Cell, Row, Setting
+from host.util.interrupts import uninterrupted
 
 
 def compute_in_processes(
@@ -32,7 +34,8 @@ def compute_in_processes(
     # Spawned, because a fork would copy locks that other threads hold, but not the threads.
     pool = ProcessPoolExecutor(processes, get_context("spawn"), begin_process)
     try:
-        futures = {pool.submit(simulate, cell, setting): cell for cell in cells}
+        with beginning_processes():
+            futures = {pool.submit(simulate, cell, setting): cell for cell in cells}
         for future in as_completed(futures):
             yield futures[future], future.result()
     except BrokenProcessPool as error:
@@ -46,6 +49,20 @@ def compute_in_processes(
         for process in set(active_children()) - others:
             process.terminate()
         pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def beginning_processes() -> Iterator[None]:
+    """Begin processes whole in this block, and let no ^C end one in its first steps.
+
+    They inherit that SIGINT is blocked; `begin_process` then ignores it.
+    """
+    with uninterrupted():
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def begin_process() -> None:

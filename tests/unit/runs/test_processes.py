@@ -2,9 +2,11 @@
 
 import operator
 import os
+import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from multiprocessing import active_children
 
 import pytest
@@ -78,3 +80,11 @@ def test_a_script_without_a_main_block_gets_the_remedy(tmp_path):
     )
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
     assert "__name__ == '__main__'" in done.stdout
+
+
+def test_a_process_hears_no_interrupt_from_its_first_step_on():
+    mask = partial(signal.pthread_sigmask, signal.SIG_BLOCK)
+    before = mask([])
+    found = dict(processes.compute_in_processes(operator.call, [mask, tuple], []))
+    assert signal.SIGINT in found[mask]
+    assert mask([]) == before
