@@ -325,9 +325,10 @@ class Station:
             self.logs[recording.name] = self.recording = recording
             robot.add_tap(recording)
         elif not on and self.recording is not None:
-            recording, self.recording = self.recording, None
-            robot.remove_tap(recording)
-            recording.close()
+            # Pages ask for the logs when the recording is off: the log must be whole by then.
+            robot.remove_tap(self.recording)
+            self.recording.close()
+            self.recording = None
         self._wake()
         return {"log": self.recording.name if self.recording else None}
 

@@ -259,8 +259,12 @@ def test_it_identifies_and_records_without_driving(station, observer, tmp_path):
     station.do("record", {"on": True}, answers)
     name = answers.next()["log"]
     assert station.state()["recording"] == name
+    recording, said = station.logs[name], []
+    end = recording.close
+    recording.close = lambda: (said.append(station.state()["recording"]), end())
     station.do("record", {"on": False}, answers)
     assert answers.next() == {"log": None}
+    assert said == [name]  # it says that the log is ended only once it is whole
     assert station.logs[name].whole
     assert controller(observer) is None
 
