@@ -164,7 +164,7 @@ def _recent(records: Sequence[Record]) -> list[Record]:
     if recent[-1].state != _RUNNING:
         raise NotDone(
             "the robot does not run, so there is no kick to predict",
-            "start it first: kickctl start",
+            "start it first",
         )
     return recent
 

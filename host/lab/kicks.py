@@ -46,7 +46,8 @@ class Kicks:
             records: Oldest first.
 
         Returns:
-            What an `outcome` message says of the kick, if that is clear now for the first time.
+            What an `outcome` message says of the kick, if that is clear now for the first time, or
+            why there will be none.
         """
         self._records.extend(records)
         watch = self._watch
@@ -57,7 +58,7 @@ class Kicks:
             self._watch = None
         outcome = watch.outcome
         if outcome is None:
-            return None
+            return {"kick_id": self._id, "result": {}, "why": watch.gave_up} if watch.done else None
         wheels = WHEELS if outcome.wheel == "both" else (outcome.wheel,)
         return {
             "kick_id": self._id,

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotable
+from host.kicking.outcome import STOPPED
 from host.lab import requests
 from host.lab.baton import Baton
 from host.lab.keys import DRIVE, Keys
@@ -142,11 +143,12 @@ class Session:
     def _tell_outcome(self, outcome: Message) -> None:
         """Tell each page what a kick did, what was guessed, and how often it guessed right."""
         guess, score = self._guesses.pop(outcome["kick_id"], (None, None))
-        if guess is not None and score is not None:
+        right = _guessed_right(guess, outcome) if guess is not None and outcome["result"] else None
+        if right is not None and score is not None:
             score.guesses += 1
-            score.right += all(result == guess for result in outcome["result"].values())
+            score.right += right
         for page in self.pages.values():
-            page.send({**outcome, "guess": guess, "score": asdict(page.score)})
+            page.send({**outcome, "guess": guess, "right": right, "score": asdict(page.score)})
 
     def broadcast(self, message: Message) -> None:
         """Send a message to all pages."""
@@ -365,6 +367,14 @@ class Session:
         if counted != self._counted:
             self._counted = counted
             self.broadcast({"type": "pages", "driving": driving, "watching": counted[1]})
+
+
+def _guessed_right(guess: str, outcome: Message) -> bool:
+    """Whether a guess is true of each kicked wheel. One that stays at rest has stopped, too."""
+    return all(
+        guess == result or (guess == "stops" and outcome["after"][side] == STOPPED)
+        for side, result in outcome["result"].items()
+    )
 
 
 def _without_time(state: Message) -> Message:

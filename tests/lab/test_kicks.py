@@ -96,7 +96,9 @@ def test_a_stop_leaves_no_outcome(lab):
     lab.station.step(0.2)
     visit.send("stop", robot="anna")
     lab.station.step(10.0)
-    assert visit.latest("outcome") is None
+    outcome = visit.latest("outcome")
+    assert (outcome["result"], outcome["right"], outcome["score"]["guesses"]) == ({}, None, 0)
+    assert "stopped before its wheels had settled" in outcome["why"]
     assert visit.latest("state")["state"] == "stopped"
 
 

@@ -75,6 +75,45 @@ def test_a_parameter_is_sent_and_a_wrong_one_goes_back(visit, station):
     visitor.until("s.note && s.note.message.includes('tau_s')")
     visitor.page.wait_for_function("() => document.querySelector('#param-tau_s').value === '0.25'")
     assert visitor.robot()["status"]["params"]["k"] == 3.5
+    visitor.page.fill("#param-k", "4")
+    visitor.page.keyboard.press("Enter")
+    visitor.until("!s.note")  # what was refused before is over
+
+
+def test_a_kick_of_half_a_tick_is_not_sent(visit, station):
+    visitor = visit()
+    visitor.page.click(".own summary")
+    for ticks in ("2.5", "20000", "-1"):
+        visitor.page.fill("#kick-ticks", ticks)
+        visitor.page.click(".kick.own")
+        assert "1 to 10000" in visitor.page.text_content(".own-form")
+    visitor.page.fill("#kick-ticks", "4")
+    kick(visitor, station, ".kick.own")
+    assert [one["ticks"] for one in visitor.robot()["kicks"]] == [4]
+
+
+def test_a_kick_that_a_stop_cuts_off_has_no_outcome(visit, station):
+    visitor = visit()
+    visitor.page.check("#guess-0", force=True)
+    visitor.page.click("#kick-phase")
+    visitor.until("r.kicks.length === 1")
+    station.step(0.06)
+    visitor.page.keyboard.press("Escape")
+    visitor.until("Object.values(s.stop)[0]")
+    station.step(0.3)
+    visitor.reads(".verdict", "No outcome: the robot was stopped before its wheels had settled.")
+    assert visitor.state()["score"]["guesses"] == 0
+
+
+def test_a_kick_of_wheels_at_rest_has_words_of_its_own(visit, station):
+    visitor = visit()
+    visitor.page.get_by_role("button", name="k = 0.3").click()
+    visitor.until("r.status.params.k === 0.3")
+    station.step(4)
+    visitor.page.check("#guess-2", force=True)
+    kick(visitor, station, "#kick-membrane")
+    visitor.reads(".verdict", "Left stayed at rest.")
+    visitor.reads(".verdict", "Guess: stop. Correct.")
 
 
 def test_a_page_takes_over_from_another_host(visit, station, monkeypatch):

@@ -39,7 +39,7 @@ export function createDesigner(lab, kick, predict) {
     const fields = () => {
         const made = { mode: mode.value };
         if (!ALWAYS_ONE_TICK.includes(made.mode)) {
-            made.ticks = Math.round(Number(ticks.input.value));
+            made.ticks = Number(ticks.input.value);
             made.shape = shape.value;
         }
         if (made.mode === "phase" && sign.value === "given") {
@@ -59,13 +59,13 @@ export function createDesigner(lab, kick, predict) {
     const commands = element(
         "fieldset",
         { className: "bare" },
-        button(texts.ownKickDo, () => kick(fields()), "kick own"),
+        button(texts.ownKickDo, () => sound() && kick(fields()), "kick own"),
     );
     const form = element("div", { className: "own-form" });
     form.append(mode, ticks.root, param, value.root, sign, shift.root, variable, delta.root, shape);
     form.append(
         commands,
-        button(texts.askSimulation, () => predict(fields()), "quiet"),
+        button(texts.askSimulation, () => sound() && predict(fields()), "quiet"),
     );
     const root = element(
         "details",
@@ -73,6 +73,12 @@ export function createDesigner(lab, kick, predict) {
         element("summary", {}, texts.ownKick),
         form,
     );
+
+    // The browser says what is wrong with a number.
+    const sound = () =>
+        [...form.querySelectorAll("input")].every(
+            (input) => input.offsetParent === null || input.reportValidity(),
+        );
 
     function arrange() {
         const is = mode.value;
@@ -92,7 +98,9 @@ export function createDesigner(lab, kick, predict) {
 
     function tell() {
         const tick_s = lab.store.robot?.tick_s ?? 0;
-        ticks.output.textContent = texts.ticksHint(Number(ticks.input.value) * tick_s);
+        const { valid } = ticks.input.validity;
+        const lasts = texts.ticksHint(Number(ticks.input.value) * tick_s);
+        ticks.output.textContent = valid ? lasts : texts.ticksWrong;
         shift.output.textContent = texts.shiftValue(Number(shift.input.value));
     }
 

@@ -6,6 +6,7 @@ import { texts } from "./texts.js";
 export class Lab {
     #waiting = new Map();
     #number = 0;
+    #told = null;
 
     /** @param {{send: (message: object) => boolean, onmessage: Function}} source */
     constructor(source) {
@@ -53,12 +54,15 @@ export class Lab {
     }
 
     /**
-     * The same, where only a refusal has to be said: the robot's state shows that it worked.
+     * The same, where only a refusal has to be said: the robot's state shows that it worked, and
+     * then what was said of an earlier one is over.
      * @returns {Promise<object | null>} The result, null if it was refused.
      */
     async try(command, given = {}) {
         try {
-            return await this.do(command, given);
+            const result = await this.do(command, given);
+            if (this.store.note === this.#told) this.tell(null);
+            return result;
         } catch (error) {
             this.tell(error);
             return null;
@@ -67,7 +71,7 @@ export class Lab {
 
     /** @param {{message: string, hint: string}} note What a person should know. */
     tell(note) {
-        this.store.note = note;
+        this.store.note = this.#told = note;
         this.changed = true;
     }
 

@@ -17,7 +17,7 @@ export function createSaid(lab) {
         if (type === "event" && message.event.event === "kick") {
             say(texts.said.kick(message.event.kick));
         } else if (type === "outcome") {
-            say(texts.said.outcome(message.result));
+            say(texts.said.outcome(message));
         } else if (type === "state") {
             const now = message.link === "lost" ? "lost" : message.state;
             const then = before.get(robot);

@@ -11,6 +11,10 @@ const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
 
 const VERBS = { reverses: "reverse", continues: "continue", stops: "stop" };
 const DONE = { reverses: "reversed", continues: "continued", stops: "stopped" };
+// The same of a wheel that rested before the kick.
+const VERBS_AT_REST = { reverses: "begin to roll", continues: "stay at rest" };
+const DONE_AT_REST = { reverses: "began to roll", continues: "stayed at rest" };
+const atRest = (before, side) => (before?.[side] === "stopped" ? DONE_AT_REST : DONE);
 const UNITS = { 1: "", "%": " %" };
 
 /**
@@ -80,6 +84,7 @@ export const texts = {
     },
     ticks: "Length in ticks",
     ticksHint: (seconds) => `${number(seconds, 2)} s`,
+    ticksWrong: "a whole number from 1 to 10000",
     shift: "Phase shift",
     shiftValue: (turns) => `${number(turns, 2)} π = ${number(turns * Math.PI, 2)} rad`,
     shiftSign: "Sign of the shift",
@@ -101,18 +106,20 @@ export const texts = {
             ? `${texts.kinds[mode] ?? mode} kick, ${counted(ticks ?? 1, "tick", "ticks")}`
             : "A kick",
     sides: { left: "Left", right: "Right" },
-    verdict: ({ name, shares, outcome }, of) => {
+    verdict: ({ name, shares, outcome, rested }, of) => {
+        const [verbs, done] = rested ? [VERBS_AT_REST, DONE_AT_REST] : [VERBS, DONE];
         const [result, count] = Object.entries(shares ?? {}).reduce(
             (best, entry) => (entry[1] > best[1] ? entry : best),
             ["", -1],
         );
-        if (!outcome) return result ? `${name}: ${count} of ${of} will ${VERBS[result]}.` : name;
-        const did = `${name} ${DONE[outcome]}`;
+        if (!outcome) return result ? `${name}: ${count} of ${of} will ${verbs[result]}.` : name;
+        const did = `${name} ${done[outcome]}`;
         if (!result) return `${did}.`;
         return outcome === result
             ? `${did}, as ${count} of ${of} predicted.`
-            : `${did}, but ${count} of ${of} said: ${VERBS[result]}.`;
+            : `${did}, but ${count} of ${of} said: ${verbs[result]}.`;
     },
+    noOutcome: (why) => `No outcome: ${why}.`,
     unknown: "–",
     ownGuess: (guess, right) =>
         `Guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Correct." : "Not this time."}`,
@@ -243,10 +250,13 @@ export const texts = {
 
     said: {
         kick: (kick) => `Kick: ${texts.kickLine(kick)}.`,
-        outcome: (result) =>
-            `${Object.entries(result)
-                .map(([side, word]) => `${texts.sides[side]} wheel ${DONE[word]}`)
-                .join(", ")}.`,
+        outcome: ({ result, before, why }) =>
+            why
+                ? texts.noOutcome(why)
+                : `${Object.entries(result)
+                      .map(([side, word]) => [side, atRest(before, side)[word]])
+                      .map(([side, word]) => `${texts.sides[side]} wheel ${word}`)
+                      .join(", ")}.`,
         lost: (robot) => `${robot} does not answer.`,
         found: (robot) => `${robot} is back.`,
         fault: (robot, reason) => `${robot} is in fault: ${reason}.`,

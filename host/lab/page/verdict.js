@@ -38,15 +38,16 @@ export function createVerdict(lab) {
             name: texts.sides[side],
             shares: prediction?.shares?.[side] ?? null,
             outcome: outcome?.result?.[side] ?? null,
+            rested: outcome?.before?.[side] === "stopped",
         }));
-        const said = view.wheels.map((wheel) => texts.verdict(wheel, view.of));
+        const said = outcome?.why
+            ? [texts.noOutcome(outcome.why)]
+            : view.wheels.map((wheel) => texts.verdict(wheel, view.of));
         if (said.join() !== [...sentences.children].map((item) => item.textContent).join()) {
             sentences.replaceChildren(...said.map((words) => element("li", {}, words)));
         }
-        const results = Object.values(outcome?.result ?? {});
         const guessed = outcome?.guess ?? kick?.guess?.guess;
-        const right = results.length ? results.every((done) => done === guessed) : null;
-        setText(guess, guessed ? texts.ownGuess(guessed, right) : "");
+        setText(guess, guessed ? texts.ownGuess(guessed, outcome?.right ?? null) : "");
         setText(score, texts.score(lab.store.score));
     };
 
