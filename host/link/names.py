@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from host.link.discovery import Found
 
 ALL = "all"
+# An address behind a comma; a comma may also stand within one.
+_ADDRESS = re.compile(r",\s*[a-z]+://")
 
 
 class Chosen(NamedTuple):
@@ -84,15 +87,16 @@ def named(text: str | None) -> str | None:
 
 
 def is_several(text: str) -> bool:
-    """Whether a text means several robots: 'all', or names with commas between them."""
-    return text == ALL or ("," in text and "://" not in text.partition(",")[0])
+    """Whether a text means several robots: 'all', or names or addresses with commas between."""
+    first, comma, rest = text.partition(",")
+    return text == ALL or bool(comma and ("://" not in first or _ADDRESS.search("," + rest)))
 
 
 def several(text: str) -> list[Chosen]:
     """The robots that a text means.
 
     Args:
-        text: 'all', or names with commas between them.
+        text: 'all', or names or addresses with commas between them.
 
     Raises:
         WrongUse: One of them is unknown or named twice, or no robot has a name yet.

@@ -340,3 +340,10 @@ def test_a_changed_value_leaves_all_else_in_its_line(by_hand):
     assert by_hand.read_text(encoding="utf-8") == text
     with pytest.raises(WrongUse, match="no robot 'ana'"):
         update("ana", address="tcp://h")
+
+
+def test_addresses_may_be_listed_as_names_are():
+    both = "tcp://10.0.0.1:5425, ssh://robot@bert"
+    assert is_several(both)
+    assert [one.address for one in several(both)] == both.split(", ")
+    assert not is_several("serial:///dev/a,b")
