@@ -71,6 +71,26 @@ def test_it_is_not_confirmed_by_a_robot_that_is_away(visit, station):
     visitor.reads("#stop-words", "NOT confirmed")
 
 
+def test_it_is_confirmed_over_a_new_link_too(visit, lab, station, begin_again):
+    visitor = visit()
+    rolls(visitor, station)
+    for _ in range(60):  # much is heard of the robot before the link is lost
+        tick = visitor.robot()["record"]["tick"]
+        station.step(0.03)
+        visitor.until(f"r.record.tick > {tick}")
+    stop, station.stop = station.stop, lambda: None
+    visitor.page.keyboard.press("Escape")
+    visitor.until("s.stop.anna === 'unconfirmed'")
+    lab.__exit__(None, None, None)
+    visitor.until("!s.link.up")
+    begin_again()
+    visitor.until("s.link.up")
+    stop()
+    station.step(0.1)
+    visitor.until("s.stop.anna === 'confirmed'")
+    visitor.forgive("WebSocket connection to")
+
+
 @pytest.mark.parametrize("size", [(1280, 720), (390, 844), (320, 568), (1920, 1080), (844, 390)])
 def test_the_button_is_in_view_at_every_place_of_the_page(visit, size):
     visitor = visit(viewport={"width": size[0], "height": size[1]})

@@ -76,7 +76,11 @@ export class Stop {
     }
 
     #hear(message) {
-        if (message.type === "welcome" && this.#owed) this.press();
+        if (message.type === "welcome") {
+            // What is heard of the robots is counted anew.
+            for (const asked of this.#asked.values()) asked.heard = 0;
+            if (this.#owed) this.press();
+        }
         // What was said about a stop is over as soon as somebody starts the robot again.
         if (message.type === "event" && ["start", "resume"].includes(message.event.event)) {
             this.#asked.delete(message.robot);
