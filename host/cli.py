@@ -61,8 +61,8 @@ def make_parser(needed: tuple[str, ...] = VERBS) -> argparse.ArgumentParser:
     """The parser of the whole command line. It raises WrongUse for one that is wrong.
 
     Args:
-        needed: The verbs of which it knows more than the name. To import them all takes longer than
-            a stop.
+        needed: The verbs whose options it knows; of others it knows only the names. Importing all
+            verbs takes longer than a stop.
     """
     parents: list[Any] = [common(defaults=True)]
     parser = Parser(

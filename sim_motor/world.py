@@ -19,7 +19,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from sim_motor.compiled import jit
-from sim_motor.compiled_motor import advance
+from sim_motor.compiled_motor import advance_in_place
 from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
 from sim_motor.motor import WHEEL_SPEED
 from sim_motor.scene import Scene
@@ -251,18 +251,5 @@ def _advance(
             forward[side], aside = tyre_force(stretches[side], rim - over_floor, -drift, most, tyre)
             sideways += aside
             load -= mounts[side] * radius * forward[side]
-            state[:] = advance(
-                1,
-                duty,
-                battery_v,
-                load,
-                state[0],
-                state[1],
-                state[2],
-                state[3],
-                state[4],
-                state[5],
-                tables[side],
-                scalars[side],
-            )
+            advance_in_place(state, 1, duty, battery_v, load, tables[side], scalars[side])
         move_body(place, (forward[0], forward[1]), sideways, SUBSTEP_S, PARTS, body, walls)

@@ -66,7 +66,7 @@ class Follower:
         self._x_m = self._y_m = self._heading_rad = 0.0
 
     def take_event(self, event: Event) -> None:
-        """Follow parameters and kicks. After a restart the wheels' angles begin anew."""
+        """Follow parameters and kicks. A restart sets the wheels' angles to zero."""
         if event["event"] == "restart":
             self._before = None
         elif event["event"] == "snapshot":

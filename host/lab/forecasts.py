@@ -49,8 +49,10 @@ class Forecasts:
 
     def begin(self) -> None:
         """Begin the process, and compile or load there what predictions need."""
-        with self._lock, beginning_processes():
-            if self._pool is None and not self._closed:
+        with self._lock:
+            if self._pool is not None or self._closed:
+                return
+            with beginning_processes():
                 self._others = set(active_children())
                 # Spawned, because a fork would copy locks that other threads hold.
                 self._pool = ProcessPoolExecutor(1, get_context("spawn"), begin_process)
@@ -90,12 +92,12 @@ class Forecasts:
             result = future.result()
         except (BrokenProcessPool, CancelledError):
             result = NotDone(
-                "the process that predicts kicks has ended", "try again: it begins anew"
+                "the process that predicts kicks has ended", "try again: that starts a new one"
             )
             with self._lock:
                 if self._pool is pool:
                     self._pool = None
-        except Exception as error:  # whoever waits must hear of it, whatever it is
+        except Exception as error:  # the page that waits must hear of any failure
             logging.getLogger("kickctl").exception("a kick could not be predicted")
             result = NotDone(f"the simulation failed: {error!r}"[:300], "please report this")
         with self._lock:
@@ -103,7 +105,7 @@ class Forecasts:
         done(result)
 
     def close(self) -> None:
-        """End the process, whatever it does."""
+        """End the process, also in the middle of a prediction."""
         with self._lock:
             self._closed = True
             pool, self._pool = self._pool, None

@@ -32,7 +32,7 @@ class Kicks:
         return list(self._records)
 
     def take_event(self, event: Event) -> None:
-        """Begin to watch a kick; after a restart, begin anew."""
+        """Begin to watch a kick. A restart makes the records before it useless."""
         if event["event"] == "restart":
             self._records.clear()
         elif event["event"] == "kick":

@@ -141,7 +141,7 @@ class LiveStation(Station):
             except KickctlError as error:
                 pause_s = AGAIN_S if isinstance(error, NoLink) else REFUSED_S
                 self.trouble = f"{error.message}. {error.hint}" if error.hint else error.message
-            except Exception as error:  # whatever it is, the robot must be found again
+            except Exception as error:  # after any failure the robot must be found again
                 logging.getLogger("kickctl").exception("the lab lost a robot")
                 self.trouble = f"the lab failed: {error!r}"
             self._wake()

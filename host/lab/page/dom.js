@@ -16,7 +16,7 @@ export function element(tag, properties = {}, ...children) {
     return made;
 }
 
-/** Set a text only if it is another one, so that nothing is laid out or read out anew. */
+/** Set a text only if it is another one: an equal one would be laid out and read out again. */
 export function setText(target, text) {
     if (target.textContent !== text) target.textContent = text;
 }

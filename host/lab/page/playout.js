@@ -14,7 +14,7 @@ export class Playout {
         this.restart();
     }
 
-    /** Begin anew, as when the robot's clock does. */
+    /** Start again, as when the robot's clock does. */
     restart() {
         this.lead = Infinity;
         this.seen = 0;

@@ -77,7 +77,7 @@ export class Stop {
 
     #hear(message) {
         if (message.type === "welcome") {
-            // What is heard of the robots is counted anew.
+            // The counts of what is heard of the robots start at zero again.
             for (const asked of this.#asked.values()) asked.heard = 0;
             if (this.#owed) this.press();
         }

@@ -10,7 +10,7 @@ const KICK_NAMES = ["", ...Object.keys(texts.kinds)];
 const SIDES = ["left", "right"];
 const SIDE_COLOURS = { left: "left1", right: "right1" };
 
-/** The views of one robot. They are objects that are filled anew in each frame. */
+/** The views of one robot. Each frame fills the same objects again. */
 export class Views {
     #fastest = 3;
     #view = {};
