@@ -18,7 +18,6 @@ from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import Shooting
 from host.theory.analysis.fixpoints import NDComplex
 from host.theory.analysis.merging import saddle
-from host.theory.model.wheel import OMEGA, Array
 
 BifurcationType = Literal["fold", "pitchfork", "neimark-sacker"]
 FOLD: BifurcationType = "fold"
@@ -98,19 +97,19 @@ def _end(shooting: Shooting, point: Point, low: float, high: float, smallest: fl
     left = saddle(wheel)
     if left is not None and seconds * left.eigenvalues[0].real > _LONGEST:
         return MERGING
-    if wheel.dry_friction > 0.0 and shooting.path(point.unknowns)[:, OMEGA, 0].min() < 0.0:
+    if wheel.dry_friction > 0.0 and shooting.least_omega(point) < 0.0:
         return STICKS
     if abs(point.unknowns[2]) < smallest:
         return HOPF
     return None
 
 
-def follow(shooting: Shooting, scales: Array, first: Point, low: float, high: float) -> Followed:
+def follow(shooting: Shooting, curve: Curve, first: Point, low: float, high: float) -> Followed:
     """Follow cycles along a constant, around folds, to the end of their curve.
 
     Args:
         shooting: The problem that the cycles solve.
-        scales: The scales of its unknowns, (5,).
+        curve: The curve of its solutions.
         first: The first cycle, and the direction in which to go.
         low: Least value of the followed constant.
         high: Greatest value of the followed constant.
@@ -118,8 +117,7 @@ def follow(shooting: Shooting, scales: Array, first: Point, low: float, high: fl
     Returns:
         The curve and the bifurcations on it.
     """
-    curve, tests = Curve(shooting, scales), _tests(shooting)
-    finer = shooting.with_finer_steps(_FINER)
+    tests, finer = _tests(shooting), shooting.with_finer_steps(_FINER)
     points: list[Point] = []
     found: list[Bifurcation] = []
     values: dict[BifurcationType, float] = {}
@@ -133,13 +131,16 @@ def follow(shooting: Shooting, scales: Array, first: Point, low: float, high: fl
                     continue
                 there = curve.locate(points[-1], length, tests[type_])
                 if _is_bifurcation(type_, shooting.multipliers(there.unknowns)):
-                    again = Curve(finer, scales).locate(points[-1], length, _tests(finer)[type_])
+                    finer_curve = Curve(finer, curve.scales)
+                    again = finer_curve.locate(points[-1], length, _tests(finer)[type_])
                     off_by = abs(float(again.unknowns[4] / there.unknowns[4]) - 1)
                     found.append(Bifurcation(type_, there, len(points), off_by))
             end = _end(shooting, point, low, high, smallest)
             if end == RANGE and points:
                 bound = low if point.unknowns[4] <= low else high
                 points.append(curve.locate(points[-1], length, partial(_beyond, bound)))
+            elif end == STICKS and points:
+                points.append(curve.locate(points[-1], length, shooting.least_omega))
             else:
                 points.append(point)
             if end or len(points) == _MOST_POINTS:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from host.theory.analysis.bifurcations import MERGING, Followed, follow
+from host.theory.analysis.bifurcations import MERGING, Bifurcation, Followed, follow
 from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Shooting, settle_in_rotation
 from host.theory.analysis.fixpoints import fixpoint
@@ -40,10 +40,13 @@ class Branch(NamedTuple):
 
     Attributes:
         shooting: the problem that the cycles solve.
-        ways: the curve; two of them, down and up, if the branch begins in the middle.
+        curve: the curve of its solutions.
+        ways: the parts that are followed; two of them, down and up, if the branch begins in the
+            middle.
     """
 
     shooting: Shooting
+    curve: Curve
     ways: tuple[Followed, ...]
 
 
@@ -99,9 +102,10 @@ def swings(wheel: Wheel, field: str, low: float, high: float) -> list[Branch]:
     branches = []
     for value in hopf_values(wheel, field, low, high):
         there = with_constant(wheel, field, value)
-        shooting, scales = Shooting(wheel, FORTH_AND_BACK, field), _scales(there, value)
-        first = _first_swing(Curve(shooting, scales), there, value)
-        branches.append(Branch(shooting, (follow(shooting, scales, first, low, high),)))
+        shooting = Shooting(wheel, FORTH_AND_BACK, field)
+        curve = Curve(shooting, _scales(there, value))
+        first = _first_swing(curve, there, value)
+        branches.append(Branch(shooting, curve, (follow(shooting, curve, first, low, high),)))
     return branches
 
 
@@ -146,18 +150,32 @@ def rotations(wheel: Wheel, field: str, low: float, high: float) -> list[Branch]
     return branches
 
 
+def last_stable(branches: list[Branch]) -> Bifurcation | None:
+    """Where stable rotations end as the constant rises.
+
+    Args:
+        branches: Of rotations, as `rotations` finds them.
+
+    Returns:
+        The bifurcation of greatest value before which the rotations are stable; None if there is
+        none.
+    """
+    found = [
+        one
+        for branch in branches
+        for one in branch.ways[-1].bifurcations
+        if abs(branch.shooting.multipliers(branch.ways[-1].points[one.before - 1].unknowns)[0]) < 1
+    ]
+    return max(found, key=lambda one: float(one.point.unknowns[4]), default=None)
+
+
 def _both_ways(wheel: Wheel, field: str, state: Array, low: float, high: float) -> Branch:
     shooting = Shooting(wheel, ROTATION, field)
-    scales = _scales(wheel, getattr(wheel, field))
+    curve = Curve(shooting, _scales(wheel, getattr(wheel, field)))
     first = rotation(wheel, state, field).unknowns
-    down, up = (
-        Point(first, sign * Curve(shooting, scales).tangent(first, _ALONG)) for sign in (-1.0, 1.0)
-    )
-    ways = (
-        follow(shooting, scales, down, low, high),
-        follow(shooting, scales, up, low, high),
-    )
-    return Branch(shooting, ways)
+    down, up = (Point(first, sign * curve.tangent(first, _ALONG)) for sign in (-1.0, 1.0))
+    ways = follow(shooting, curve, down, low, high), follow(shooting, curve, up, low, high)
+    return Branch(shooting, curve, ways)
 
 
 def turning_state(wheel: Wheel) -> Array:

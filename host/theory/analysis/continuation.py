@@ -135,6 +135,18 @@ class Curve(NamedTuple):
             point = following
             length = min(longest, length * (_GROWTH if turn < _MOST_TURN / 3 else 1.0))
 
+    def between(
+        self, point: Point, following: Point, vanishing: Callable[[Point], float]
+    ) -> Point | None:
+        """The point of the curve between two that `follow` gave where a function vanishes.
+
+        None if the function has the same sign at both. Raises NotDone if the curve is lost.
+        """
+        if vanishing(point) * vanishing(following) > 0.0:
+            return None
+        ahead = (following.unknowns - point.unknowns) / self.scales
+        return self.locate(point, float(point.tangent @ ahead), vanishing)
+
     def locate(self, point: Point, length: float, vanishing: Callable[[Point], float]) -> Point:
         """The point of the curve where a function vanishes.
 

@@ -14,10 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from host.errors import NotDone, WrongUse
+from host.theory.analysis.continuation import Point
 from host.theory.engine.flow import FINENESS, plain, run, steps_for, varied
-from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, numpy_rates, rates
 
 # The coordinates on the section phi = 0.
 SECTION = [0, 1, OMEGA]
@@ -26,6 +28,8 @@ SECTION = [0, 1, OMEGA]
 _SETTLED, _QUARTERS = 1e-4, 60
 # It is integrated in chunks of steps, at most this many.
 _CHUNK, _MOST_CHUNKS = 100, 20_000
+# The least speed of a cycle is looked for in this many steps instead of two.
+_CLOSE_UP = 64
 
 
 class Family(NamedTuple):
@@ -110,6 +114,19 @@ class Shooting:
             varied(Wheel._fields.index(self.along)), states, tuple(wheel), seconds, count
         )
         return found
+
+    def least_omega(self, point: Point) -> float:
+        """The least angular velocity of a cycle, rad/s. Raises NotDone as `path` does."""
+        path = self.path(point.unknowns)[:, :, 0]
+        step_s = float(point.unknowns[3]) / (len(path) - 1)
+        before = max(0, int(path[:, OMEGA].argmin()) - 1)
+        wheel, states = tuple(self.wheel_at(point.unknowns)), path[before, :, None]
+        close = run(plain, states, wheel, 2 * step_s, _CLOSE_UP)[:, :, 0]
+        slopes = numpy_rates(*close.T, *wheel)[OMEGA]
+        times = np.linspace(0.0, 2 * step_s, len(close))
+        course = CubicHermiteSpline(times, close[:, OMEGA], slopes)
+        turns = course.derivative().roots(extrapolate=False)
+        return float(min(*close[[0, -1], OMEGA], *course(turns)))
 
     def _rates(self, state: Array, unknowns: Array) -> Array:
         x1, x2, phi, omega = state.tolist()

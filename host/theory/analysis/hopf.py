@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from host.errors import WrongUse
+from host.theory.analysis.bisection import last_alike
 from host.theory.analysis.fixpoints import ANGLES, fixpoint
 from host.theory.model.symbolic import derivatives, jacobian_at
 from host.theory.model.wheel import Wheel
@@ -106,6 +107,29 @@ def _lyapunov_coefficient(wheel: Wheel, omega: float) -> float:
     return float(np.vdot(p, inner).real / (2 * omega))
 
 
+def bautin_tau_s(wheel: Wheel, low: float, high: float) -> float | None:
+    """The time constant between two others at which l1 changes its sign: a Bautin point.
+
+    On one side of it cycles are born stable, on the other side unstable.
+
+    Args:
+        wheel: The wheel; its own tau and k do not matter.
+        low: Least time constant, s.
+        high: Greatest time constant, s.
+
+    Returns:
+        The time constant, s; None if the sign is the same at both ends.
+
+    Raises:
+        WrongUse: There is no Hopf bifurcation.
+    """
+
+    def born_stable(tau_s: float) -> bool:
+        return hopf(wheel._replace(tau_s=tau_s)).l1 < 0.0
+
+    return None if born_stable(low) == born_stable(high) else last_alike(born_stable, low, high)
+
+
 def estimate(wheel: Wheel) -> float:
     """The paper's critical k = 2 f / (a tau), infinite with a = 0. Eq. k_critical."""
     return 2 * wheel.friction / (wheel.a * wheel.tau_s) if wheel.a else inf
@@ -138,8 +162,4 @@ def by_eigenvalues(wheel: Wheel) -> float:
     def grows(factor: float) -> bool:
         return bool(fixpoint(ANGLES[0], wheel._replace(k=factor * k)).eigenvalues[0].real > 0.0)
 
-    # Bisection down to the last bit. To import a root finder would take longer than all of this.
-    low, high = 0.5, 2.0
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (low, middle) if grows(middle) else (middle, high)
-    return k * low
+    return k * last_alike(grows, 0.5, 2.0)

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from host.errors import NotDone, WrongUse
+from host.theory.analysis.bisection import last_alike
 from host.theory.analysis.fixpoints import Fixpoint, NDComplex, fixpoint
 from host.theory.analysis.hopf import hopf
 from host.theory.engine.flow import FINENESS, plain, run, steps_for
@@ -36,8 +37,6 @@ _PATIENCE, _CHUNK = 60.0, 2.0
 _RESTS, _SEARCHED = 0.3, (0.5, 20.0)
 # Values of the constant that are tried.
 GRID = 160
-# Bisection ends at neighbouring floats.
-_BISECTIONS = 60
 
 
 class Merging(NamedTuple):
@@ -170,11 +169,7 @@ def mergings(
         (value, rolls(value)) for value in values
     ):
         if rolled != rolling:
-            below, above = value, next_value
-            for _ in range(_BISECTIONS):
-                middle = (below + above) / 2
-                below, above = (middle, above) if rolls(middle) == rolled else (below, middle)
-            there = wheel._replace(**{along: below})
+            there = wheel._replace(**{along: last_alike(rolls, value, next_value)})
             left = saddle(there)
             if left is not None:
                 yield Merging(

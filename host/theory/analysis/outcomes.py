@@ -149,10 +149,10 @@ def rolling_states(model: Model, wheel: Wheel, phases: int) -> Array | None:
         step_s = model.clock.tick_s
     else:
         step_s = QUARTER / abs(float(last.omega_mean[0])) / phases
-    states = [last.states if name == FORWARD else mirror(last.states)]
-    while len(states) < phases:
-        states.append(model.averages(states[-1], wheel.columns(1), step_s).states)
-    found = np.hstack(states)
+    found = last.states if name == FORWARD else mirror(last.states)
+    while (count := found.shape[1]) < phases:
+        later = model.averages(found, wheel.columns(count), count * step_s).states
+        found = np.hstack([found, later])[:, :phases]
     return np.asarray(found[:, np.argsort(found[PHI] % QUARTER)])
 
 

@@ -32,6 +32,7 @@ from host.theory.analysis.outcomes import (
     settle_and_classify,
     starting_states,
 )
+from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.ensemble import FINE, rate_per_s
 from host.theory.engine.kicked import KICKS, Continuous, Model, Sampled, memory_s
 from host.theory.engine.sampled import as_robot, ticks_in
@@ -51,6 +52,7 @@ from host.theory.studies.basins_rows import (
     Measured,
     ModelName,
     Start,
+    Sure,
 )
 from robot.kicks import FROZEN_MODES
 
@@ -80,7 +82,11 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
             " settles too slowly",
             "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
         )
-    found: list[BasinsCell] = []
+    found: list[BasinsCell] = [
+        {"part": "sure", "model": CONTINUOUS, "mode": mode, "sign": sign}
+        for mode, sign in KICKS
+        if mode not in FROZEN_MODES
+    ]
     for model in MODEL_NAMES:
         bands = range(0, options["points"], BAND)
         found += [{"part": "starts", "model": model, "band": band} for band in bands]
@@ -101,6 +107,11 @@ def simulate(cell: BasinsCell, setting: Setting) -> Measured:
         return simulate_starts(model, wheel, phi.ravel(), omega.ravel())
     if cell["part"] == "kicks":
         return _kicks(cell, wheel)
+    if cell["part"] == "sure":
+        lengths_s = LENGTHS_S[CONTINUOUS]
+        ranges = sure_ranges(model, wheel, cell["mode"], cell["sign"], lengths_s, PHASES)
+        found: list[Sure] = [{"from_s": from_s, "to_s": to_s} for from_s, to_s in ranges]
+        return found
     return [_check(model, wheel, points, np.random.default_rng(setting.seed_of(cell)))]
 
 

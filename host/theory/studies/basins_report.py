@@ -22,9 +22,11 @@ from host.theory.studies.basins_rows import (
     KickRow,
     ModelName,
     StartRow,
+    SureRow,
     check_of,
     kicks_of,
     starts_of,
+    sure_of,
 )
 
 
@@ -115,7 +117,12 @@ def report(rows: list[BasinsRow], setting: Setting) -> Findings:
         "basins": {model: _basins(own) for model, own in starts.items()},
         "starts_that_end_otherwise_if_sampled": float(np.mean(differ)),
         "kicks": [
-            {"model": model, "mode": mode, "sign": sign, **_reversals(own[model])}
+            {
+                "model": model,
+                "mode": mode,
+                "sign": sign,
+                **_reversals(own[model], sure_of(rows, mode, sign) if model == CONTINUOUS else []),
+            }
             for mode, sign, own in kicks
             for model in MODEL_NAMES
             if own[model]
@@ -175,18 +182,24 @@ def _basins(starts: list[StartRow]) -> Basins:
     }
 
 
-def _reversals(kicks: list[KickRow]) -> Reversals:
-    """Reversals by length; sure_s: ranges of lengths that reverse the wheel at every phase."""
+def _reversals(kicks: list[KickRow], ranges: list[SureRow]) -> Reversals:
+    """Reversals by length; sure_s: ranges of lengths that reverse the wheel at every phase.
+
+    The sampled wheel knows whole ticks only, so that its ranges are seen from its kicks.
+    """
     shares = reversals(kicks)
-    sure_s = []
+    sure_s = [[row["from_s"], row["to_s"]] for row in ranges]
+    if kicks[0]["model"] == CONTINUOUS and kicks[-1]["length_s"]:
+        return {"reversed": _length_shares(shares), "sure_s": sure_s}
     for sure, line in groupby(shares.items(), lambda item: item[1] == 1.0):
         lengths_s = [length_s for length_s, _ in line]
         if sure:
             sure_s.append([lengths_s[0], lengths_s[-1]])
-    return {
-        "reversed": [{"length_s": length_s, "share": share} for length_s, share in shares.items()],
-        "sure_s": sure_s,
-    }
+    return {"reversed": _length_shares(shares), "sure_s": sure_s}
+
+
+def _length_shares(shares: dict[float, float]) -> list[LengthShare]:
+    return [{"length_s": length_s, "share": share} for length_s, share in shares.items()]
 
 
 def _share_that_differs(kicks: dict[ModelName, list[KickRow]]) -> float:

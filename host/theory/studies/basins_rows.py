@@ -51,6 +51,15 @@ class KicksCell(TypedDict):
     sign: int
 
 
+class SureCell(TypedDict):
+    """The lengths of one kind of quenched kick that reverse the continuous wheel at every phase."""
+
+    part: Literal["sure"]
+    model: ModelName
+    mode: str
+    sign: int
+
+
 class CheckCell(TypedDict):
     """Some starts, computed by other means."""
 
@@ -89,6 +98,18 @@ class Kick(TypedDict):
     outcome: Outcome
 
 
+class Sure(TypedDict):
+    """A range of lengths of a kick that reverse the wheel at every phase.
+
+    Attributes:
+        from_s: the least length (s).
+        to_s: the greatest length (s).
+    """
+
+    from_s: float
+    to_s: float
+
+
 class Check(TypedDict):
     """The share of starts on the grid that come to the same by other means.
 
@@ -114,13 +135,17 @@ class KickRow(KicksCell, Kick):
     """A row of a kick."""
 
 
+class SureRow(SureCell, Sure):
+    """A row of sure lengths."""
+
+
 class CheckRow(CheckCell, Check):
     """A row of a check."""
 
 
-BasinsCell = StartsCell | KicksCell | CheckCell
-BasinsRow = StartRow | KickRow | CheckRow
-Measured = list[Start] | list[Kick] | list[Check]
+BasinsCell = StartsCell | KicksCell | SureCell | CheckCell
+BasinsRow = StartRow | KickRow | SureRow | CheckRow
+Measured = list[Start] | list[Kick] | list[Sure] | list[Check]
 
 
 def starts_of(rows: Iterable[BasinsRow], model: ModelName) -> list[StartRow]:
@@ -135,6 +160,13 @@ def kicks_of(rows: Iterable[BasinsRow], model: ModelName, mode: str, sign: int) 
         for row in rows
         if row["part"] == "kicks"
         and (row["model"], row["mode"], row["sign"]) == (model, mode, sign)
+    ]
+
+
+def sure_of(rows: Iterable[BasinsRow], mode: str, sign: int) -> list[SureRow]:
+    """The sure lengths of a kick of the continuous wheel, ascending."""
+    return [
+        row for row in rows if row["part"] == "sure" and (row["mode"], row["sign"]) == (mode, sign)
     ]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -15,12 +16,14 @@ from host.theory.analysis.cycles import Shooting
 from host.theory.engine.ensemble import averages
 from host.theory.model.turning import constant_velocity
 from host.theory.model.wheel import OMEGA, PHI, Wheel
+from host.theory.studies.branch_formula import NEAR
 from host.theory.studies.branch_rows import (
     BranchEnd,
     Cycle,
     CycleColumns,
     CycleMeasured,
     CyclePoint,
+    FormulaEdge,
     SteppedCycle,
     Way,
     pairs,
@@ -51,6 +54,7 @@ def rows_of_branches(
         ways: tuple[Way, ...] = ("down", "up") if len(branch.ways) == 2 else (None,)
         for way, followed in zip(ways, branch.ways, strict=True):
             rows += branch_rows(way, followed, branch.shooting)
+            rows += _formula_edges(way, followed, branch)
             rows += stepped_rows(way, followed, branch.shooting)
     return rows
 
@@ -111,6 +115,22 @@ def branch_rows(
         "period": last["period"],
     }
     return [*rows, end]
+
+
+def _formula_edges(way: Way, followed: Followed, branch: Branch) -> list[FormulaEdge]:
+    """Where the constant-velocity formula begins and ceases to be NEAR the mean speed."""
+    turn = branch.shooting.family.turn
+    if not turn:
+        return []
+
+    def beyond(point: Point) -> float:
+        formula = constant_velocity(branch.shooting.wheel_at(point.unknowns)) or 0.0
+        return abs(formula * float(point.unknowns[3]) / turn - 1) - NEAR
+
+    edges = [branch.curve.between(*points, beyond) for points in pairwise(followed.points)]
+    return [
+        {"way": way, "kind": "edge", "value": float(edge.unknowns[4])} for edge in edges if edge
+    ]
 
 
 def stepped_rows(way: Way, followed: Followed, shooting: Shooting) -> list[SteppedCycle]:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 from host.runs.claims import Claim
 from host.theory.analysis.hopf import estimate, hopf
 from host.theory.model.turning import constant_velocity
 from host.theory.model.wheel import Wheel
-from host.theory.studies.branch_tables import BranchRow, TurnedRow, cycles_of, turned_at
+from host.theory.studies.branch_tables import BranchRow, TurnedRow, stable_of, turned_at
 
 # The formula holds if it is off by less than this (relative).
 NEAR = 0.05
+# How stable rotations end, by the type of the bifurcation.
+_END = {
+    "neimark-sacker": "the end of its stable part, at a Neimark-Sacker point",
+    "fold": "the end of its stable part, at a fold",
+    "pitchfork": "the end of its stable part, at a pitchfork",
+}
 
 
 class Turning(TypedDict):
@@ -54,41 +60,58 @@ def _turning_at(k: float, points: list[TurnedRow]) -> Turning:
     }
 
 
-def deviations_of(rows: list[BranchRow]) -> list[tuple[float, float]]:
-    """(value, relative deviation of the formula) along the stable rotations, ascending in value."""
-    stable = [row for row in cycles_of(rows, "LLM") if row["stable"]]
-    stable.sort(key=lambda row: row["value"])
+class Deviation(NamedTuple):
+    """How far the formula is off at one stable rotation.
+
+    Attributes:
+        value: of the followed constant.
+        off: relative error of the formula.
+        end: the type of bifurcation at which the stable rotations end here; empty elsewhere.
+    """
+
+    value: float
+    off: float
+    end: str
+
+
+def deviations_of(rows: list[BranchRow]) -> list[Deviation]:
+    """The errors of the formula along the stable rotations, ascending in value."""
     return [
-        (row["value"], row["formula"] / row["omega_mean"] - 1)
-        for row in stable
+        Deviation(
+            row["value"],
+            row["formula"] / row["omega_mean"] - 1,
+            row["type"] if row["kind"] == "special" else "",
+        )
+        for row in stable_of(rows, "LLM")
         if row["formula"] is not None
     ]
 
 
-def near_ranges(deviations: list[tuple[float, float]]) -> list[list[float]]:
-    """The ranges of values in which the formula is within NEAR; their ends are interpolated."""
+def near_ranges(deviations: list[Deviation], edges: list[float]) -> list[list[float]]:
+    """The ranges of values in which the formula is within NEAR.
+
+    Args:
+        deviations: Along the stable rotations, ascending in value.
+        edges: Where a rotation is just NEAR, ascending.
+    """
     ranges: list[list[float]] = []
-    inside = False
-    for index, (value, off) in enumerate(deviations):
-        if (abs(off) < NEAR) == inside:
-            continue
-        edge = value
-        if index:
-            before, off_before = deviations[index - 1]
-            part = (NEAR - abs(off_before)) / (abs(off) - abs(off_before))
-            edge = before + (value - before) * part
-        inside = not inside
-        if inside:
-            ranges.append([edge])
-        else:
-            ranges[-1].append(edge)
+    last, inside = float("-inf"), False
+    for value, off, _ in deviations:
+        if (abs(off) < NEAR) != inside:
+            edge = next((edge for edge in edges if last <= edge <= value), value)
+            inside = not inside
+            if inside:
+                ranges.append([edge])
+            else:
+                ranges[-1].append(edge)
+        last = value
     if inside:
-        ranges[-1].append(deviations[-1][0])
+        ranges[-1].append(last)
     return ranges
 
 
 def claim_m6(
-    deviations: list[tuple[float, float]],
+    deviations: list[Deviation],
     turned: list[Turning],
     near: list[list[float]],
     along: str,
@@ -106,8 +129,9 @@ def claim_m6(
     )
     if not deviations:
         return replace(claim, note=f"as no stable rotation was found on the branch in {along}")
-    value, last = deviations[-1]
-    where = " and ".join(f"{low:.4g} to {high:.4g}" for low, high in near) or "nowhere"
+    value, last, end = deviations[-1]
+    name = _END.get(end, "the end of the branch")
+    where = " and ".join(f"{low:.6g} to {high:.6g}" for low, high in near) or "nowhere"
     shown = ", ".join(
         f"{_formula(entry, wheel) / entry['omega'] - 1:+.1%} at k = {entry['k']:g}"
         for entry in turned
@@ -117,7 +141,7 @@ def claim_m6(
         claim,
         measured=last,
         holds=any(high == value for _, high in near),
-        note=f"the formula's relative error at {along} = {value:g}, the end of the branch; below"
+        note=f"the formula's relative error at {along} = {value:.8g}, {name}; below"
         f" 5 % for {along} = {where}; {shown}. The formula begins at k = {estimate(wheel):.4g},"
         f" {estimate(wheel) / hopf(wheel).k:.2f} of the Hopf line's, where no rotation exists",
     )

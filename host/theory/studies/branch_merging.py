@@ -47,7 +47,6 @@ class DryNumbers(TypedDict):
     folds: list[FoldNumbers]
     merging: float | None
     merging_by_extrapolation: float | None
-    least_omega_while_rolling: float
 
 
 def extrapolated(rows: list[BranchRow], part: CyclePart, merging: MergingRow) -> float | None:
@@ -106,7 +105,6 @@ def dry_branch(rows: list[BranchRow]) -> DryNumbers | None:
         ],
         "merging": found[0]["value"] if found else None,
         "merging_by_extrapolation": extrapolated(rows, "dry", found[0]) if found else None,
-        "least_omega_while_rolling": min(row["omega_min"] for row in cycles),
     }
 
 

@@ -24,7 +24,7 @@ from host.theory.studies.branch_merging import (
     extrapolated,
 )
 from host.theory.studies.branch_rows import CyclePart, Part
-from host.theory.studies.branch_tables import BranchRow, MergingRow, SpecialRow
+from host.theory.studies.branch_tables import BranchEndRow, BranchRow, MergingRow, SpecialRow
 from host.theory.studies.registry import PAPER
 
 # Far above the onset of locomotion, where the constant-velocity formula is claimed.
@@ -86,7 +86,7 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
             "LLM": extrapolated(rows, "LLM", merging),
         }
     both = coexistence(rows, first_hopf, merging) if along == "k" else None
-    near = near_ranges(deviations)
+    near = near_ranges(deviations, tables.formula_edges(rows))
     numbers: Numbers = {
         "k_merge": merging["value"] if merging and along == "k" else None,
         "special_points": [
@@ -104,8 +104,8 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
         ),
         "formula_within_5_percent": near,
         "formula_off_by": [
-            {along: value, "relative": off}
-            for value, off in deviations[:: max(1, len(deviations) // 12)]
+            {along: one.value, "relative": one.off}
+            for one in deviations[:: max(1, len(deviations) // 12)]
         ],
         "dry": dry_branch(rows),
         "turning": turned,
@@ -154,10 +154,22 @@ def _ends(rows: list[BranchRow], along: str) -> list[dict[str, object]]:
         if row["type"] == "none":
             found.append({"branch": row["part"], "way": None, "end": row["why"], along: None})
         else:
+            value = _limit(rows, row)
             found.append(
-                {"branch": row["part"], "way": row["way"], "end": row["type"], along: row["value"]}
+                {"branch": row["part"], "way": row["way"], "end": row["type"], along: value}
             )
     return found
+
+
+def _limit(rows: list[BranchRow], end: BranchEndRow) -> float:
+    """The value to which a branch goes: its last cycle is only near a merging or a Hopf point."""
+    limits: list[float] = []
+    if end["type"] == "merging":
+        part: Part = "dry" if end["part"] == "dry" else "merging"
+        limits = [row["value"] for row in tables.mergings(rows, part)]
+    elif end["type"] == "hopf":
+        limits = [row["value"] for row in tables.hopfs(rows)]
+    return min(limits, key=lambda limit: abs(limit - end["value"]), default=end["value"])
 
 
 def _accuracy(

@@ -175,6 +175,18 @@ class BranchEnd(TypedDict):
     period: float
 
 
+class FormulaEdge(TypedDict):
+    """A rotation whose mean speed the constant-velocity formula just misses by 5 %.
+
+    Attributes:
+        way: the direction in which the branch is followed.
+    """
+
+    way: Way
+    kind: Literal["edge"]
+    value: float
+
+
 class NoBranch(TypedDict):
     """A branch that does not exist.
 
@@ -264,7 +276,7 @@ class Turned(TypedDict):
     x2_rolling: float | None
 
 
-CycleMeasured = Cycle | CyclePoint | BranchEnd | NoBranch | SteppedCycle
+CycleMeasured = Cycle | CyclePoint | BranchEnd | FormulaEdge | NoBranch | SteppedCycle
 Measured = Rest | HopfPoint | MergingPoint | CycleMeasured | LinePoint | NeutralPoint | Turned
 
 

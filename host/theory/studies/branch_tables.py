@@ -10,6 +10,7 @@ from host.theory.studies.branch_rows import (
     Cycle,
     CyclePart,
     CyclePoint,
+    FormulaEdge,
     HopfPoint,
     LinePoint,
     MergingPoint,
@@ -21,6 +22,9 @@ from host.theory.studies.branch_rows import (
     Turned,
     Way,
 )
+
+# A multiplier this close to the unit circle is on it.
+_ON_CIRCLE = 1e-6
 
 
 class RestRow(BranchCell, Rest):
@@ -45,6 +49,10 @@ class CyclePointRow(BranchCell, CyclePoint):
 
 class BranchEndRow(BranchCell, BranchEnd):
     """A row of kind `end`."""
+
+
+class FormulaEdgeRow(BranchCell, FormulaEdge):
+    """A row of kind `edge`."""
 
 
 class NoBranchRow(BranchCell, NoBranch):
@@ -75,6 +83,7 @@ BranchRow = (
     | CycleRow
     | CyclePointRow
     | BranchEndRow
+    | FormulaEdgeRow
     | NoBranchRow
     | SteppedCycleRow
     | LineRow
@@ -113,6 +122,26 @@ def cycle_points(rows: Iterable[BranchRow]) -> list[CyclePointRow]:
 def folds(rows: Iterable[BranchRow], part: CyclePart) -> list[CyclePointRow]:
     """The folds of a part's branches."""
     return [row for row in cycle_points(rows) if row["part"] == part and row["type"] == "fold"]
+
+
+def formula_edges(rows: Iterable[BranchRow]) -> list[float]:
+    """The values at which the constant-velocity formula begins and ceases to fit, ascending."""
+    return sorted(row["value"] for row in rows if row["kind"] == "edge")
+
+
+def stable_of(rows: Iterable[BranchRow], part: CyclePart) -> list[CycleRow | CyclePointRow]:
+    """The stable cycles of a part, with the bifurcations at which their stretches end.
+
+    Ascending in value.
+    """
+    own = list(rows)
+    found: list[CycleRow | CyclePointRow] = [row for row in cycles_of(own, part) if row["stable"]]
+    found += [
+        row
+        for row in cycle_points(own)
+        if row["part"] == part and abs(complex(*row["reduced_multipliers"][0])) < 1 + _ON_CIRCLE
+    ]
+    return sorted(found, key=lambda row: row["value"])
 
 
 def cycles(rows: Iterable[BranchRow]) -> list[CycleRow]:

@@ -13,7 +13,13 @@ import numpy as np
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import ANGLES
-from host.theory.analysis.hopf import adaptive_friction, by_eigenvalues, estimate, hopf
+from host.theory.analysis.hopf import (
+    adaptive_friction,
+    bautin_tau_s,
+    by_eigenvalues,
+    estimate,
+    hopf,
+)
 from host.theory.model.wheel import Wheel, wheel_of
 from host.theory.studies.hopf_rows import (
     Bifurcation,
@@ -92,8 +98,10 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
     point, through, small = point_of(rows), line_of(rows), limit_of(rows)
     ratio = point["k_estimate"] / point["k_hopf"]
     slow = wheel.friction * wheel.tau_s / wheel.inertia
-    changes = [
-        row["tau"] for row, after in pairwise(through) if (row["l1"] < 0) != (after["l1"] < 0)
+    between = [
+        bautin_tau_s(wheel, row["tau"], after["tau"])
+        for row, after in pairwise(through)
+        if (row["l1"] < 0) != (after["l1"] < 0)
     ]
     off = abs(point["k_by_eigenvalues"] / point["k_hopf"] - 1)
     numbers: Numbers = {
@@ -102,7 +110,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
         "l1": point["l1"],
         "k_estimate": point["k_estimate"],
         "supercritical": point["l1"] < 0,
-        "l1_changes_sign_at_tau": changes,
+        "l1_changes_sign_at_tau": [tau_s for tau_s in between if tau_s is not None],
         "gamma_at_hopf": {
             f"{angle:.4f}": adaptive_friction(angle, wheel._replace(k=point["k_hopf"]))
             for angle in ANGLES[:2]

@@ -2,7 +2,7 @@
 
 The whole spectrum is measured at (k, tau). Along k and over the plane (k, tau), wheels from random
 states and wheels that roll are assigned to attractors, each with its largest exponent. Along k,
-the damping of a rolling wheel shows where rolling ends, and the lives of chaotic transients show
+the multipliers of the rotation show where rolling ends, and the lives of chaotic transients show
 where chaos begins.
 """
 
@@ -29,7 +29,6 @@ LINE_KS, LINE_WHEELS, LINE_BAND = 160, 8, 16
 PLANE, PLANE_BAND = 60, 4
 # The axes end here, or at BEYOND times the study's own point.
 MOST_K, MOST_TAU_S, BEYOND = 20.0, 1.5, 1.25
-ROLLING_KS = 64
 # Where lives are measured, relative to the least k with chaos.
 LIVES_AT = (-0.1, -0.07, -0.045, -0.025, -0.01, 0.0, 0.005, 0.01, 0.015, 0.02)
 # A wheel that changes faster (1/s) takes more than an hour.
@@ -82,7 +81,7 @@ def simulate(cell: LyapunovCell, setting: Setting) -> Measured:
         case "series":
             return pieces.series(wheel, rng)
         case "rolling":
-            return pieces.rolling(wheel, k_axis(options, ROLLING_KS))
+            return pieces.rolling(wheel, float(k_axis(options, LINE_KS)[-1]), rng)
         case "lives":
             most_k = float(k_axis(options, LINE_KS)[-1])
             return pieces.lives_near_chaos(wheel, cell["offset"], most_k, rng)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TypedDict
 
 from host.theory.analysis.attractors import Kind
-from host.theory.studies.lyapunov_rows import StartKind
+from host.theory.studies.lyapunov_rows import RollingEnd, StartKind
 
 
 class Spectrum(TypedDict):
@@ -95,22 +95,6 @@ class Plane(Disagreement):
 
     shares: dict[StartKind, dict[Kind, float]]
     start_decides: float
-
-
-class LastRolling(TypedDict):
-    """The rolling cycle with the greatest k: its dampings (1/s)."""
-
-    k: float
-    pair: float
-    exponent_2: float
-    exponent_3: float
-
-
-# `for` is a word of the language.
-RollingEnd = TypedDict(
-    "RollingEnd",
-    {"k": float, "k_off_by": float, "leaves_by": float, "for": Kind, "last": LastRolling},
-)
 
 
 class CrisisNumbers(TypedDict):

@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from host.theory.analysis.attractors import KINDS, ROLL, random_starts, settle, watch
-from host.theory.analysis.tangent import divergence, growth, pair_growth, smooth_mean
+from host.errors import NotDone
+from host.theory.analysis.attractors import KINDS, random_starts, settle, watch
+from host.theory.analysis.branches import last_stable, rotations
+from host.theory.analysis.cycles import ROTATION
+from host.theory.analysis.tangent import growth, pair_growth, smooth_mean
 from host.theory.analysis.transients import least_chaotic_k, lives
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel, numpy_rates
@@ -15,9 +18,9 @@ from host.theory.studies.lyapunov_rows import (
     ROLLS,
     Attractor,
     Block,
-    Damping,
     GridPoint,
     Life,
+    RollingEnd,
     SeriesSample,
     StartKind,
     StepCheck,
@@ -32,6 +35,9 @@ FINENESS = 0.6
 # longer than a chaotic wheel remembers.
 WHEELS, ALIGN_S, BLOCK_S = 64, 20.0, 100.0
 SERIES_S, SAMPLE_S = 300.0, 0.03
+# Rotations are followed from this part of the greatest k on; wheels show what comes after the last
+# stable one at this multiple of its k.
+LEAST_K, BEYOND_END = 1e-3, 1.02
 # Wheels whose lives are measured, and how long they are followed, s.
 LIVES_WHEELS, LIVES_S = 256, 2000.0
 CHECKED = 256
@@ -127,42 +133,32 @@ def from_both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -
     ]
 
 
-def rolling(wheel: Wheel, ks: Array) -> list[Damping]:
-    """The damping along k, (points,), and again close to the last k at which rolling lasts."""
-    rows = _damping(wheel, ks)
-    last = next((row["k"] for row in reversed(rows) if row["kind"] == KINDS[ROLL]), None)
-    if last is None:
-        return rows
-    step = ks[1] - ks[0]
-    near = np.linspace(max(step / 2, last - 2 * step), last + step, len(ks))
-    return [*rows, *_damping(wheel, near)]
+def rolling(wheel: Wheel, most_k: float, rng: np.random.Generator) -> list[RollingEnd]:
+    """Where the rotation loses its stability as k rises, and what wheels do a little above.
 
-
-def _damping(wheel: Wheel, ks: Array) -> list[Damping]:
-    """How fast disturbances of a rolling wheel die out.
-
-    Of a cycle's four exponents one is 0 and one is fast. The mean of the other two follows from the
-    fast one and the exact sum of all; if the two are a complex pair, it is far more accurate than
-    each of them.
+    No row if there is no rotation, or none that loses its stability.
     """
-    parameters = wheel.columns(len(ks), k=ks)
-    settled = settle(rolling_states(parameters), parameters, 2 * _settle_s(wheel.tau_s))
-    seen = watch(settled, parameters, WATCH_S)
-    exponents = smooth_mean(growth(seen.states, parameters, MEASURE_S, 4).rates)
-    pairs = (divergence(wheel) - exponents[3]) / 2
-    columns = (ks, seen.kinds(), seen.apart, pairs, exponents[1], exponents[2])
+    if wheel.a == 0.0:
+        return []
+    try:
+        found = last_stable(rotations(wheel, "k", LEAST_K * most_k, most_k))
+    except NotDone:
+        return []
+    if found is None:
+        return []
+    x1, x2, omega, quarter_s, k = found.point.unknowns.tolist()
+    above = wheel._replace(k=BEYOND_END * k).columns(WHEELS)
+    starts = np.array([x1, x2, 0.0, omega])[:, None] * (1 + 0.05 * rng.normal(size=(4, WHEELS)))
+    settled = settle(starts, above, 2 * _settle_s(wheel.tau_s), FINENESS)
+    kinds = watch(settled, above, WATCH_S, FINENESS).kinds()
     return [
         {
             "k": k,
-            "kind": KINDS[kind],
-            "apart": apart,
-            "pair": pair,
-            "exponent_2": second,
-            "exponent_3": third,
+            "k_off_by": found.off_by,
+            "type": found.type,
+            "omega_mean": ROTATION.turn / quarter_s,
+            "above": KINDS[int(np.bincount(kinds).argmax())],
         }
-        for k, kind, apart, pair, second, third in zip(
-            *(own.tolist() for own in columns), strict=True
-        )
     ]
 
 

@@ -20,10 +20,10 @@ from host.theory.studies.lyapunov_rows import (
     SeriesRow,
     StepCheckRow,
     blocks_of,
-    dampings_of,
     line_of,
     lives_of,
     plane_of,
+    rolling_end_of,
     series_of,
     step_checks,
 )
@@ -34,7 +34,7 @@ from host.theory.studies.route_to_chaos import (
     crisis_numbers,
     disagreement,
     lives_numbers,
-    rolling_end,
+    rolling_end_numbers,
     route,
     tally,
 )
@@ -55,7 +55,7 @@ def report(rows: list[LyapunovRow], setting: Setting) -> Findings:
     wheel = wheel_of(setting.options)
     point = spectrum(blocks_of(rows), wheel)
     series = of_series(series_of(rows))
-    rolls = rolling_end(dampings_of(rows))
+    rolls = rolling_end_numbers(rolling_end_of(rows))
     samples = [
         sample(k, np.array([row["life_s"] for row in own]), np.array([row["ended"] for row in own]))
         for k, own in lives_of(rows).items()

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Literal, TypedDict
 
 from host.theory.analysis.attractors import Kind
+from host.theory.analysis.bifurcations import BifurcationType
 
 # Wheels start in random states, or roll at constant velocity, a little disturbed.
 StartKind = Literal["any", "rolls"]
@@ -44,7 +45,7 @@ class GridCell(TypedDict):
 
 
 class RollingCell(TypedDict):
-    """How fast disturbances of a rolling wheel die out, along k."""
+    """Where rolling loses its stability, along k."""
 
     part: Literal["rolling"]
 
@@ -139,24 +140,22 @@ class GridPoint(Attractor):
     start: StartKind
 
 
-class Damping(TypedDict):
-    """How fast disturbances of a rolling wheel die out.
+class RollingEnd(TypedDict):
+    """The last stable rotation as k rises.
 
     Attributes:
         k: spring constant.
-        kind: what the wheel does in the end.
-        apart: difference between its two windows of time, relative to the motion (1).
-        pair: mean of the two exponents that are neither 0 nor the fast one (1/s).
-        exponent_2: second Lyapunov exponent (1/s).
-        exponent_3: third Lyapunov exponent (1/s).
+        k_off_by: relative difference of k if located with shorter steps.
+        type: of the bifurcation at which the rotation loses its stability.
+        omega_mean: mean speed there (rad/s).
+        above: what most wheels do a little above.
     """
 
     k: float
-    kind: Kind
-    apart: float
-    pair: float
-    exponent_2: float
-    exponent_3: float
+    k_off_by: float
+    type: BifurcationType
+    omega_mean: float
+    above: Kind
 
 
 class Life(TypedDict):
@@ -203,7 +202,7 @@ class GridRow(GridCell, GridPoint):
     """A row of parts `line` and `plane`."""
 
 
-class DampingRow(RollingCell, Damping):
+class RollingEndRow(RollingCell, RollingEnd):
     """A row of part `rolling`."""
 
 
@@ -216,12 +215,12 @@ class StepCheckRow(CheckCell, StepCheck):
 
 
 LyapunovCell = PointCell | SeriesCell | GridCell | RollingCell | LivesCell | CheckCell
-LyapunovRow = BlockRow | SeriesRow | GridRow | DampingRow | LifeRow | StepCheckRow
+LyapunovRow = BlockRow | SeriesRow | GridRow | RollingEndRow | LifeRow | StepCheckRow
 Measured = (
     list[Block]
     | list[SeriesSample]
     | list[GridPoint]
-    | list[Damping]
+    | list[RollingEnd]
     | list[Life]
     | list[StepCheck]
 )
@@ -247,9 +246,9 @@ def plane_of(rows: Iterable[LyapunovRow]) -> list[GridRow]:
     return [row for row in rows if row["part"] == "plane"]
 
 
-def dampings_of(rows: Iterable[LyapunovRow]) -> list[DampingRow]:
-    """The rows of part `rolling`."""
-    return [row for row in rows if row["part"] == "rolling"]
+def rolling_end_of(rows: Iterable[LyapunovRow]) -> RollingEndRow | None:
+    """The row of part `rolling`; None if rolling does not end."""
+    return next((row for row in rows if row["part"] == "rolling"), None)
 
 
 def lives_of(rows: Iterable[LyapunovRow]) -> dict[float, list[LifeRow]]:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from host.theory.analysis.attractors import BACK, CHAOS, KINDS, ROLL, Kind
+from host.theory.analysis.bifurcations import BifurcationType
 from host.theory.analysis.transients import Crisis, Sample
 from host.theory.studies.lyapunov_numbers import (
     AtK,
@@ -19,18 +20,17 @@ from host.theory.studies.lyapunov_numbers import (
     Line,
     Lives,
     Plane,
-    RollingEnd,
 )
-from host.theory.studies.lyapunov_rows import Attractor, DampingRow, GridRow, StartKind
+from host.theory.studies.lyapunov_rows import Attractor, GridRow, RollingEnd, StartKind
 
 # Exponents closer to 0 than this (1/s) count as 0 where the kind of an attractor is compared with
 # its exponent.
 NEAR_ZERO = 0.05
-# A rolling wheel has reached its cycle if its windows (see host.theory.analysis.attractors) agree
-# this well.
-REACHED = 1e-7
-# Points, the slowest dampings, of the curve that is extrapolated to 0.
-NEAREST = 12
+_BIFURCATION: dict[BifurcationType, str] = {
+    "neimark-sacker": "Neimark-Sacker point",
+    "fold": "fold",
+    "pitchfork": "pitchfork",
+}
 # Lives are taken for exponentially distributed unless their likeness is less.
 LIKELY = 0.01
 
@@ -106,36 +106,16 @@ def disagreement(rows: Sequence[Attractor]) -> Disagreement:
     }
 
 
-def rolling_end(rows: list[DampingRow]) -> RollingEnd | None:
-    """The k at which the cycle of a rolling wheel loses its stability.
-
-    There the damping of disturbances, extrapolated from below, is 0. leaves_by: the least k above
-    at which a wheel that rolled was found on another attractor. None if rolling does not end.
-    """
-    reached = [row for row in rows if row["kind"] == KINDS[ROLL] and row["apart"] < REACHED]
-    reached.sort(key=lambda row: row["k"])
-    if not reached:
+def rolling_end_numbers(row: RollingEnd | None) -> RollingEnd | None:
+    """Where rolling loses its stability as k rises, without the part's name."""
+    if row is None:
         return None
-    last = reached[-1]
-    near = [row for row in reached if row["k"] > last["k"] * 0.9][-NEAREST:]
-    left = [row for row in rows if row["k"] > last["k"] and row["kind"] != KINDS[ROLL]]
-    if len(near) < NEAREST or not left:
-        return None
-    ks, pairs = np.array([row["k"] for row in near]), np.array([row["pair"] for row in near])
-    # k as a polynomial of the damping: its value at 0 is the root.
-    parabola, cubic = (float(np.polyval(np.polyfit(pairs, ks, degree), 0.0)) for degree in (2, 3))
-    first = min(left, key=lambda row: row["k"])
     return {
-        "k": cubic,
-        "k_off_by": abs(cubic - parabola),
-        "leaves_by": first["k"],
-        "for": first["kind"],
-        "last": {
-            "k": last["k"],
-            "pair": last["pair"],
-            "exponent_2": last["exponent_2"],
-            "exponent_3": last["exponent_3"],
-        },
+        "k": row["k"],
+        "k_off_by": row["k_off_by"],
+        "type": row["type"],
+        "omega_mean": row["omega_mean"],
+        "above": row["above"],
     }
 
 
@@ -170,7 +150,7 @@ def route(
     Args:
         found: The crisis, if one was found.
         samples: The lives of chaotic transients.
-        rolls: Where rolling ends, as `rolling_end` returns it.
+        rolls: Where rolling loses its stability; None if it does not.
         most_s: How long wheels were followed, s.
 
     Returns:
@@ -195,9 +175,8 @@ def route(
         ]
     if rolls:
         words.append(
-            f"going up in k, rolling stays stable as far as k = {rolls['k']:.3f}, where a pair of"
-            f" exponents reaches 0 (Neimark-Sacker) and the wheel, by k = {rolls['leaves_by']:.3f},"
-            f" is {rolls['for']}: a jump with hysteresis"
+            f"going up in k, rolling stays stable as far as k = {rolls['k']:.8g}, a"
+            f" {_BIFURCATION[rolls['type']]}; a little above, the wheel is {rolls['above']}"
         )
     return holds, "; ".join(words)
 

@@ -282,9 +282,10 @@ class Flipping(Shooting):
 
 
 def test_a_multiplier_minus_one_of_the_reduced_map_is_a_pitchfork():
+    flipping = Flipping(PAPER, FORTH_AND_BACK)
     found = follow(
-        Flipping(PAPER, FORTH_AND_BACK),
-        np.ones(5),
+        flipping,
+        Curve(flipping, np.ones(5)),
         Point(np.array([1.0, 0.0, 1.0, 0.1, 0.5]), np.array([0.0, 0.0, 0.0, 0.0, 1.0])),
         0.1,
         20.0,

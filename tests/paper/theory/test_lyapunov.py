@@ -21,11 +21,11 @@ from host.theory.analysis.tangent import (
 )
 from host.theory.analysis.transients import crisis, lives, sample
 from host.theory.model.symbolic import jacobian_at
-from host.theory.model.turning import rolling_states
+from host.theory.model.turning import constant_velocity, rolling_states, turning
 from host.theory.model.wheel import PHI, Wheel, rates, resting
 from host.theory.studies import lyapunov as study
 from host.theory.studies import lyapunov_pieces as pieces
-from host.theory.studies.route_to_chaos import rolling_end
+from tests.paper.theory import independent
 
 RESTING, SWINGING, ROLLING, CHAOTIC = (
     Wheel(k=1.4),
@@ -187,28 +187,20 @@ def test_a_crisis_is_found_where_lives_have_no_bound():
     assert crisis(samples[:3]) is None
 
 
-def test_rolling_ends_where_its_damping_does():
-    rows = [
-        {
-            "k": k,
-            "kind": "rolling" if k < 5.2 else "chaotic",
-            "apart": 1e-9,
-            "pair": 0.1 * (k - 5.1),
-            "exponent_2": 0.0,
-            "exponent_3": 0.0,
-        }
-        for k in np.arange(4.0, 6.0, 0.02).tolist()
-    ]
-    found = rolling_end(rows)
-    assert found["k"] == pytest.approx(5.1, abs=1e-9)
-    assert found["leaves_by"] == pytest.approx(5.2, abs=0.021)
-    assert rolling_end([row for row in rows if row["k"] < 5.0]) is None
+@pytest.mark.parametrize("tau", [1.0, 0.6])
+def test_rolling_loses_its_stability_where_scipy_finds_a_multiplier_on_the_circle(tau):
+    (found,) = study.simulate({"part": "rolling"}, Setting(1, {**OPTIONS, "tau": tau}))
+    wheel = Wheel(k=found["k"], tau_s=tau)
+    begin = turning(np.zeros(1), np.array([constant_velocity(wheel)]), wheel)[:, 0]
+    state, quarter_s = independent.rotation(wheel, begin)
+    pair = independent.multipliers(state, quarter_s, wheel)[:2]
+    assert abs(pair) == pytest.approx(1.0, abs=1e-7)
+    assert (found["type"], found["above"]) == ("neimark-sacker", "chaotic")
+    assert found["omega_mean"] == pytest.approx(np.pi / 2 / quarter_s)
 
 
-def test_rolling_loses_its_stability_where_its_floquet_multipliers_say():
-    """By shooting, a complex pair of multipliers has the modulus 1 at k = 5.1680780."""
-    rows = study.simulate({"part": "rolling"}, Setting(1, OPTIONS))
-    assert rolling_end(rows)["k"] == pytest.approx(5.168078, abs=5e-5)
+def test_where_rolling_stays_stable_it_has_no_end():
+    assert study.simulate({"part": "rolling"}, Setting(1, {**OPTIONS, "tau": 0.25})) == []
 
 
 @pytest.mark.parametrize("wrong", [{"I": 1e-9}, {"tau": 1e-6}, {"f": 1e3}, {"f": 0.0}])
@@ -234,7 +226,6 @@ def small(monkeypatch):
             "LINE_WHEELS": 2,
             "LINE_BAND": 8,
             "PLANE": 4,
-            "ROLLING_KS": 8,
             "LIVES_AT": (0.0,),
         },
         pieces: {

@@ -1,0 +1,94 @@
+"""The model by other means: the right-hand side as the paper prints it, and scipy."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+
+
+def rates(y, wheel):
+    """Eq. dot_x_phi with the logistic function."""
+    x1, x2, phi, omega = y
+    a, tau, k, inertia, f, _ = wheel
+    first, second = (2.0 / (1.0 + np.exp(-a * x)) - 1.0 for x in (x1, x2))
+    sine, cosine = np.sin(phi), np.cos(phi)
+    return np.array(
+        [
+            (cosine - x1) / tau,
+            (sine - x2) / tau,
+            omega,
+            (k * first * sine - k * second * cosine - f * omega) / inertia,
+        ]
+    )
+
+
+def jacobian(y, wheel):
+    """The derivatives of the rates by the state."""
+    x1, x2, phi, _ = y
+    a, tau, k, inertia, f, _ = wheel
+    first, second = (2.0 / (1.0 + np.exp(-a * x)) - 1.0 for x in (x1, x2))
+    steep_1, steep_2 = (2.0 * a * np.exp(-a * x) / (1.0 + np.exp(-a * x)) ** 2 for x in (x1, x2))
+    sine, cosine = np.sin(phi), np.cos(phi)
+    by_phi = k * (first * cosine + second * sine)
+    return np.array(
+        [
+            [-1.0 / tau, 0.0, -sine / tau, 0.0],
+            [0.0, -1.0 / tau, cosine / tau, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            np.array([k * steep_1 * sine, -k * steep_2 * cosine, by_phi, -f]) / inertia,
+        ]
+    )
+
+
+def follow(y, wheel, seconds, events=None, rtol=1e-12):
+    """A wheel's course, as scipy solves it."""
+    return solve_ivp(
+        lambda _, y: rates(y, wheel),
+        (0.0, seconds),
+        y,
+        "DOP853",
+        events=events,
+        rtol=rtol,
+        atol=1e-13,
+    )
+
+
+def quarter_turn(y, wheel):
+    """The state a quarter turn later, seen from there, and the time that it takes."""
+
+    def turned(_, y):
+        return y[2] - np.pi / 2
+
+    turned.terminal = True
+    run = follow(y, wheel, 100.0, turned)
+    x1, x2, _, omega = run.y[:, -1]
+    return np.array([x2, -x1, 0.0, omega]), run.t[-1]
+
+
+def rotation(wheel, start):
+    """The rotation: its state at phi = 0, and the time of a quarter turn."""
+
+    def off(unknowns):
+        y = np.array([unknowns[0], unknowns[1], 0.0, unknowns[2]])
+        return (quarter_turn(y, wheel)[0] - y)[[0, 1, 3]]
+
+    x1, x2, omega = fsolve(off, np.array(start)[[0, 1, 3]], xtol=1e-12)
+    y = np.array([x1, x2, 0.0, omega])
+    return y, quarter_turn(y, wheel)[1]
+
+
+def multipliers(y, seconds, wheel):
+    """The multipliers of a quarter turn from y, the greatest modulus first."""
+
+    def both(_, z):
+        driven = jacobian(z[:4], wheel) @ z[4:].reshape(4, 4)
+        return np.concatenate([rates(z[:4], wheel), driven.ravel()])
+
+    begin = np.concatenate([y, np.eye(4).ravel()])
+    end = solve_ivp(both, (0.0, seconds), begin, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+    back = np.eye(4)
+    back[:2, :2] = [[0.0, 1.0], [-1.0, 0.0]]
+    found = np.linalg.eigvals(back @ end[4:].reshape(4, 4))
+    found = np.delete(found, np.argmin(abs(found - 1.0)))
+    return found[np.argsort(-abs(found))]
