@@ -9,7 +9,7 @@ In every control period, `step_wheel` takes a wheel from its angle phi to a torq
     M       = tanh(F_tan)                     with a bounded torque.
 
 Here (x_1_a, x_2_a) = (cos phi, sin phi), and a kick may change what the neurons see of it
-(robot/kicks.py).
+(robot/kicks.py). A robot may take the x_i_a of F_i from a moment earlier, see `lagging_angle`.
 
 Equations have their labels in Sandor et al., Front. Neurorobot. 12:40 (2018). This is the only
 place where they stand. Every function is pure, takes and returns floats, uses nothing but `math`,
@@ -32,6 +32,27 @@ def actual_positions(phi):
         The actual positions of both rods, 1.
     """
     return cos(phi), sin(phi)
+
+
+def lagging_angle(phi, phi_before, dt_s, lag_s):
+    """The wheel's angle some milliseconds before its latest reading. Not in the paper.
+
+    A program that reads the sensor anew in each formula computes F_i from older positions than
+    F_tan. With two rods, F_tan then has -k sin(omega lag) in addition, against the motion: a fast
+    wheel leaves the saturation of tanh. A line through two readings stands in for a reading of its
+    own: the tick need not wait for it, and a log holds all that a replay needs. The two differ by
+    at most the angular acceleration times lag (dt - lag) / 2, for an EV3 motor about 1 degree.
+
+    Args:
+        phi: The latest reading, rad.
+        phi_before: The reading before it, rad.
+        dt_s: The time between both, s.
+        lag_s: How much earlier, s. More than dt_s counts as dt_s.
+
+    Returns:
+        The angle, rad.
+    """
+    return phi - (phi - phi_before) * min(1.0, lag_s / dt_s)
 
 
 def target_position(x, a):
@@ -102,7 +123,7 @@ def motor_torque(force):
     return tanh(force)
 
 
-def step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods):
+def step_wheel(x1, x2, actual_1, actual_2, rod_1, rod_2, seen_1, seen_2, dt_s, a, tau_s, k, rods):
     """One tick of one wheel, with an Euler step of the neurons.
 
     The neurons step first, on the positions that they see, and the rods act on the new potentials.
@@ -113,6 +134,8 @@ def step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, ro
         x2: Second membrane potential, 1.
         actual_1: The first rod's actual position, 1.
         actual_2: The second rod's actual position, 1.
+        rod_1: The first rod's position in its force; the same without a lag of the rods.
+        rod_2: The second rod's position in its force.
         seen_1: What the first neuron sees of it; the same without a kick.
         seen_2: What the second neuron sees of it.
         dt_s: The time step, s.
@@ -126,7 +149,7 @@ def step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, ro
     """
     x1 += dt_s * membrane_rate(x1, seen_1, tau_s)
     x2 += dt_s * membrane_rate(x2, seen_2, tau_s)
-    force_1 = rod_force(target_position(x1, a), actual_1, k)
-    force_2 = rod_force(target_position(x2, a), actual_2, k) if rods == 2 else 0.0
+    force_1 = rod_force(target_position(x1, a), rod_1, k)
+    force_2 = rod_force(target_position(x2, a), rod_2, k) if rods == 2 else 0.0
     force = tangential_force(force_1, force_2, actual_1, actual_2)
     return x1, x2, force, motor_torque(force)

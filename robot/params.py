@@ -27,6 +27,15 @@ _ROWS = (
     _number("a", "1", 0.1, 50.0, 4.0, "gain of the neurons; the slope of their sigmoid is a/4"),
     _number("tau_s", "s", 0.03, 10.0, 0.25, "time constant of the membrane potentials"),
     _number("k", "1", 0.0, 100.0, 8.0, "spring constant of the simulated rods"),
+    _number(
+        "rod_lag_s",
+        "s",
+        0.0,
+        0.02,
+        0.0,
+        "how much older the rods' positions in the forces F_i are than the angle in F_tan; at most"
+        " one tick_s; 0 in the paper's equations",
+    ),
     _number("tick_s", "s", 0.01, 0.1, 0.03, "control period; tau_s must be at least three of them"),
     _number("max_duty_pct", "%", 0.0, 100.0, 85.0, "duty cycle at torque M = 1"),
     _choice(
@@ -164,6 +173,25 @@ def check_step(tick_s, tau_s):
         )
 
 
+def check_lag(rod_lag_s, tick_s):
+    """Check that the rods' older angle lies between the latest two readings.
+
+    Args:
+        rod_lag_s: How much older it is than the latest, s.
+        tick_s: The control period, s.
+
+    Raises:
+        Refused: The lag is longer than a control period.
+    """
+    if rod_lag_s > tick_s:
+        raise Refused(
+            "range",
+            "rod_lag_s {:g} s is longer than a tick of {:g} s".format(rod_lag_s, tick_s),
+            "the robot remembers the angle of one tick before: take a shorter rod_lag_s or a longer"
+            " tick_s",
+        )
+
+
 class Params(object):
     """The values in force. Each parameter is an attribute."""
 
@@ -202,7 +230,9 @@ class Params(object):
                     "{} cannot change while the robot runs".format(name),
                     "stop the robot first",
                 )
-        check_step(checked.get("tick_s", self.tick_s), checked.get("tau_s", self.tau_s))
+        tick_s = checked.get("tick_s", self.tick_s)
+        check_step(tick_s, checked.get("tau_s", self.tau_s))
+        check_lag(checked.get("rod_lag_s", self.rod_lag_s), tick_s)
         return checked
 
     def apply(self, checked):

@@ -2,7 +2,7 @@
 
 from collections import namedtuple
 
-from robot.controller import actual_positions, step_wheel
+from robot.controller import actual_positions, lagging_angle, step_wheel
 from robot.kicks import WHEELS, apply_kick, direction, seen_positions
 
 
@@ -14,18 +14,20 @@ class Wheel(object):
 
     Attributes:
         phi: The wheel's angle at the beginning of a tick, rad. Set by the caller who reads it.
+        phi_before: The angle of the tick before, rad, if the wheel was under control; else None.
         x1: First membrane potential, 1.
         x2: Second membrane potential, 1.
         force: F_tan of the latest tick, 1.
         torque: M of the latest tick, in (-1, 1).
     """
 
-    __slots__ = ("index", "side", "phi", "x1", "x2", "force", "torque")
+    __slots__ = ("index", "side", "phi", "phi_before", "x1", "x2", "force", "torque")
 
     def __init__(self, side):
         self.index = WHEELS.index(side)
         self.side = side
         self.phi = self.x1 = self.x2 = self.force = self.torque = 0.0
+        self.phi_before = None
 
     def step(self, tick, dt_s, params, kick):
         """Advance by one tick.
@@ -41,7 +43,11 @@ class Wheel(object):
             The torque M, in (-1, 1).
         """
         a, tau_s, k = params.a, params.tau_s, params.k
-        actual_1, actual_2 = seen_1, seen_2 = actual_positions(self.phi)
+        actual_1, actual_2 = rod_1, rod_2 = seen_1, seen_2 = actual_positions(self.phi)
+        if params.rod_lag_s and self.phi_before is not None:
+            rod_1, rod_2 = actual_positions(
+                lagging_angle(self.phi, self.phi_before, dt_s, params.rod_lag_s)
+            )
         if kick is not None and self.side in kick.wheels:
             numbers = kick.numbers(self.index)
             self.x1, self.x2, a, tau_s, k, beta, shift_rad = apply_kick(
@@ -49,13 +55,27 @@ class Wheel(object):
             )
             seen_1, seen_2 = seen_positions(self.phi, beta, shift_rad)
         self.x1, self.x2, self.force, self.torque = step_wheel(
-            self.x1, self.x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, params.rods
+            self.x1,
+            self.x2,
+            actual_1,
+            actual_2,
+            rod_1,
+            rod_2,
+            seen_1,
+            seen_2,
+            dt_s,
+            a,
+            tau_s,
+            k,
+            params.rods,
         )
+        self.phi_before = self.phi
         return self.torque
 
     def rest(self):
         """A tick without control: the potentials stay, no force acts."""
         self.force = self.torque = 0.0
+        self.phi_before = None
 
 
 class Side(namedtuple("Side", "wheel motor travel")):

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot import kicks
-from robot.controller import actual_positions, step_wheel
+from robot.controller import actual_positions, lagging_angle, step_wheel
 from robot.kicks import DIRECTION_TICKS, NO_ACTION, NO_KICK, Kick
 from robot.loop import clamp_step
 from robot.params import Params
@@ -24,18 +24,15 @@ from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
 from sim_motor.motor import ANGLE, LAST_ANGLE
 from sim_motor.settling import settling_s
 
-_actual_positions, _step_wheel, _limit_duty = (
-    compiled(actual_positions),
-    compiled(step_wheel),
-    compiled(limit_duty),
-)
+_actual_positions, _lagging_angle = compiled(actual_positions), compiled(lagging_angle)
+_step_wheel, _limit_duty = compiled(step_wheel), compiled(limit_duty)
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 _settling_s = compiled(settling_s)
 _apply_kick, _seen_positions = compiled(kicks.apply_kick), compiled(kicks.seen_positions)
 _clamp_step = compiled(clamp_step)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
-ParamNumbers = tuple[float, float, float, int, float, float, float]
+ParamNumbers = tuple[float, float, float, int, float, float, float, float]
 KickNumbers = tuple[int, int, int, int, bool, float]
 PHASE_SHIFT = nan  # as a kick's value: the shift that reverses this wheel
 
@@ -48,7 +45,8 @@ class Start:
         states: As in sim_motor.motor, (wheels, 6).
         potentials: Membrane potentials, (wheels, 2).
         duties: The duty cycles in force, %, (wheels,), of wheels that run already; None for wheels
-            at rest. A kick may begin at once where wheels run already.
+            at rest. A kick may begin at once where wheels run already. Their first tick has no
+            rod_lag_s, as there is no reading before it.
     """
 
     states: Array
@@ -197,6 +195,7 @@ def run(
             params.tau_s,
             params.k,
             params.rods,
+            params.rod_lag_s,
             params.duty_scale,
             params.max_duty_pct,
             params.tick_s,
@@ -243,7 +242,7 @@ def _run_wheel(
     Its angle (rad) in each tick goes into `phis`, and its CHANNELS into `record` unless that is
     empty.
     """
-    a_set, tau_set, k_set, rods, duty_scale, max_duty_pct, tick_s = params
+    a_set, tau_set, k_set, rods, rod_lag_s, duty_scale, max_duty_pct, tick_s = params
     action, begin, ticks, pulse, smooth, value = kick
     latency_s, counts = hardware
     state = (start[0], start[1], start[2], start[3], start[4], start[5])
@@ -263,10 +262,12 @@ def _run_wheel(
         x1, x2, a, tau_s, k, beta, shift_rad = _apply_kick(
             (action, begin, ticks, pulse, smooth, value), tick, x1, x2, a_set, tau_set, k_set
         )
-        actual_1, actual_2 = _actual_positions(phi)
+        actual_1, actual_2 = rod_1, rod_2 = _actual_positions(phi)
+        if tick and rod_lag_s > 0.0:
+            rod_1, rod_2 = _actual_positions(_lagging_angle(phi, phis[tick - 1], dt_s, rod_lag_s))
         seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
         x1, x2, force, torque = _step_wheel(
-            x1, x2, actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, rods
+            x1, x2, actual_1, actual_2, rod_1, rod_2, seen_1, seen_2, dt_s, a, tau_s, k, rods
         )
         next_duty = _limit_duty(duty_scale * torque, max_duty_pct)
         turn = substep_from(now + latency_s)

@@ -144,6 +144,7 @@ def eventful():
         {"a": 5.5, "tau_s": 0.31},
         {"rods": 1},
         {"rods": 2, "max_duty_pct": 47.5},
+        {"rod_lag_s": 0.0125},
         {"tick_s": 0.04},
     ):
         loop.set_params(changes)

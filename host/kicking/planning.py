@@ -43,7 +43,7 @@ _TURNS, _LEAST_STEP_RAD = 4, 0.01
 # How many plans are kept.
 _KEPT = 200
 # The parameters that the map depends on.
-_MAPPED = ("a", "tau_s", "k", "rods", "max_duty_pct", "tick_s")
+_MAPPED = ("a", "tau_s", "k", "rods", "rod_lag_s", "max_duty_pct", "tick_s")
 
 KickName = tuple[str, int, int]
 

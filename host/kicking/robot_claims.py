@@ -17,7 +17,8 @@ from robot.params import TABLE
 
 # The parameters of the paper's robot, for which its claims are made.
 PAPER = {
-    name: TABLE[name].default for name in ("a", "tau_s", "k", "tick_s", "rods", "max_duty_pct")
+    name: TABLE[name].default
+    for name in ("a", "tau_s", "k", "tick_s", "rods", "rod_lag_s", "max_duty_pct")
 }
 # The LEGO wheel of 56 mm; 0.35 m/s at 2 turns a second give 27.9 mm.
 WHEEL_RADIUS_M = 0.028

@@ -108,6 +108,7 @@ class _Controller:
         self._kick = Kick(**self._snapshot.kick) if self._snapshot.kick else None
         if event["event"] == "start":
             for wheel, potentials in zip(self.wheels, event["x"], strict=True):
+                wheel.rest()
                 wheel.x1, wheel.x2 = potentials
 
     def step(self, record: Record) -> None:

@@ -71,7 +71,19 @@ def drive(
         )
         seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
         x1[i], x2[i], force, _ = _step_wheel(
-            x1[i], x2[i], actual_1, actual_2, seen_1, seen_2, dt_s, a, tau_s, k, 1
+            x1[i],
+            x2[i],
+            actual_1,
+            actual_2,
+            actual_1,
+            actual_2,
+            seen_1,
+            seen_2,
+            dt_s,
+            a,
+            tau_s,
+            k,
+            1,
         )
         ctrl[i] = radius_m[i] * force
         finite = finite and isfinite(x1[i] + x2[i]) and isfinite(ctrl[i])

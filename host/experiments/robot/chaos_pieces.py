@@ -213,9 +213,9 @@ def model_run(moment: float, friction: float, remembered: float, *, bounded: boo
     x1, x2, angle, omega = cos(remembered), sin(remembered), 0.0, 0.0
     angles = []
     for _ in range(round(MODEL_S / MODEL_STEP_S)):
-        seen_1, seen_2 = actual_positions(angle)
+        at_1, at_2 = actual_positions(angle)
         x1, x2, force, torque = step_wheel(
-            x1, x2, seen_1, seen_2, seen_1, seen_2, MODEL_STEP_S, a, TAU_S, K, 2
+            x1, x2, at_1, at_2, at_1, at_2, at_1, at_2, MODEL_STEP_S, a, TAU_S, K, 2
         )
         drive = torque if bounded else force
         omega += MODEL_STEP_S * acceleration(drive, omega, moment, friction, 0.0)

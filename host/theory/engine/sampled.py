@@ -126,10 +126,12 @@ def tick(
     actual_1, actual_2 = actual_positions(phi)
     seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
     new_1, new_2, force, _ = step_wheel(
-        x1, x2, actual_1, actual_2, seen_1, seen_2, tick_s, a, tau_s, k, 2
+        x1, x2, actual_1, actual_2, actual_1, actual_2, seen_1, seen_2, tick_s, a, tau_s, k, 2
     )
     if not fresh:
-        force = step_wheel(x1, x2, actual_1, actual_2, seen_1, seen_2, 0.0, a, tau_s, k, 2)[2]
+        force = step_wheel(
+            x1, x2, actual_1, actual_2, actual_1, actual_2, seen_1, seen_2, 0.0, a, tau_s, k, 2
+        )[2]
     for (ahead, pushed, kept, gained), acting in ((late, held), (then, force)):
         phi, omega = phi + ahead * omega + pushed * acting, kept * omega + gained * acting
     return new_1, new_2, phi, omega, force

@@ -194,7 +194,7 @@ def test_a_kick_that_altered_the_projection_too_would_never_reverse(rolling):
         for _ in range(5):
             minus = [-position for position in actual_positions(phi)]
             x1, x2, force, _ = step_wheel(
-                x1, x2, *minus, *minus, TICK_S, WHEEL.a, WHEEL.tau_s, WHEEL.k, 2
+                x1, x2, *minus, *minus, *minus, TICK_S, WHEEL.a, WHEEL.tau_s, WHEEL.k, 2
             )
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
         kicked[:, number] = x1, x2, phi, omega, 0.0

@@ -31,7 +31,7 @@ def near(expected):
 def step(x1, x2, phi, dt_s=0.03, a=4.0, tau_s=0.25, k=8.0, rods=2):
     """A tick of a wheel whose neurons see its true angle."""
     return controller.step_wheel(
-        x1, x2, *2 * controller.actual_positions(phi), dt_s, a, tau_s, k, rods
+        x1, x2, *3 * controller.actual_positions(phi), dt_s, a, tau_s, k, rods
     )
 
 
@@ -105,12 +105,32 @@ def test_what_the_neurons_see_does_not_reach_the_projection():
     """With dt -> 0 the neurons do not move, and then nothing they see may change the force."""
     forces = {
         controller.step_wheel(
-            0.3, -0.6, cos(0.7), sin(0.7), seen_1, seen_2, 0.0, 4.0, 0.25, 8.0, 2
+            0.3, -0.6, *2 * (cos(0.7), sin(0.7)), seen_1, seen_2, 0.0, 4.0, 0.25, 8.0, 2
         )[2]
         for seen_1 in (-1.0, 0.2, 1.0)
         for seen_2 in (-0.8, 0.9)
     }
     assert len(forces) == 1
+
+
+def test_an_older_angle_lies_on_the_line_through_two_readings():
+    assert controller.lagging_angle(3.0, 2.0, 0.04, 0.01) == near(2.75)
+    assert controller.lagging_angle(-3.0, -2.0, 0.04, 0.03) == near(-2.25)
+    assert controller.lagging_angle(3.0, 2.0, 0.04, 0.04) == 2.0
+    assert controller.lagging_angle(3.0, 2.0, 0.004, 0.01) == 2.0
+
+
+@given(potentials, potentials, angles, st.floats(-0.5, 0.5), st.floats(0.0, 20.0))
+def test_older_rods_add_a_force_against_the_motion(x1, x2, phi, behind, k):
+    """F_tan has -k sin(phi - older) in addition, whatever the neurons do."""
+    actual = controller.actual_positions(phi)
+    rods = controller.actual_positions(phi - behind)
+    fresh, lagging = (
+        controller.step_wheel(x1, x2, *actual, *positions, *actual, 0.03, 4.0, 0.25, k, 2)
+        for positions in (actual, rods)
+    )
+    assert lagging[:2] == fresh[:2]
+    assert lagging[2] - fresh[2] == pytest.approx(-k * sin(behind), abs=1e-12)
 
 
 @given(potentials, potentials, angles, steps)

@@ -114,8 +114,8 @@ def test_a_tick_reads_steps_limits_writes_and_records_in_this_order():
     (x1, x2), (right_1, right_2) = rig.events[0]["x"]
     rig.run(1)
     record = rig.last
-    left = step_wheel(x1, x2, *2 * (cos(0.4), sin(0.4)), PERIOD, 4.0, 0.25, 8.0, 2)
-    right = step_wheel(right_1, right_2, *2 * (cos(1.9), sin(1.9)), PERIOD, 4.0, 0.25, 8.0, 2)
+    left = step_wheel(x1, x2, *3 * (cos(0.4), sin(0.4)), PERIOD, 4.0, 0.25, 8.0, 2)
+    right = step_wheel(right_1, right_2, *3 * (cos(1.9), sin(1.9)), PERIOD, 4.0, 0.25, 8.0, 2)
     assert (record.left_x1, record.left_x2, record.left_force, record.left_torque) == left
     assert (record.right_x1, record.right_x2, record.right_force, record.right_torque) == right
     assert (

@@ -127,3 +127,19 @@ def test_no_euler_step_can_overshoot():
         with pytest.raises(Refused):
             params.check(wanted)
     assert params.check({"tick_s": 0.1, "tau_s": 0.31}) == {"tick_s": 0.1, "tau_s": 0.31}
+
+
+def test_the_rods_are_at_most_a_tick_behind():
+    params = Params()
+    assert params.rod_lag_s == 0.0
+    for wanted in (
+        {"rod_lag_s": 0.021},
+        {"rod_lag_s": -0.001},
+        {"rod_lag_s": 0.02, "tick_s": 0.015},
+    ):
+        with pytest.raises(Refused):
+            params.check(wanted)
+    params.apply(params.check({"rod_lag_s": 0.02}))
+    with pytest.raises(Refused, match="longer than a tick"):
+        params.check({"tick_s": 0.01})
+    assert params.check({"tick_s": 0.01, "rod_lag_s": 0.01})

@@ -37,7 +37,7 @@ def stepped(kick, tick=5, side="left", phi=PHI, dt_s=DT):
 
 def expected(x1=0.4, x2=-0.3, seen=PHI, sign=1.0, a=4.0, tau_s=0.25, k=8.0):
     return step_wheel(
-        x1, x2, cos(PHI), sin(PHI), sign * cos(seen), sign * sin(seen), DT, a, tau_s, k, 2
+        x1, x2, *2 * (cos(PHI), sin(PHI)), sign * cos(seen), sign * sin(seen), DT, a, tau_s, k, 2
     )
 
 
@@ -95,8 +95,8 @@ def test_the_neurons_step_before_they_act():
     """The force belongs to the potentials of the same record: of x after the step, not before."""
     one = wheel()
     one.step(0, DT, Params(), None)
-    after = step_wheel(one.x1, one.x2, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
-    before = step_wheel(0.4, -0.3, cos(PHI), sin(PHI), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
+    after = step_wheel(one.x1, one.x2, *2 * (cos(PHI), sin(PHI)), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
+    before = step_wheel(0.4, -0.3, *2 * (cos(PHI), sin(PHI)), 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)
     assert (one.force, one.torque) == after[2:]
     assert one.force != before[2]
 
@@ -151,3 +151,35 @@ def test_a_resting_wheel_keeps_its_potentials():
     potentials = one.x1, one.x2
     one.rest()
     assert (one.x1, one.x2, one.force, one.torque) == (*potentials, 0.0, 0.0)
+
+
+def test_rods_lag_behind_a_wheel_that_was_under_control_in_the_tick_before():
+    """In its first tick, also the first after a rest, there is no angle to lag behind."""
+    params = Params()
+    params.apply(params.check({"rod_lag_s": 0.01}))
+    one, fresh = wheel(), wheel()
+    for rests in (False, True):
+        one.step(0, DT, params, None)
+        fresh.step(0, DT, Params(), None)
+        assert (one.x1, one.x2, one.force) == (fresh.x1, fresh.x2, fresh.force)
+        one.phi += 0.3
+        fresh.phi += 0.3
+        one.step(1, DT, params, None)
+        fresh.step(1, DT, Params(), None)
+        assert (one.x1, one.x2) == (fresh.x1, fresh.x2)
+        assert one.force - fresh.force == pytest.approx(-params.k * sin(0.1), abs=1e-12)
+        if not rests:
+            one.rest()
+
+
+@pytest.mark.parametrize("kick", [None, make("position")])
+def test_a_kick_leaves_lagging_rods_alone(kick):
+    params = Params()
+    params.apply(params.check({"rod_lag_s": 0.01}))
+    one = wheel()
+    one.step(4, DT, params, None)
+    one.phi = PHI + 0.3
+    one.step(5, DT, params, kick)
+    actual, rods = (cos(PHI + 0.3), sin(PHI + 0.3)), (cos(PHI + 0.2), sin(PHI + 0.2))
+    pull = step_wheel(one.x1, one.x2, *actual, *rods, 0.0, 0.0, 0.0, 4.0, 0.25, 8.0, 2)[2]
+    assert one.force == pytest.approx(pull, abs=1e-12)
