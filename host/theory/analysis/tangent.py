@@ -11,9 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from host.errors import WrongUse
 from host.theory.analysis.attractors import settle
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, advance, rate_per_s
+from host.theory.engine.sliding import DRY
 from host.theory.model.symbolic import jacobian_at, rates_of_vector
 from host.theory.model.wheel import Array, Wheel
 from sim_motor.mathematics import with_mathematics
@@ -94,8 +96,13 @@ def growth(
         The rates, and what is needed to go on.
 
     Raises:
-        WrongUse: Wheels are too stiff to be followed.
+        WrongUse: Wheels are too stiff to be followed, or have dry friction.
     """
+    if parameters[DRY].any():
+        raise WrongUse(
+            "the tangent vectors of a wheel with dry friction jump whenever it stops",
+            "leave dry friction out, or use pair_growth",
+        )
     wheels, rounds = states.shape[1], _intervals(parameters, seconds, count)
     if vectors is None:
         vectors = np.linalg.qr(np.random.default_rng(0).normal(size=(wheels, 4, count)))[0]

@@ -37,6 +37,11 @@ def trajectory(state: Array, wheel: Wheel, seconds: float, fineness: float = FIN
         WrongUse: The wheel is too stiff to be followed.
     """
     samples = round(seconds / SAMPLE_S)
+    if wheel.dry_friction:
+        states = [np.array(state, dtype=np.float64)[:, None]]
+        while len(states) <= samples:
+            states.append(advance(states[-1], wheel.columns(1), SAMPLE_S, fineness))
+        return np.hstack(states).T
     each = -(-steps_for(seconds, wheel, fineness) // samples)
     found: Array = run(
         plain, np.array(state)[:, None], tuple(wheel), samples * SAMPLE_S, samples * each

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from host.theory.engine import adams, runge_kutta
+from host.theory.engine import adams, runge_kutta, sliding
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 from sim_motor.compiled import parallel_jit, prange
@@ -163,7 +163,9 @@ def advance(
 def _advanced(
     method: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any
 ) -> Array:
-    """The same by any method, `runge_kutta` or `adams`."""
+    """The same by any method, `runge_kutta` or `adams`; with dry friction always by `sliding`."""
+    if parameters[sliding.DRY].any():
+        method = sliding
     rate = rate_per_s(parameters)
     order = np.argsort(rate, kind="stable")
     needed = np.ceil(seconds * fineness * rate[order])

@@ -19,6 +19,7 @@ import robot.wheel
 from host.errors import WrongUse
 from host.theory.engine.elementary import MATHEMATICS, inlined
 from host.theory.engine.ensemble import Averages
+from host.theory.engine.sliding import DRY
 from host.theory.model.wheel import PHI, Array, Wheel
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS, Kick, seen_positions
@@ -234,6 +235,10 @@ def overshoots(a: Any, tau_s: Any, clock: Clock) -> Any:
 def _advanced(
     states: Array, parameters: Array, clock: Clock, ticks: int, seen: Seen
 ) -> tuple[Array, Array]:
+    if parameters[DRY].any():
+        raise WrongUse(
+            "a wheel that steps by ticks has no dry friction", "follow it without ticks, or without"
+        )
     wild = np.flatnonzero(overshoots(parameters[0], parameters[1], clock))
     if len(wild):
         raise WrongUse(

@@ -46,8 +46,8 @@ def rates(
 ) -> tuple[Any, Any, Any, Any]:
     """(dx1/dt, dx2/dt, dphi/dt, domega/dt) of a wheel. Eq. dot_x_phi.
 
-    dry_friction: torque with which a threshold of the motor holds against a wheel that rolls
-    forward; 0 in the paper's equations. The arguments are floats, or what the functions take in
+    dry_friction: torque of dry friction on a wheel that rolls forward, negative for one that rolls
+    backward; 0 in the paper's equations. The arguments are floats, or what the functions take in
     another mathematics (sim_motor.mathematics).
     """
     actual_1, actual_2 = actual_positions(phi)
@@ -99,7 +99,9 @@ def acceleration(force: Any, omega: Any, inertia: Any, friction: Any, dry_fricti
 class Wheel(NamedTuple):
     """The constants of a wheel, in the order in which `rates` takes them.
 
-    The defaults are the paper's, where it gives any.
+    The defaults are the paper's, where it gives any. Dry friction opposes motion in either
+    direction and holds a wheel at rest (host.theory.engine.sliding). What follows cycles takes the
+    smooth equations of a wheel that rolls forward.
     """
 
     a: float = 4.0
