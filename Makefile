@@ -41,9 +41,9 @@ test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 o
 	@$(PYTHON35) -c 'import sys; sys.exit(sys.version_info < (3, 5))' 2>/dev/null || { \
 		echo "make test-py35: '$(PYTHON35)' is no Python 3.5 or newer. Name one:\
 	 make test-py35 PYTHON35=/path/to/python3.5" >&2; exit 1; }
-	@$(PYTHON35) -c 'import hypothesis, pytest' 2>/dev/null || { \
-		echo "make test-py35: '$(PYTHON35)' has no pytest or no hypothesis. The last for 3.5:\
-	 $(PYTHON35) -m pip install pytest==6.1.2 hypothesis==5.33.2" >&2; exit 1; }
+	@$(PYTHON35) -c 'import ev3dev2, hypothesis, pytest, serial' 2>/dev/null || { \
+		echo "make test-py35: '$(PYTHON35)' lacks one of these, here the last for 3.5: $(PYTHON35)\
+	 -m pip install pytest==6.1.2 hypothesis==5.33.2 pyserial python-ev3dev2" >&2; exit 1; }
 	$(PYTHON35) -m pytest -c /dev/null --rootdir=. --import-mode=importlib -p no:cacheprovider \
 		-W error -q $$($(BIN)/python -m tests.lint.sources)
 

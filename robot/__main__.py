@@ -128,7 +128,7 @@ def _drive_brick(options):
         speaker.silence()
 
     try:
-        watchdog = Watchdog(lambda: stop_all(options.sysfs), alarm)
+        watchdog = Watchdog(lambda: stop_all(options.sysfs), alarm, lights.forget)
     except OSError as error:
         return _give_up(_NO_WATCHDOG.format(error.strerror))
     motors = (
@@ -147,7 +147,8 @@ def _drive_brick(options):
     except OSError as error:
         say("the battery cannot be watched: {}".format(error), sys.stderr)
         battery = None
-    panels = (watchdog, lights, speaker, BackButton(), Notify(os.environ))
+    button = BackButton(lambda text: say(text, sys.stderr))
+    panels = (watchdog, lights, speaker, button, Notify(os.environ))
     try:
         return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels)
     finally:

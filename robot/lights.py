@@ -50,8 +50,15 @@ class Lights(object):
             self._show(look)
 
     def alarm(self):
-        """Show red: the program is dead or hangs, and the watchdog has stopped the motors."""
+        """Show red: the program is dead or hangs, and the watchdog has stopped the motors.
+
+        The watchdog calls this in its own process.
+        """
         self._show((RED, RED))
+
+    def forget(self):
+        """Show the state anew with the next `serve`: the watchdog may have shown red meanwhile."""
+        self._look = None
 
     def close(self):
         """Switch both off, and close their files: no program runs."""

@@ -39,6 +39,13 @@ def _warn(text):
     say(text, sys.stderr)
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose help can be printed in every locale, whatever a path in it is."""
+
+    def print_help(self, file=None):
+        say(self.format_help().rstrip(), file or sys.stdout)
+
+
 def parser(description, host):
     """The parser of the arguments that every robot program has.
 
@@ -49,7 +56,7 @@ def parser(description, host):
     Returns:
         An argparse.ArgumentParser, to which a program may add its own arguments.
     """
-    arguments = argparse.ArgumentParser(description=description)
+    arguments = _Parser(description=description)
     arguments.add_argument(
         "--host", default=host, help="address to listen on (default %(default)s)"
     )

@@ -29,6 +29,8 @@ DEAF_S = 60.0
 SWEEP_S = 0.5
 # For how long nobody is heard while others have their turns, unless one turn takes longer.
 HEAR_S = 0.001
+# For how long all are heard although the next tick is due, unless one takes longer.
+HEARING_S = 0.005
 # When a host that found no place may come again.
 RETRY_S = 60
 LINE_RETRY_S = 1.0
@@ -156,18 +158,28 @@ class Server(object):
         more = True
         while more:
             # Everybody is heard again and again, so that a stop is obeyed before the next tick.
-            accepted = self._hear()
+            accepted = self._hear(until)
             more = self._work(until) or (accepted and clock.now() <= until)
         left_s = until - clock.now()
         if timeout_s > 0.0 and left_s > 0.0:
             # An epoll object waits for whole milliseconds only.
             select.select((self._poll.fileno(),), (), (), left_s)
 
-    def _hear(self):
-        """Read what has come, and obey a stop. Returns whether there was a new connection."""
-        now = self._loop.clock.now()
+    def _hear(self, until):
+        """Read what has come, and obey a stop. Returns whether there was a new connection.
+
+        If there is more to read than time, those who have waited longest come first.
+        """
+        clock = self._loop.clock
+        now = clock.now()
+        until = max(until, now + HEARING_S)
         accepted = False
-        for fd, mask in self._poll.poll(0):
+        ready = self._poll.poll(0)
+        if len(ready) > 1:
+            ready.sort(key=self._heard)
+        for fd, mask in ready:
+            if clock.now() > until:
+                break
             peer = self._by_fd.get(fd)
             if peer is None:
                 peer = self._accept()
@@ -185,6 +197,11 @@ class Server(object):
             if line.peer is not None:
                 self._skip_noise(line.peer, now)
         return accepted
+
+    def _heard(self, event):
+        """When the link of an event of the poll was heard last (s); new ones come first."""
+        peer = self._by_fd.get(event[0])
+        return -1.0 if peer is None else peer.heard
 
     def _obey_stop(self, peer, now):
         """Obey a stop at once. One that changes nothing waits for its turn, as all else.

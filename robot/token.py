@@ -42,10 +42,12 @@ def load(path):
         TokenError: The file is missing, others may read it, or it holds no token.
     """
     _require_place(path)
-    if os.path.exists(path) and not (os.path.isfile(path) or stat.S_ISFIFO(os.stat(path).st_mode)):
-        raise TokenError("{} is no file that could hold a token".format(path))
     try:
-        with open(path, "r") as file:
+        if os.path.exists(path) and not (
+            os.path.isfile(path) or stat.S_ISFIFO(os.stat(path).st_mode)
+        ):
+            raise TokenError("{} is no file that could hold a token".format(path))
+        with open(path, "r", encoding="ascii") as file:
             mode = os.fstat(file.fileno()).st_mode
             text = file.read(4 * TOKEN_BYTES)
     except (OSError, ValueError) as error:
@@ -85,7 +87,7 @@ def load_or_make(path):
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
         return load(path), False
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise TokenError("the token file {} cannot be made: {}".format(path, error)) from error
     try:
         with os.fdopen(handle, "w") as file:

@@ -24,8 +24,15 @@ def cache_folder():
 
 
 def _folder(variable, name):
-    # Without a home folder expanduser leaves "~", and a folder of that name must not appear.
-    place = os.path.expanduser(os.environ.get(variable) or "")
+    # Without a home folder "~" stays, and a folder of that name must not appear.
+    place = _expand(os.environ.get(variable) or "")
     if not os.path.isabs(place):
-        place = os.path.join(os.path.expanduser("~"), name)
+        place = os.path.join(_expand("~"), name)
     return os.path.join(place, "kickctl") if os.path.isabs(place) else ""
+
+
+def _expand(path):
+    try:
+        return os.path.expanduser(path)
+    except KeyError:  # Python 3.5 says so of a user that the system does not know
+        return path

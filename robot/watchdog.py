@@ -76,7 +76,7 @@ def _write(motor, name, text):
 
 
 def _read(motor, name):
-    with open(os.path.join(motor, name)) as file:
+    with open(os.path.join(motor, name), encoding="ascii") as file:
         return file.read()
 
 
@@ -135,12 +135,14 @@ class Watchdog(object):
         stop: Stops every motor, in the watchdog's process. It returns a list with a line for each
             motor that could not be stopped.
         alarm: Called in the watchdog's process when it has stopped the motors on its own account.
+        woken: Called in this process when it learns of that, as it runs again.
 
     Attributes:
         pid: The watchdog's process id.
     """
 
-    def __init__(self, stop, alarm):
+    def __init__(self, stop, alarm, woken=lambda: None):
+        self._woken = woken
         self._link, other = socket.socketpair()
         self._fed_tick = None
         self._unanswered = 0
@@ -170,6 +172,8 @@ class Watchdog(object):
             loop.fail(loop.incurable)
         else:
             loop.incurable = ""
+            if silent:
+                self._woken()
             if silent and loop.safety.state == RUNNING:
                 loop.fail(
                     "the loop was silent for {:g} s or longer, and the watchdog stepped in and"
@@ -255,7 +259,8 @@ def _be_watchdog(link, stop_motors, alarm):
         words = "watchdog: {}; {}\n".format(
             reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped"
         )
-        if reason and said[-1:] != [words]:
+        # Motors that do not obey are told every AGAIN_S, and need no line for each time.
+        if reason and not (failed and said == [words]):
             said[:] = [words]
             alarm()
             _say(words)

@@ -62,6 +62,7 @@ REAL_TIME = (
     "tests/web/test_baton.py",
     "tests/web/test_page.py",
     "tests/web/test_stop.py",
+    "tests/unit/robot/test_program.py",
     "tests/unit/robot/test_watchdog.py",
 )
 

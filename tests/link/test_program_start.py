@@ -13,8 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from robot import program, token
-from tests.rig import Rig
+from robot import token
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE_S = 20.0
@@ -93,52 +92,3 @@ def test_a_full_card_does_not_keep_the_robot_from_starting(host):
                     time.sleep(0.05)
         finally:
             process.kill()
-
-
-class Server:
-    """Counts how often the hosts could hear the robot."""
-
-    def __init__(self):
-        self.served = 0
-
-    def serve(self, timeout_s):
-        self.served += 1
-
-
-@pytest.mark.parametrize("where", ["read", "stop", "serve"])
-def test_a_programming_error_stops_the_motors_and_names_itself(where):
-    """Also one in what stops a motor, or in what serves the hosts."""
-    rig, server = Rig(), Server()
-    rig.loop.start()
-
-    def broken(*arguments):
-        raise TypeError("the dog ate it")
-
-    if where == "read":
-        rig.motors[0].angle_rad = broken
-    elif where == "stop":
-        rig.motors[0].angle_rad = rig.motors[0].stop = broken
-    with pytest.raises(TypeError, match="the dog ate it"):
-        program._run(rig.loop, server, broken if where == "serve" else server.serve)
-    assert "the dog ate it" in rig.loop.safety.reason
-    assert rig.motors[1].done[-1] == "stop"
-    assert server.served == {"read": 2, "stop": 2, "serve": 1}[where]
-
-
-def test_a_line_is_printed_if_it_can_be():
-    class Latin:
-        encoding = "ascii"
-
-        def __init__(self):
-            self.text = ""
-
-        def write(self, text):
-            self.text += text.encode("ascii").decode("ascii")
-
-        def flush(self):
-            raise OSError(28, "No space left on device")
-
-    stream = Latin()
-    program.say("stopped by Zo\u00eb", stream)
-    assert stream.text == "stopped by Zo\\xeb\n"
-    program.say("nobody hears it", None)

@@ -10,9 +10,9 @@ import pytest
 
 from host.errors import NoLink
 from robot import blackbox, wire
-from robot.peer import FULL_BYTES, STREAM_BYTES
+from robot.peer import FULL_BYTES, STREAM_BYTES, Peer
 from robot.record import STATES
-from robot.server import DEAF_S, PLACES, SPARE_PLACES, STRANGERS, STREAMS_PER_TICK
+from robot.server import DEAF_S, HEARING_S, PLACES, SPARE_PLACES, STRANGERS, STREAMS_PER_TICK
 from robot.session import Session
 from tests.link.desk import FRAME, STOP, Desk, open_files
 from tests.rig import BusyClock
@@ -200,6 +200,43 @@ def test_what_others_ask_for_makes_no_tick_late_if_it_fits_between_two(slow_desk
     assert [record.missed for record in records if record.missed] == []
     assert max(record.late_s for record in records) <= late_s + 1e-6
     assert sum(peer.seated for peer in desk.server._peers) >= 10
+
+
+@pytest.fixture
+def slow_reader(monkeypatch):
+    """A robot that takes 10 ms for each link that it reads."""
+    desk = Desk(BusyClock(), capacity=2000)
+    real = Peer.read
+
+    def costly(peer, now):
+        desk.clock.time += 0.01
+        return real(peer, now)
+
+    monkeypatch.setattr(Peer, "read", costly)
+    desk.loop.start()
+    yield desk
+    desk.close()
+
+
+def test_noise_of_many_at_once_delays_a_tick_for_a_bounded_time_and_all_are_heard(slow_reader):
+    """Else they could silence the loop for longer than its watchdog bears."""
+    desk = slow_reader
+    links = [socket.create_connection(desk.address) for _ in range(40)]
+    desk.run(50)
+    first = desk.loop.blackbox.next_tick
+    heard = set()
+    frame = wire.encode(wire.ASK, bytes(1000))
+    for place in range(60):  # byte by byte: there is always something to read, and nothing to do
+        for link in links:
+            link.send(frame[place : place + 1])
+        desk.run()
+        heard |= {peer.fd for peer in desk.server._peers if peer.heard > first * 0.03}
+    # This clock serves once more when the next tick is due.
+    late_s = max(record.late_s for record in desk.records_from(first))
+    assert late_s <= 2 * HEARING_S + 0.01 + 1e-6
+    assert len(heard) == len(links)
+    for link in links:
+        link.close()
 
 
 def test_who_controls_has_a_turn_in_every_pause_and_all_others_have_theirs(slow_desk):

@@ -61,6 +61,17 @@ def test_the_lights_are_written_only_when_the_state_changes(rig, sysfs):
     assert shown(sysfs)[0] == 7
 
 
+def test_lights_that_the_watchdog_has_made_red_show_the_state_again(rig, sysfs):
+    lights = Lights(str(sysfs))
+    lights.serve(rig.loop)
+    idle = shown(sysfs)
+    Lights(str(sysfs)).alarm()  # as in the watchdog's process
+    assert shown(sysfs) == [255, 0, 255, 0]
+    lights.forget()
+    lights.serve(rig.loop)
+    assert shown(sysfs) == idle
+
+
 def test_a_brick_without_lights_does_without(rig, tmp_path):
     lights = Lights(str(tmp_path))
     lights.serve(rig.loop)
@@ -100,8 +111,8 @@ def test_no_file_is_opened_while_lights_are_served(rig, sysfs, monkeypatch):
 def hearing(tmp_path):
     """A speaker, and a function that says which events it has got since, as (type, code, value)."""
     path = tmp_path / "speaker"
-    os.mkfifo(path)
-    end = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    os.mkfifo(str(path))
+    end = os.open(str(path), os.O_RDONLY | os.O_NONBLOCK)
 
     def heard():
         try:
@@ -169,15 +180,15 @@ def test_nobody_can_make_a_robot_beep_without_a_break(rig):
 def device(tmp_path):
     """What a button is to a program: a file to read events from."""
     path = tmp_path / "event0"
-    os.mkfifo(path)
+    os.mkfifo(str(path))
     return path
 
 
 @pytest.fixture
 def pressing(device):
     """The button, and a function that sends it events as (type, code, value)."""
-    button = BackButton(str(device))
-    end = os.open(device, os.O_WRONLY)
+    button = BackButton(pytest.fail, str(device))
+    end = os.open(str(device), os.O_WRONLY)
     yield (
         button,
         lambda *events: os.write(end, b"".join(EVENT.pack(1, 2, *event) for event in events)),
@@ -212,7 +223,34 @@ def test_an_event_is_as_long_as_this_machines_kernel_has_it():
     assert EVENT.size == 2 * (8 if os.sys.maxsize > 2**32 else 4) + 8
 
 
-def test_a_brick_without_that_button_does_without(rig, tmp_path):
-    button = BackButton(str(tmp_path / "none"))
+def test_a_button_that_cannot_be_read_says_that_it_does_not_stop_the_robot(rig, tmp_path):
+    words = []
+    button = BackButton(words.append, str(tmp_path / "none"))
     button.serve(rig.loop)
     button.close()
+    assert len(words) == 1
+    assert "the brick's back button does not stop the motors" in words[0]
+
+
+def test_a_button_that_breaks_says_so_once(rig, tmp_path):
+    words = []
+    button = BackButton(words.append, str(tmp_path))  # a folder opens, but cannot be read
+    rig.loop.start()
+    for _ in range(3):
+        button.serve(rig.loop)
+    assert ["Is a directory" in line for line in words] == [True]
+
+
+def test_the_brick_s_menu_gets_no_button_while_the_robot_runs(rig, pressing, monkeypatch):
+    button, press = pressing
+    grabs = []
+    monkeypatch.setattr("robot.button.fcntl.ioctl", lambda file, what, arg: grabs.append(arg))
+    button.serve(rig.loop)
+    assert grabs == []
+    rig.loop.start()
+    button.serve(rig.loop)
+    button.serve(rig.loop)
+    assert grabs == [1]
+    press((KEY, BACK, PRESSED))
+    button.serve(rig.loop)
+    assert grabs == [1, 0]

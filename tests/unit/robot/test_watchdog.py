@@ -18,7 +18,9 @@ import pytest
 import robot
 from robot import watchdog as watchdog_module
 from robot.motors import MotorFault
+from robot.record import STATES
 from robot.watchdog import MOST_UNANSWERED, SILENCE_S, Watchdog, stop_all, watch
+from tests.rig import Rig
 
 PATIENCE_S = 20.0
 
@@ -70,6 +72,7 @@ def alive(pid):
 
 _LOOP = """
 import os, signal, sys, time
+from robot.record import STATES
 from robot.watchdog import Watchdog, stop_all
 dog = Watchdog(lambda: stop_all(sys.argv[1]), lambda: None)
 print(dog.pid, flush=True)
@@ -147,6 +150,31 @@ def test_a_loop_that_froze_and_came_back_finds_itself_stopped_and_can_go_on(tree
             assert select.select([dog._link], (), (), PATIENCE_S)[0]  # a busy machine needs time
             dog.feed()
     dog.close()
+
+
+def test_the_alarm_is_given_each_time_and_the_loop_learns_of_it_although_it_stands(tree):
+    """Its lights are red then, and nobody else would make them show its state again."""
+    reader, writer = os.pipe()
+    woken = []
+    dog = Watchdog(
+        lambda: stop_all(str(tree)), lambda: os.write(writer, b"!"), lambda: woken.append("woken")
+    )
+    loop = Rig().loop
+
+    def noticed():
+        loop.tick()
+        dog.serve(loop)
+        return bool(woken)
+
+    for _ in range(2):
+        noticed()
+        assert os.read(reader, 1) == b"!"
+        assert eventually(noticed)
+        woken.clear()
+    assert STATES[loop.safety.state] == "idle"
+    dog.close()
+    os.close(reader)
+    os.close(writer)
 
 
 def test_a_program_that_takes_long_to_start_is_not_taken_for_dead(tree):

@@ -1,0 +1,82 @@
+"""The table of commands, from the robot's side alone: this runs on the brick's Python too."""
+
+import pytest
+
+from robot import commands, wire
+from robot.errors import Refused
+from robot.session import Session
+from tests.rig import TOKEN, Rig
+
+TABLES = ("params", "channels", "commands")
+
+
+@pytest.fixture
+def session():
+    session = Session(Rig().loop, TOKEN, "boot")
+    session.client, session.name = "1", "anna"
+    return session
+
+
+def execute(session, do, sealed=True, **arguments):
+    return commands.execute(session._loop, session, dict(arguments, id=1, do=do), sealed)
+
+
+def refusal(session, do, **arguments):
+    with pytest.raises(Refused) as error:
+        execute(session, do, **arguments)
+    return error.value
+
+
+def test_every_command_of_the_table_is_there_and_its_answer_fits_into_a_frame(session):
+    execute(session, "lease")
+    arguments = {
+        "describe": {"table": "params"},
+        "kick": {"kick": {"id": "1", "mode": "phase"}},
+        "set": {"set": {"k": 7.0}},
+    }
+    # In an order in which each may be done.
+    order = ["start", "kick", "stop", "set", "clear"]
+    for name in order + sorted(set(commands.TABLE) - set(order)):
+        if name == "clear":
+            session._loop.fail("the test")
+        result = execute(session, name, **arguments.get(name, {}))
+        assert len(wire.encode_json(wire.REPLY, {"id": 1, "result": result}))
+    for table in TABLES:
+        assert wire.encode_json(wire.REPLY, execute(session, "describe", table=table))
+
+
+@pytest.mark.parametrize("name", sorted(commands.TABLE))
+def test_what_moves_the_robot_or_changes_it_needs_the_token(session, name):
+    row = commands.TABLE[name]
+    if row.sealed:
+        assert refusal(session, name, sealed=False).code == "token"
+    elif name == "describe":
+        assert execute(session, name, sealed=False, table="params")
+    else:
+        execute(session, name, sealed=False)
+
+
+@pytest.mark.parametrize(
+    ("do", "arguments", "code"),
+    [
+        ("dance", {}, "unknown"),
+        (["status"], {}, "unknown"),
+        ("status", {"now": 1}, "usage"),
+        ("describe", {"table": "\U0001f9be"}, "usage"),
+        ("subscribe", {"from": 10**12}, "range"),
+        ("subscribe", {"from": True}, "range"),
+        ("lease", {"take_over": "\ud800"}, "usage"),
+        ("kick", {"kick": 1}, "lease"),
+        ("start", {}, "lease"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_in_words(session, do, arguments, code):
+    refused = refusal(session, do, **arguments)
+    assert refused.code == code
+    assert refused.message
+    assert refused.hint
+
+
+def test_a_kick_needs_a_request(session):
+    execute(session, "lease")
+    assert refusal(session, "kick", kick=1).code == "usage"
