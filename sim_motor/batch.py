@@ -129,8 +129,8 @@ def run(
         params: The robot's parameters; the defaults if None.
         kick: A kick that acts on all wheels, with its value for the left wheel, or None. A pulse
             of the shift with the value PHASE_SHIFT gets for each wheel the sign that reverses it.
-        motors: Wheel number i has motors[i % len(motors)]; the default motor if None. Battery and
-            latency are those of the first.
+        motors: Wheel number i has motors[i % len(motors)]; the default motor if None. Battery,
+            latency and encoder are those of the first.
         battery_v: Open-circuit voltage, V; one for all or (wheels,).
         start: Where the wheels begin; random if None.
         times: When ticks begin, s, (1 or wheels, ticks); random if None.
@@ -204,7 +204,8 @@ def run(
         tables(motors),
         np.stack([motor.scalars() for motor in motors]),
         np.ascontiguousarray(volts),
-        (latency_s, motors[0].encoder_counts),
+        (latency_s, motors[0].encoder_counts, motors[0].dither),
+        np.array([motor.dither_seed for motor in motors]),
         result.before,
         result.after,
         result.settled_s,
@@ -234,7 +235,8 @@ def _run_wheel(
     table: Array,
     scalars: Array,
     battery_v: float,
-    hardware: tuple[float, float],
+    hardware: tuple[float, float, float],
+    dither_seed: int,
     record: Array,
 ) -> None:
     """Run one wheel.
@@ -244,7 +246,7 @@ def _run_wheel(
     """
     a_set, tau_set, k_set, rods, rod_lag_s, duty_scale, max_duty_pct, tick_s = params
     action, begin, ticks, pulse, smooth, value = kick
-    latency_s, counts = hardware
+    latency_s, counts, dither = hardware
     state = (start[0], start[1], start[2], start[3], start[4], start[5])
     substep = 0
     turn, next_duty = 0, duty  # the duty that was written last, and the substep from which it acts
@@ -254,7 +256,8 @@ def _run_wheel(
         state = advance(turn - substep, duty, battery_v, 0.0, *state, table, scalars)
         state = advance(present - turn, next_duty, battery_v, 0.0, *state, table, scalars)
         substep, duty = present, next_duty
-        phi = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts) * pi / 180
+        position = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts, dither, dither_seed)
+        phi = position * pi / 180
         phis[tick] = phi
         dt_s = _clamp_step(now - times[tick - 1], tick_s) if tick else tick_s
         if tick == begin and isnan(value):
@@ -287,7 +290,8 @@ def _run_all(
     tables: Array,
     scalars: Array,
     volts: Array,
-    hardware: tuple[float, float],
+    hardware: tuple[float, float, float],
+    dither_seeds: NDArray[np.int64],
     before: NDArray[np.int64],
     after: NDArray[np.int64],
     settled_s: Array,
@@ -315,6 +319,7 @@ def _run_all(
             scalars[variant],
             volts[wheel],
             hardware,
+            dither_seeds[variant] + wheel // len(tables),
             record,
         )
         after[wheel] = _direction(_travel(phis, ticks - 1))

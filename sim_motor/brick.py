@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, pi, radians
+from math import degrees, isfinite, pi, radians
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sim_motor.world import World
 
 HIGHEST_BATTERY_V = 10.0  # six fresh AA cells
+HIGHEST_DITHER_DEG = 5.0
 
 
 class SimBattery(Battery):
@@ -45,6 +46,7 @@ class SimBrick:
         battery_v: Open-circuit voltage, V; nominal by default.
         mount: For each motor, -1 if it is mounted mirrored, else 1.
         jitter: Whether the default clock is late as the brick is.
+        dither_deg: Standard deviation of an encoder's reading, degrees; the motor's own if None.
         scene: Two walls. The robot faces one, as exactly as a person places it. Without a scene it
             has the floor for itself, and its tyres never slip.
     """
@@ -58,6 +60,7 @@ class SimBrick:
         battery_v: float | None = None,
         mount: tuple[int, int] = (1, 1),
         jitter: bool = True,
+        dither_deg: float | None = None,
         scene: Scene | None = None,
     ) -> None:
         random = Random(f"brick {seed}")
@@ -68,11 +71,20 @@ class SimBrick:
         self.clock: Clock = VirtualClock(seed, jitter=jitter) if clock is None else clock
         self.seed = seed
 
+        errors = Random(f"encoders {seed}")
+        dither = degrees(published.dither) if dither_deg is None else dither_deg
+        if not 0.0 <= dither <= HIGHEST_DITHER_DEG:
+            raise ValueError(
+                f"an encoder cannot dither by {dither!r} degrees: give a number from 0 to"
+                f" {HIGHEST_DITHER_DEG:g}"
+            )
+
         def specimen(name: str, side: int) -> SimMotor:
             spread, half = published.spread, published.backlash / 2
             constants = published.varied(
                 random.uniform(1 - spread, 1 + spread), random.uniform(1 - spread, 1 + spread)
             )
+            constants = constants.with_dither(dither, errors.getrandbits(32))
             constants = constants if scene is None else alone(constants)
             angle, gap = random.uniform(0, 2 * pi), random.uniform(-half, half)
             if scene is not None:

@@ -56,12 +56,23 @@ class Constants:
     battery_v: float
     latency_s: float
     encoder_counts: float
+    dither: float  # of the encoder, rad
     wheel_radius: float
     spread: float
+    dither_seed: int = 0
 
     def with_wheel(self, inertia: float) -> "Constants":
         """With a wheel of this moment of inertia (kg m2), and nothing else to carry."""
         return replace(self, wheel_inertia=inertia)
+
+    def with_dither(self, dither_deg: float, seed: int = 0) -> "Constants":
+        """With an encoder whose samples have random errors.
+
+        Args:
+            dither_deg: Their standard deviation, degrees.
+            seed: Their random seed. In a batch, wheels that share a motor count up from it.
+        """
+        return replace(self, dither=dither_deg * pi / 180, dither_seed=seed)
 
     def varied(self, strength: float, friction: float) -> "Constants":
         """Another specimen: torque and friction by these factors.
@@ -225,6 +236,7 @@ def load(name: str = "pybricks") -> Constants:
         battery_v=values["battery_voltage"],
         latency_s=values["latency"],
         encoder_counts=values["encoder_counts"],
+        dither=values["encoder_dither"] * pi / 180,
         wheel_radius=values["wheel_radius"],
         spread=values["spread"],
     )

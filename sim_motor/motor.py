@@ -15,7 +15,7 @@ They run as they stand here, and compiled (sim_motor.compiled_motor), with the s
 """
 
 from collections.abc import Mapping, Sequence
-from math import copysign, floor, pi
+from math import copysign, floor, pi, sqrt
 
 from sim_motor.constants import COAST, SUBSTEP_S, SUBSTEPS_PER_S, Array
 
@@ -45,12 +45,51 @@ def substep_from(time_s: float) -> int:
     return -floor(1e-6 - time_s * SUBSTEPS_PER_S)
 
 
-def encoder(substep: int, angle: float, last_angle: float, counts: float) -> int:
+def _mixed(number: int) -> int:
+    """32 bits that look random, from 32 bits: multiplications and shifts, as in MurmurHash3."""
+    number = ((number ^ number >> 16) * 0x85EBCA6B) & 0xFFFFFFFF
+    number = ((number ^ number >> 13) * 0xC2B2AE35) & 0xFFFFFFFF
+    return number ^ number >> 16
+
+
+def _deviate(sample: int, seed: int) -> float:
+    """A nearly normal random number (mean 0, deviation 1) that belongs to a sample.
+
+    A generator's state would depend on who looks how often; this does not. It is the sum of four
+    uniform numbers.
+    """
+    first = _mixed(sample & 0xFFFFFFFF ^ _mixed(seed & 0xFFFFFFFF))
+    second = _mixed(first)
+    parts = (first & 0xFFFF) + (first >> 16) + (second & 0xFFFF) + (second >> 16)
+    return (parts / 65536 + 2.0 / 65536 - 2.0) * sqrt(3.0)
+
+
+def encoder(
+    substep: int,
+    angle: float,
+    last_angle: float,
+    counts: float,
+    dither: float = 0.0,
+    seed: int = 0,
+) -> int:
     """The tacho position in degrees that the kernel reports.
 
     It is half of the latest sample's counts, rounded towards zero as in C.
+
+    Args:
+        substep: Now.
+        angle: The motor's angle, rad.
+        last_angle: Its angle one substep ago, rad.
+        counts: Of the encoder in a turn.
+        dither: Standard deviation of the random error of a sample, rad.
+        seed: Random seed of these errors.
+
+    Returns:
+        The position, degrees.
     """
     sampled = angle if substep % SAMPLE_SUBSTEPS == 0 else last_angle
+    if dither > 0.0:
+        sampled += dither * _deviate(substep // SAMPLE_SUBSTEPS, seed)
     raw = floor(sampled * counts / (2 * pi))
     return raw // 2 if raw >= 0 else -(-raw // 2)
 

@@ -19,6 +19,7 @@ _MAY_BE_ZERO = {
     "rolling_resistance",
     "backlash",
     "latency",
+    "encoder_dither",
     "source_resistance",
     "spread",
 }

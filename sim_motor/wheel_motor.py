@@ -90,7 +90,6 @@ class SimMotor(Motor):
         rows = {(side, duty): table[side, duty].tolist() for side, duty in np.ndindex(2, COAST + 1)}
         self._plain = rows, scalars.tolist()
         self._began = monotonic()
-        self._counts = constants.encoder_counts
         self._latency_s = constants.latency_s
         self._substep = 0
         self._duty = 0
@@ -99,11 +98,12 @@ class SimMotor(Motor):
 
     def angle_rad(self) -> float:
         self._catch_up()
-        return (
-            encoder(self._substep, self.state[ANGLE], self.state[LAST_ANGLE], self._counts)
-            * pi
-            / 180
+        angle, last_angle, *_ = self.state.tolist()
+        own = self.constants
+        position = encoder(
+            self._substep, angle, last_angle, own.encoder_counts, own.dither, own.dither_seed
         )
+        return position * pi / 180
 
     def write_duty(self, duty_pct: int) -> None:
         if (

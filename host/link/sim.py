@@ -27,7 +27,7 @@ from sim_motor.scene import Scene
 
 _READ_BYTES = 65536
 _SCENE = tuple(field.name for field in fields(Scene))
-_OPTIONS = ("seed", "idle", "motor", "battery", *_SCENE)
+_OPTIONS = ("seed", "idle", "motor", "battery", "dither", *_SCENE)
 _THEY_ARE = f"its options are {', '.join(_OPTIONS)}, and the robot's parameters: {', '.join(TABLE)}"
 
 
@@ -68,8 +68,8 @@ class SimLink:
 
         Args:
             uri: The whole address, for messages.
-            options: seed, idle=1, motor=NAME, battery=V, the fields of sim_motor.scene.Scene, and
-                the robot's parameters.
+            options: seed, idle=1, motor=NAME, battery=V, dither=DEGREES, the fields of
+                sim_motor.scene.Scene, and the robot's parameters.
             seed: Overrides the seed among the options.
 
         Raises:
@@ -98,7 +98,11 @@ class SimLink:
             )
             battery_v = _number(options, "battery") if "battery" in options else None
             brick = SimBrick(
-                seed, motor=options.get("motor", "pybricks"), battery_v=battery_v, scene=scene
+                seed,
+                motor=options.get("motor", "pybricks"),
+                battery_v=battery_v,
+                dither_deg=_number(options, "dither") if "dither" in options else None,
+                scene=scene,
             )
         except (ValueError, KeyError) as error:
             raise WrongUse(

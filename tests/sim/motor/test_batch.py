@@ -84,7 +84,7 @@ def run_batch(brick, start, records, kick, changes):
             {"k": 2.0, "rods": 1, "max_duty_pct": 100.0, "duty_scale": 0.8},
             "nxt_unroller",
         ),
-        (3, {"rod_lag_s": 0.0075}, "pybricks"),
+        (3, {"rod_lag_s": 0.0075}, load().with_dither(0.2)),
     ],
 )
 def test_a_wheel_in_a_batch_equals_the_robots_loop(request_, seed, changes, motor):

@@ -240,10 +240,14 @@ def test_a_fuller_battery_runs_faster():
         {"battery_v": 84.0},
         {"motor": "none"},
         {"mount": (1, 2)},
+        {"dither_deg": -0.1},
+        {"dither_deg": nan},
     ],
 )
 def test_a_brick_that_cannot_be_is_refused(wrong):
-    with pytest.raises(ValueError, match=r"give more than|there is no motor|mount is 1 or -1"):
+    with pytest.raises(
+        ValueError, match=r"give more than|there is no motor|mount is 1 or -1|cannot dither"
+    ):
         SimBrick(1, **wrong)
 
 
@@ -254,6 +258,23 @@ def test_a_load_is_a_finite_number(torque):
 
 
 # Seeds.
+
+
+def test_encoders_dither_only_if_they_are_asked_to_and_each_on_its_own():
+    def readings(**options):
+        brick = SimBrick(3, clock=HandClock(), **options)
+        for motor in brick.motors:
+            motor.state[:2] = 1.0
+        return [
+            [at(brick, sample / 500).motors[side].angle_rad() for sample in range(100)]
+            for side in (0, 1)
+        ]
+
+    still, still_too = readings()
+    assert len({*still, *still_too}) == 1
+    left, right = readings(dither_deg=1.0)
+    assert len(set(left)) > 2
+    assert left != right
 
 
 def test_the_two_motors_differ_a_little():

@@ -40,13 +40,19 @@ def test_every_motion_is_the_same_in_plain_python(robot, turns):
         assert plain.tolist() == state.tolist()
 
 
-@given(time_s=st.floats(0.0, 1e5), angle=st.floats(-1e4, 1e4), step=st.floats(0.0, 0.1))
-def test_every_reading_is_the_same_in_plain_python(time_s, angle, step):
+@given(
+    time_s=st.floats(0.0, 1e5),
+    angle=st.floats(-1e4, 1e4),
+    step=st.floats(0.0, 0.1),
+    dither=st.floats(0.0, 1.0),
+    seed=st.integers(0, 2**33),
+)
+def test_every_reading_is_the_same_in_plain_python(time_s, angle, step, dither, seed):
     substep = motor.substep_at(time_s)
     assert substep == compiled_motor.substep_at(time_s)
     assert motor.substep_from(time_s) == compiled_motor.substep_from(time_s)
-    reading = motor.encoder(substep, angle, angle - step, 720.0)
-    assert reading == compiled_motor.encoder(substep, angle, angle - step, 720.0)
+    arguments = substep, angle, angle - step, 720.0, dither, seed
+    assert motor.encoder(*arguments) == compiled_motor.encoder(*arguments)
 
 
 def test_a_change_to_compiled_code_on_the_way_changes_nothing(monkeypatch):

@@ -43,6 +43,36 @@ def test_the_encoder_is_sampled_every_other_millisecond():
     assert encoder(9, radians(50.1), radians(40.1), 720.0) == 40
 
 
+def read_many(dither_deg, seed, angle_deg=100.5, samples=4000):
+    """Readings of a wheel that stands still, one for each sample."""
+    return [
+        encoder(SAMPLE_SUBSTEPS * sample, radians(angle_deg), 0.0, 720.0, radians(dither_deg), seed)
+        for sample in range(samples)
+    ]
+
+
+def test_a_dither_has_its_deviation_and_no_bias():
+    """It is wider than the encoder's steps here, so that readings show it."""
+    read = np.array(read_many(20.0, 3)) + 0.5 - 100.5
+    assert np.mean(read) == pytest.approx(0.0, abs=4 * 20.0 / np.sqrt(len(read)))
+    assert np.std(read) == pytest.approx(20.0, rel=0.05)
+    neighbours = np.corrcoef(read[:-1], read[1:])[0, 1]
+    assert abs(neighbours) < 4 / np.sqrt(len(read))
+
+
+def test_a_dither_belongs_to_the_sample_and_to_the_seed():
+    assert read_many(0.5, 3) == read_many(0.5, 3)
+    assert read_many(0.5, 3) != read_many(0.5, 4)
+    angles = radians(50.0), radians(50.0)
+    for sample in range(0, 200, 2):
+        one, other = (encoder(sample + late, *angles, 720.0, 0.01, 9) for late in (0, 1))
+        assert one == other
+
+
+def test_without_dither_a_wheel_that_stands_reads_one_number():
+    assert set(read_many(0.0, 3)) == {100}
+
+
 @given(st.integers(0, 10**9))
 def test_a_time_on_the_grid_is_its_own_substep(substep):
     for time_s in (
