@@ -25,6 +25,8 @@ def _status(loop, session, message):
         "missed": loop.missed,
         "overruns": loop.overruns,
         "clamped": loop.clamped,
+        "real_time": loop.real_time,
+        "memory_locked": loop.memory_locked,
         "lateness": {"edges_s": LATENESS_EDGES_S, "counts": loop.lateness},
     }
 

@@ -59,6 +59,7 @@ class Loop(object):
         missed: How many deadlines passed without a tick.
         overruns: How many ticks ended after the next deadline.
         clamped: How many time steps were outside of the allowed range, see `clamp_step`.
+        real_time, memory_locked: What the kernel grants, see robot.schedule; None: not asked.
         done: Set it to end `run`.
         motor: The model of both motors; empty if they do not say it, or differ.
         incurable: Why no fault can be cleared while this program runs; empty if one can.
@@ -76,6 +77,7 @@ class Loop(object):
         self.seed = seed
         self.lateness = [0] * (len(LATENESS_EDGES_S) + 1)
         self.missed = self.overruns = self.clamped = 0
+        self.real_time = self.memory_locked = None
         self.done = False
         self.incurable = ""
         models = {motor.model for motor in motors}

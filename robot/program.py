@@ -9,7 +9,7 @@ import signal
 import socket
 import sys
 
-from robot import token
+from robot import schedule, token
 from robot.errors import Refused
 from robot.loop import Loop
 from robot.serial_line import BAUD, SerialLine
@@ -103,7 +103,7 @@ def choose_seed(options):
     return int.from_bytes(os.urandom(4), "big") if options.seed is None else options.seed
 
 
-def run(options, motors, battery, clock, seed, panels=()):
+def run(options, motors, battery, clock, seed, panels=(), lock_memory=False):
     """Serve hosts and run the loop until SIGINT or SIGTERM. Prints READY when it listens.
 
     Args:
@@ -115,6 +115,7 @@ def run(options, motors, battery, clock, seed, panels=()):
         panels: What people see and touch on the robot, and what watches the loop. The time between
             ticks goes to their serve(loop), which must return at once; close() ends them. Those
             that show which robot this is name their `ways`, see robot.beacon.
+        lock_memory: Whether to keep the program from being swapped out, if the kernel allows it.
 
     Returns:
         The exit status: 0 when it was ended, 2 if it could not start.
@@ -132,6 +133,9 @@ def run(options, motors, battery, clock, seed, panels=()):
             server.attach(SerialLine(options.serial, _warn).open)
         if new:
             _warn("wrote a new token: {}".format(options.token))
+        loop.memory_locked = lock_memory and schedule.lock_memory()
+        loop.real_time = schedule.take_priority(schedule.LOOP_PRIORITY)
+        panels = (*panels, schedule.Collector())
         try:
             _serve(options, loop, server, port, panels)
         finally:

@@ -16,6 +16,7 @@ import signal
 import socket
 import time
 
+from robot import schedule
 from robot.motors import MotorFault
 from robot.safety import RUNNING
 
@@ -249,6 +250,7 @@ def _say(text):
 
 def _be_watchdog(link, stop_motors, alarm):
     """What the forked process does, until it ends."""
+    schedule.take_priority(schedule.WATCHDOG_PRIORITY)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         # They are meant for the loop; the watchdog waits for its end.
         signal.signal(number, signal.SIG_IGN)

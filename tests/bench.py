@@ -1,5 +1,6 @@
 """`make bench`: how fast the things are that have to be fast, as ratios and rates of one run."""
 
+import itertools
 import multiprocessing
 import os
 import random
@@ -209,12 +210,23 @@ def bodies() -> None:
 
 def real_time() -> None:
     """How late ticks begin on the desk robot, and how long a kick takes to its tick."""
-    for title, busy in (("idle", 0), ("all cores loaded", os.cpu_count() or 1)):
-        burners = [multiprocessing.Process(target=_burn, daemon=True) for _ in range(busy)]
-        for burner in burners:
-            burner.start()
+    all_cores = os.sched_getaffinity(0)
+    for cores, busy, priority in itertools.product(
+        (all_cores, {min(all_cores)}), (False, True), (True, False)
+    ):
+        title = f"{len(cores)} core{'s' * (len(cores) > 1)}, {'all loaded' if busy else 'idle'}"
+        title += f", with{'' if priority else 'out'} real-time priority"
+        burners = [
+            multiprocessing.Process(target=_burn, daemon=True) for _ in range(busy * len(cores))
+        ]
         try:
-            late, kicks, periods = _desk_robot()
+            for burner in burners:
+                burner.start()
+                os.sched_setaffinity(burner.pid, cores)
+            late, kicks, periods = _desk_robot(cores, priority)
+        except _NoPriority as reason:
+            print(f"real time, {title}: not tried: {reason}", flush=True)
+            continue
         finally:
             for burner in burners:
                 burner.terminate()
@@ -244,7 +256,11 @@ def _burn() -> None:
         pass
 
 
-def _desk_robot():
+class _NoPriority(Exception):
+    """This user may have no real-time priority."""
+
+
+def _desk_robot(cores, priority):
     """How late each tick began, how long each kick took to its tick, and missed deadlines, in s."""
     from host.client.robot import connect
     from host.logs.log import Log
@@ -264,8 +280,14 @@ def _desk_robot():
         ]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as brick:
             try:
+                os.sched_setaffinity(brick.pid, cores)
                 uri = re.search(r"tcp://\S+", brick.stdout.readline())[0]
                 with connect(uri, token=token) as robot:
+                    if priority and not robot.status()["real_time"]:
+                        raise _NoPriority("run it as root, or raise `ulimit -r`")
+                    if not priority:
+                        os.sched_setscheduler(brick.pid, os.SCHED_OTHER, os.sched_param(0))
+                    robot.set(link_loss_s=10.0)  # this host may have to wait for its turn
                     log = Log(robot.info())
                     robot.add_tap(log)
                     robot.wait(1.0)

@@ -15,6 +15,7 @@ from typing import Any
 from host.client.robot import Robot, connect
 from host.commands._hints import as_typed
 from host.commands._terminal import show
+from host.commands.status import WITHOUT_PRIORITY
 from host.errors import KickctlError, NotDone
 from host.link.names import chosen, own_token
 from host.util.installation import deploy_command, install_command
@@ -194,6 +195,7 @@ def _robot(robot: Robot) -> Iterator[Finding]:
         "mend the cause, then: kickctl clear, kickctl start" if fault else "",
     )
     yield _battery(status["battery_v"])
+    yield _schedule(status)
     yield _punctuality(status)
 
 
@@ -216,6 +218,16 @@ def _battery(volts: float | None) -> Finding:
     if volts is None:
         return Finding("battery", "the robot does not measure it")
     return Finding("battery", f"{volts:.2f} V", "charge it" if volts < LOW_BATTERY_V else "")
+
+
+def _schedule(status: dict[str, Any]) -> Finding:
+    """What keeps other programs from delaying ticks. A robot works without it, too."""
+    if status.get("real_time") is None:
+        return Finding("schedule", "unknown")
+    if not status["real_time"]:
+        return Finding("schedule", WITHOUT_PRIORITY)
+    locked = "never" if status["memory_locked"] else "may be"
+    return Finding("schedule", f"real-time priority; memory {locked} swapped out")
 
 
 def _punctuality(status: dict[str, Any]) -> Finding:

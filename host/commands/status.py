@@ -8,6 +8,10 @@ from host.commands._terminal import robot_of, show
 from host.errors import printable
 from robot.words import duration, person
 
+WITHOUT_PRIORITY = (
+    "without real-time priority: other programs on the robot may delay its ticks. A brick gives it"
+    " to a service (kickctl deploy --service), and another machine to root"
+)
 HELP = "show what the robot does, who controls it, and how punctual its ticks are"
 
 
@@ -34,6 +38,8 @@ def run(options: argparse.Namespace) -> int:
     else:
         print(f"{status['brick']}: {status['state']} ({status['reason']}), tick {status['tick']}")
         print(_battery_and_driver(status))
+        if status.get("real_time") is False:
+            print(WITHOUT_PRIORITY)
         for line in rest:
             print(line)
         edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]

@@ -35,6 +35,7 @@ def robot_tests() -> list[str]:
     return [
         *(str(path.relative_to(ROOT)) for path in unit),
         "tests/link/test_wire.py",
+        "tests/sysfs/test_one_core.py",
         "tests/sysfs/test_panels.py",
         "tests/sysfs/test_warm.py",
     ]
