@@ -2,7 +2,7 @@
 
 Each wheel runs as in robot.loop on a SimBrick, from the same functions: same readings, same
 arithmetic, same latency. It runs alone, which the motor's model allows (see sim_motor.constants).
-Here are no links, leases and faults.
+sim_motor.robots has pairs of wheels on a body. Here are no links, leases and faults.
 """
 
 from dataclasses import dataclass
@@ -107,6 +107,20 @@ def random_times(rows: int, ticks: int, tick_s: float, rng: np.random.Generator)
     return np.arange(ticks) * tick_s + lateness_s(rng.standard_normal((rows, ticks)))
 
 
+def param_numbers(params: Params) -> ParamNumbers:
+    """The parameters of a tick, as `control` takes them."""
+    return (
+        params.a,
+        params.tau_s,
+        params.k,
+        params.rods,
+        params.rod_lag_s,
+        params.duty_scale,
+        params.max_duty_pct,
+        params.tick_s,
+    )
+
+
 def run(
     wheels: int,
     ticks: int,
@@ -190,16 +204,7 @@ def run(
         start.potentials,
         duties,
         times,
-        (
-            params.a,
-            params.tau_s,
-            params.k,
-            params.rods,
-            params.rod_lag_s,
-            params.duty_scale,
-            params.max_duty_pct,
-            params.tick_s,
-        ),
+        param_numbers(params),
         NO_KICK if kick is None else kick.numbers(0),
         tables(motors),
         np.stack([motor.scalars() for motor in motors]),
@@ -213,6 +218,50 @@ def run(
         result.records,
     )
     return result
+
+
+@jit
+def control(
+    tick: int,
+    phi: float,
+    phi_before: float,
+    dt_s: float,
+    x1: float,
+    x2: float,
+    kick: KickNumbers,
+    params: ParamNumbers,
+) -> tuple[float, float, float, float, int]:
+    """A tick of one wheel's controller.
+
+    Args:
+        tick: Its number.
+        phi: The angle read in it, rad.
+        phi_before: The angle read in the tick before, rad; NaN if there was none.
+        dt_s: Its time step, s.
+        x1: First membrane potential, 1.
+        x2: Second membrane potential, 1.
+        kick: As Kick.numbers returns it.
+        params: As `param_numbers` returns them.
+
+    Returns:
+        (x1, x2, force, torque, duty cycle in %) after the tick.
+    """
+    a, tau_s, k, rods, rod_lag_s, duty_scale, max_duty_pct, _ = params
+    x1, x2, a, tau_s, k, beta, shift_rad = _apply_kick(kick, tick, x1, x2, a, tau_s, k)
+    actual_1, actual_2 = rod_1, rod_2 = _actual_positions(phi)
+    if rod_lag_s > 0.0 and not isnan(phi_before):
+        rod_1, rod_2 = _actual_positions(_lagging_angle(phi, phi_before, dt_s, rod_lag_s))
+    seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
+    x1, x2, force, torque = _step_wheel(
+        x1, x2, actual_1, actual_2, rod_1, rod_2, seen_1, seen_2, dt_s, a, tau_s, k, rods
+    )
+    return x1, x2, force, torque, _limit_duty(duty_scale * torque, max_duty_pct)
+
+
+@jit
+def time_step(times: Array, tick: int, tick_s: float) -> float:
+    """The time step of a tick, s, as the robot's loop measures it."""
+    return _clamp_step(times[tick] - times[tick - 1], tick_s) if tick else tick_s
 
 
 @jit
@@ -244,7 +293,7 @@ def _run_wheel(
     Its angle (rad) in each tick goes into `phis`, and its CHANNELS into `record` unless that is
     empty.
     """
-    a_set, tau_set, k_set, rods, rod_lag_s, duty_scale, max_duty_pct, tick_s = params
+    tick_s = params[-1]
     action, begin, ticks, pulse, smooth, value = kick
     latency_s, counts, dither = hardware
     state = (start[0], start[1], start[2], start[3], start[4], start[5])
@@ -259,20 +308,18 @@ def _run_wheel(
         position = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts, dither, dither_seed)
         phi = position * pi / 180
         phis[tick] = phi
-        dt_s = _clamp_step(now - times[tick - 1], tick_s) if tick else tick_s
         if tick == begin and isnan(value):
             value = _reversing_shift(_direction(_travel(phis, tick - 1)))
-        x1, x2, a, tau_s, k, beta, shift_rad = _apply_kick(
-            (action, begin, ticks, pulse, smooth, value), tick, x1, x2, a_set, tau_set, k_set
+        x1, x2, force, torque, next_duty = control(
+            tick,
+            phi,
+            phis[tick - 1] if tick else nan,
+            time_step(times, tick, tick_s),
+            x1,
+            x2,
+            (action, begin, ticks, pulse, smooth, value),
+            params,
         )
-        actual_1, actual_2 = rod_1, rod_2 = _actual_positions(phi)
-        if tick and rod_lag_s > 0.0:
-            rod_1, rod_2 = _actual_positions(_lagging_angle(phi, phis[tick - 1], dt_s, rod_lag_s))
-        seen_1, seen_2 = _seen_positions(phi, beta, shift_rad)
-        x1, x2, force, torque = _step_wheel(
-            x1, x2, actual_1, actual_2, rod_1, rod_2, seen_1, seen_2, dt_s, a, tau_s, k, rods
-        )
-        next_duty = _limit_duty(duty_scale * torque, max_duty_pct)
         turn = substep_from(now + latency_s)
         if len(record):
             record[tick, 0], record[tick, 1], record[tick, 2] = phi, x1, x2

@@ -1,4 +1,4 @@
-"""What a robot may have around it, in numbers: two parallel walls."""
+"""What a robot may have around it, in numbers: a floor and walls."""
 
 from dataclasses import dataclass
 from math import pi
@@ -6,10 +6,11 @@ from math import pi
 
 @dataclass(frozen=True)
 class Scene:
-    """A robot between two parallel walls. What is None is as in motors.toml.
+    """A robot on a floor, with or without walls. What is None else is as in motors.toml.
 
     Attributes:
-        walls: The distance between them, m.
+        walls: The distance between two parallel walls, m; None for none.
+        across: That between two more, at right angles to them, m; None for none.
         grip: The tyres' friction coefficient, 1.
         stiffness: That of a wall at one corner of the body, N/m.
         bumper: The width of the body's front and rear, m.
@@ -20,7 +21,8 @@ class Scene:
         ValueError: A number is out of its LIMITS.
     """
 
-    walls: float
+    walls: float | None = None
+    across: float | None = None
     grip: float | None = None
     stiffness: float | None = None
     bumper: float | None = None
@@ -37,6 +39,7 @@ class Scene:
 # Walls that leave room for the body, and springs that the steps can follow.
 LIMITS = {
     "walls": (0.4, 100.0, "m"),
+    "across": (0.4, 100.0, "m"),
     "grip": (0.0, 10.0, ""),
     "stiffness": (100.0, 100000.0, "N/m"),
     "bumper": (0.05, 0.4, "m"),

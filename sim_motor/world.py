@@ -1,19 +1,21 @@
-"""The robot's body on a plane between two walls: what floor and walls do to it and to its wheels.
+"""The robot's body on a plane between walls: what floor and walls do to it and to its wheels.
 
 The plane's x axis runs from wall to wall. Everything is on the motors' grid of substeps: forces
 from where things are, then speeds, then places (symplectic Euler).
 
-- The body's moment of inertia is that of half its mass over each wheel, as in sim_motor.constants,
-  and each wheel bears half its weight.
+- The body is a uniform plate, and each wheel bears half its weight. It couples the wheels: as it
+  resists being turned, a wheel that speeds up takes the other one along. Wheels alone, as in
+  sim_motor.constants, stand for a body with half its mass over each wheel, whose moment of inertia
+  is 0.66 times that of the plate. There driving and turning decouple.
 - A tyre's tread is a damped spring between rim and floor, forward and sideways. It holds with no
   more than grip times its load (Coulomb's law, regularised by the tread). Beyond that it slips.
 - A wall is a stiff, damped spring that pushes, and never pulls, at the four corners of the body:
   the ends of both bumpers. As it swings faster than anything else, the body takes PARTS steps in
-  each substep.
+  each substep where there are walls.
 """
 
 from collections.abc import Sequence
-from math import cos, hypot, sin
+from math import cos, hypot, inf, sin
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -24,9 +26,9 @@ from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
 from sim_motor.motor import WHEEL_SPEED
 from sim_motor.scene import Scene
 
-BodyNumbers = tuple[float, float, float, float, float, float]
+BodyNumbers = tuple[float, float, float, float, float, float, float]
 TyreNumbers = tuple[float, float]
-WallNumbers = tuple[float, float, float]
+WallNumbers = tuple[float, float, float, float]
 Drive = tuple[int, float, float]
 
 PARTS = 8
@@ -62,31 +64,18 @@ class World:
     """A body at rest halfway between the walls, on a left and a right wheel.
 
     Args:
-        scene: The walls.
+        scene: Floor and walls.
         motors: The left and the right one, with the constants of a wheel alone, see `alone`.
         heading: Where the body points, rad; 0 faces the wall at positive x.
     """
 
     def __init__(self, scene: Scene, motors: Sequence[Driven], heading: float = 0.0) -> None:
-        robot = {name: float(entry[0]) for name, entry in data()["robot"].items()}
-        grip = robot["grip"] if scene.grip is None else scene.grip
-        width = robot["body_width"] if scene.bumper is None else scene.bumper
-        stiffness = robot["wall_stiffness"] if scene.stiffness is None else scene.stiffness
         self._place = np.array([0.0, 0.0, heading, 0.0, 0.0, 0.0])
         self._left, self._right = motors
         self._tables = self._left.constants.tables(), self._right.constants.tables()
         self._scalars = self._left.constants.scalars(), self._right.constants.scalars()
-        self._body: BodyNumbers = (
-            robot["mass"],
-            robot["track"],
-            robot["wheel_radius"],
-            grip,
-            robot["body_length"] / 2,
-            width / 2,
-        )
-        self._walls: WallNumbers = (scene.walls / 2, stiffness, robot["wall_damping"])
+        self._numbers = numbers(scene)
         self._stretches = np.zeros((2, 2))
-        self._tyre: TyreNumbers = robot["tyre_stiffness"], robot["tyre_damping"]
         self._substep = 0
         self._advance(0)  # compiled here, where nobody waits for it
 
@@ -108,17 +97,61 @@ class World:
     def _advance(self, substeps: int) -> None:
         left, right = self._left, self._right
         wheels = (left.state, right.state), (left.drive(), right.drive()), (left.mount, right.mount)
-        _advance(
+        advance(
             substeps,
             self._place,
             self._stretches,
             *wheels,
             self._tables,
             self._scalars,
-            self._body,
-            self._tyre,
-            self._walls,
+            *self._numbers,
         )
+
+
+def plate_inertia(mass: float, length: float, width: float) -> float:
+    """The moment of inertia of a uniform plate about the axis through its centre.
+
+    Args:
+        mass: Its mass, kg.
+        length: Of one side, m.
+        width: Of the other, m.
+
+    Returns:
+        The moment of inertia, kg m2.
+    """
+    return mass * (length**2 + width**2) / 12
+
+
+def numbers(scene: Scene) -> tuple[BodyNumbers, TyreNumbers, WallNumbers]:
+    """Body, tyres and walls as `advance` takes them.
+
+    Args:
+        scene: Floor and walls.
+
+    Returns:
+        The body's mass, moment of inertia, track, wheel radius, grip, half length and half width of
+        its bumpers; a tyre's stiffness and damping; half the distances between walls along x and
+        along y, and a wall's stiffness and damping. SI units.
+    """
+    robot = {name: float(entry[0]) for name, entry in data()["robot"].items()}
+    grip = robot["grip"] if scene.grip is None else scene.grip
+    bumper = robot["body_width"] if scene.bumper is None else scene.bumper
+    body = (
+        robot["mass"],
+        plate_inertia(robot["mass"], robot["body_length"], robot["body_width"]),
+        robot["track"],
+        robot["wheel_radius"],
+        grip,
+        robot["body_length"] / 2,
+        bumper / 2,
+    )
+    walls = (
+        inf if scene.walls is None else scene.walls / 2,
+        inf if scene.across is None else scene.across / 2,
+        robot["wall_stiffness"] if scene.stiffness is None else scene.stiffness,
+        robot["wall_damping"],
+    )
+    return body, (robot["tyre_stiffness"], robot["tyre_damping"]), walls
 
 
 def alone(constants: Constants) -> Constants:
@@ -156,29 +189,45 @@ def tyre_force(
 
 
 @jit
-def wall_push(place: Array, ahead: float, aside: float, walls: WallNumbers) -> tuple[float, float]:
-    """What both walls do to one corner of the body.
+def wall_force(beyond: float, speed: float, stiffness: float, damping: float) -> float:
+    """How hard a wall pushes back, N.
+
+    Args:
+        beyond: How far something is in the wall, m; 0 or less is in front of it.
+        speed: How fast it goes on into the wall, m/s.
+        stiffness: The wall's, N/m.
+        damping: The wall's, N s/m.
+    """
+    return max(0.0, stiffness * beyond + damping * speed) if beyond > 0.0 else 0.0
+
+
+@jit
+def wall_push(
+    place: Array, ahead: float, aside: float, walls: WallNumbers
+) -> tuple[float, float, float]:
+    """What the walls do to one corner of the body.
 
     Args:
         place: As Place.
         ahead: How far the corner is ahead of the centre, m.
         aside: How far it is to the left, m.
-        walls: Half their distance, stiffness and damping.
+        walls: Half their distances along x and y, stiffness and damping.
 
     Returns:
-        (force along x in N, torque on the body in N m).
+        (force along x in N, force along y in N, torque on the body in N m).
     """
-    half_distance, stiffness, damping = walls
-    x, _, heading, speed_x, _, turn = place
+    half_x, half_y, stiffness, damping = walls
+    x, y, heading, speed_x, speed_y, turn = place
     arm_x = ahead * cos(heading) - aside * sin(heading)
     arm_y = ahead * sin(heading) + aside * cos(heading)
-    speed = speed_x - turn * arm_y
-    force = 0.0
-    if x + arm_x > half_distance:
-        force = -max(0.0, stiffness * (x + arm_x - half_distance) + damping * speed)
-    elif x + arm_x < -half_distance:
-        force = max(0.0, stiffness * (-half_distance - x - arm_x) - damping * speed)
-    return force, -arm_y * force
+    speed_x, speed_y = speed_x - turn * arm_y, speed_y + turn * arm_x
+    force_x = wall_force(-half_x - x - arm_x, -speed_x, stiffness, damping) - wall_force(
+        x + arm_x - half_x, speed_x, stiffness, damping
+    )
+    force_y = wall_force(-half_y - y - arm_y, -speed_y, stiffness, damping) - wall_force(
+        y + arm_y - half_y, speed_y, stiffness, damping
+    )
+    return force_x, force_y, arm_x * force_y - arm_y * force_x
 
 
 @jit
@@ -199,10 +248,10 @@ def move_body(
         sideways: Force to the left, N.
         substep_s: How long the substep lasts, s.
         parts: How many steps it is taken in.
-        body: Mass, track, wheel radius, grip, half length and half width.
+        body: As in `numbers`.
         walls: As in `wall_push`.
     """
-    mass, track, _, _, half_length, half_width = body
+    mass, inertia, track, _, _, half_length, half_width = body
     step_s = substep_s / parts
     for _ in range(parts):
         direction_x, direction_y = cos(place[2]), sin(place[2])
@@ -212,18 +261,19 @@ def move_body(
         torque = (forward[1] - forward[0]) * track / 2
         for ahead in (half_length, -half_length):
             for aside in (half_width, -half_width):
-                push, twist = wall_push(place, ahead, aside, walls)
-                force_x += push
+                push_x, push_y, twist = wall_push(place, ahead, aside, walls)
+                force_x += push_x
+                force_y += push_y
                 torque += twist
         place[3] += step_s * force_x / mass
         place[4] += step_s * force_y / mass
-        place[5] += step_s * torque / (mass * track * track / 4)
+        place[5] += step_s * torque / inertia
         for index in range(3):
             place[index] += step_s * place[index + 3]
 
 
 @jit
-def _advance(
+def advance(
     substeps: int,
     place: Array,
     stretches: Array,
@@ -236,7 +286,23 @@ def _advance(
     tyre: TyreNumbers,
     walls: WallNumbers,
 ) -> None:
-    mass, track, radius, grip, _, _ = body
+    """Body and wheels after some substeps, in place.
+
+    Args:
+        substeps: How many.
+        place: As Place.
+        stretches: How far both tyres' treads are stretched forward and sideways, m, (2, 2).
+        states: The motors', as in sim_motor.motor.
+        drives: What drives them, as SimMotor.drive returns it.
+        mounts: -1 for a motor that is mounted mirrored, else 1.
+        tables: Constants.tables of the motors.
+        scalars: Constants.scalars of the motors.
+        body: As in `numbers`.
+        tyre: As in `numbers`.
+        walls: As in `numbers`.
+    """
+    mass, _, track, radius, grip, _, _ = body
+    parts = PARTS if min(walls[0], walls[1]) < inf else 1
     most = grip * mass / 2 * GRAVITY
     forward = np.zeros(2)
     for _ in range(substeps):
@@ -252,4 +318,4 @@ def _advance(
             sideways += aside
             load -= mounts[side] * radius * forward[side]
             advance_in_place(state, 1, duty, battery_v, load, tables[side], scalars[side])
-        move_body(place, (forward[0], forward[1]), sideways, SUBSTEP_S, PARTS, body, walls)
+        move_body(place, (forward[0], forward[1]), sideways, SUBSTEP_S, parts, body, walls)

@@ -27,6 +27,8 @@ from sim_motor.scene import Scene
 
 _READ_BYTES = 65536
 _SCENE = tuple(field.name for field in fields(Scene))
+# Fields of a scene that need walls.
+_OF_WALLS = ("across", "stiffness", "bumper")
 _OPTIONS = ("seed", "idle", "motor", "battery", "dither", *_SCENE)
 _THEY_ARE = f"its options are {', '.join(_OPTIONS)}, and the robot's parameters: {', '.join(TABLE)}"
 
@@ -78,7 +80,7 @@ class SimLink:
         for name in options:
             if name not in _OPTIONS and name not in TABLE:
                 raise WrongUse(f"sim:// has no option '{quotable(name)}'", _THEY_ARE)
-        for name in _SCENE:
+        for name in _OF_WALLS:
             if name in options and "walls" not in options:
                 raise WrongUse(
                     f"'{name}' belongs to a robot between walls, and '{uri}' has none",
@@ -93,7 +95,7 @@ class SimLink:
                 )
             scene = (
                 Scene(**{name: _number(options, name) for name in _SCENE if name in options})
-                if "walls" in options
+                if any(name in options for name in _SCENE)
                 else None
             )
             battery_v = _number(options, "battery") if "battery" in options else None

@@ -63,12 +63,14 @@ def make_desk():
 @pytest.mark.parametrize("scene", [None, Scene(walls=2.0)], ids=["alone", "between walls"])
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_it_turns_a_resting_wheel_to_the_angle_and_leaves_the_other(make_desk, side, scene):
+    """On a body that is turned, the other wheel moves within the play of its motor."""
     desk = make_desk(scene)
+    play = desk.brick.motors[0].constants.backlash
     index = ("left", "right").index(side)
     before, other = desk.phi(index), desk.phi(1 - index)
     desk.run(3.0, f"{side} {before + 2.0}")
     assert desk.phi(index) == pytest.approx(before + 2.0, abs=0.1)
-    assert desk.phi(1 - index) == pytest.approx(other, abs=0.01)
+    assert desk.phi(1 - index) == pytest.approx(other, abs=0.01 if scene is None else play)
 
 
 @pytest.mark.parametrize("scene", [None, Scene(walls=2.0)], ids=["alone", "between walls"])

@@ -3,7 +3,7 @@
 What physics demands of it, and that a brick without walls is what it was.
 """
 
-from math import hypot, pi
+from math import hypot, inf, pi
 
 import numpy as np
 import pytest
@@ -14,13 +14,13 @@ from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.constants import GRAVITY, SUBSTEP_S, data
 from sim_motor.scene import Scene
-from sim_motor.world import PARTS, World, move_body, tyre_force
+from sim_motor.world import PARTS, World, move_body, plate_inertia, tyre_force
 
 ROBOT = {name: entry[0] for name, entry in data()["robot"].items()}
 MASS, TRACK, RADIUS = ROBOT["mass"], ROBOT["track"], ROBOT["wheel_radius"]
-INERTIA = MASS * TRACK**2 / 4
-BODY = (MASS, TRACK, RADIUS, 0.7, ROBOT["body_length"] / 2, ROBOT["body_width"] / 2)
-WALLS = (1.0, ROBOT["wall_stiffness"], ROBOT["wall_damping"])
+INERTIA = plate_inertia(MASS, ROBOT["body_length"], ROBOT["body_width"])
+BODY = (MASS, INERTIA, TRACK, RADIUS, 0.7, ROBOT["body_length"] / 2, ROBOT["body_width"] / 2)
+WALLS = (1.0, inf, ROBOT["wall_stiffness"], ROBOT["wall_damping"])
 
 
 class HandClock:
@@ -156,7 +156,7 @@ def test_no_energy_comes_from_a_wall(heading, turn):
 
 def test_a_wall_gives_back_what_its_damping_leaves():
     """Square on two corners, as a damped spring between a mass and the wall."""
-    walls = [(1.0, 20000.0, damping) for damping in (0.0, 20.0, 40.0, 80.0)]
+    walls = [(1.0, inf, 20000.0, damping) for damping in (0.0, 20.0, 40.0, 80.0)]
     speeds = [abs(slide((0.85, 0.0, 0.0, 0.4, 0.0, 0.0), 1.0, wall)[-1][3]) for wall in walls]
     assert speeds[0] == pytest.approx(0.4, rel=0.03)
     assert speeds == sorted(speeds, reverse=True)
@@ -257,7 +257,7 @@ def test_in_a_world_both_wheels_begin_where_the_robots_program_resets_them():
         ("walls=2&stiffness=1e9", "stiffness cannot be"),
         ("walls=2&bumper=3", "bumper cannot be 3"),
         ("walls=2&apart=4", "apart cannot be 4"),
-        ("grip=0.7", "'grip' belongs to a robot between walls"),
+        ("stiffness=5e3", "'stiffness' belongs to a robot between walls"),
         ("walls=2&wind=3", "no option 'wind'"),
     ],
 )
@@ -269,4 +269,5 @@ def test_nonsense_is_refused_in_words(options, said):
 def test_a_link_stands_in_the_world_that_it_asks_for():
     link = make_link("sim://?walls=2.0&grip=1.5&idle=1", seed=1)
     assert isinstance(link.brick.world, World)
+    assert isinstance(make_link("sim://?grip=1.5&idle=1", seed=1).brick.world, World)
     assert make_link("sim://?idle=1", seed=1).brick.world is None
