@@ -31,7 +31,15 @@ from sim_motor.compiled_motor import encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
 from sim_motor.motor import ANGLE, LAST_ANGLE
 from sim_motor.scene import Scene
-from sim_motor.world import BodyNumbers, TyreNumbers, WallNumbers, advance, alone, numbers
+from sim_motor.world import (
+    BodyNumbers,
+    TyreNumbers,
+    WallNumbers,
+    advance,
+    alone,
+    no_stretches,
+    numbers,
+)
 
 _direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 
@@ -207,7 +215,7 @@ def _run_robot(
 ) -> None:
     """Run one robot, with states, potentials and place changed in place."""
     latency_s, counts, dither = hardware
-    stretches = np.zeros((2, 2))
+    stretches = no_stretches()
     tick_s = params[0, 7]
     substep = 0
     turn, row = 0, 0

@@ -14,6 +14,7 @@ class Scene:
         grip: The tyres' friction coefficient, 1.
         stiffness: That of a wall at one corner of the body, N/m.
         bumper: The width of the body's front and rear, m.
+        axle: The stiffness of the axle from each motor to its wheel, at the rim, N/m.
         apart: How far the right wheel is ahead of the left one, rad, when the left one stands at
             zero in the beginning. The robot's own program resets both when it starts.
 
@@ -26,6 +27,7 @@ class Scene:
     grip: float | None = None
     stiffness: float | None = None
     bumper: float | None = None
+    axle: float | None = None
     apart: float = 0.0
 
     def __post_init__(self) -> None:
@@ -43,5 +45,6 @@ LIMITS = {
     "grip": (0.0, 10.0, ""),
     "stiffness": (100.0, 100000.0, "N/m"),
     "bumper": (0.05, 0.4, "m"),
+    "axle": (50.0, 100000.0, "N/m"),
     "apart": (-pi, pi, "rad"),
 }

@@ -9,6 +9,7 @@ from where things are, then speeds, then places (symplectic Euler).
   is 0.66 times that of the plate. There driving and turning decouple.
 - A tyre's tread is a damped spring between rim and floor, forward and sideways. It holds with no
   more than grip times its load (Coulomb's law, regularised by the tread). Beyond that it slips.
+  Between motor and rim is an axle, rigid or another damped spring (sim_motor.axle).
 - A wall is a stiff, damped spring that pushes, and never pulls, at the four corners of the body:
   the ends of both bumpers. As it swings faster than anything else, the body takes PARTS steps in
   each substep where there are walls.
@@ -20,6 +21,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from sim_motor.axle import next_stretch, twist_speed
 from sim_motor.compiled import jit
 from sim_motor.compiled_motor import advance_in_place
 from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
@@ -27,7 +29,7 @@ from sim_motor.motor import WHEEL_SPEED
 from sim_motor.scene import Scene
 
 BodyNumbers = tuple[float, float, float, float, float, float, float]
-TyreNumbers = tuple[float, float]
+TyreNumbers = tuple[float, float, float, float]
 WallNumbers = tuple[float, float, float, float]
 Drive = tuple[int, float, float]
 
@@ -75,7 +77,7 @@ class World:
         self._tables = self._left.constants.tables(), self._right.constants.tables()
         self._scalars = self._left.constants.scalars(), self._right.constants.scalars()
         self._numbers = numbers(scene)
-        self._stretches = np.zeros((2, 2))
+        self._stretches = no_stretches()
         self._substep = 0
         self._advance(0)  # compiled here, where nobody waits for it
 
@@ -130,8 +132,8 @@ def numbers(scene: Scene) -> tuple[BodyNumbers, TyreNumbers, WallNumbers]:
 
     Returns:
         The body's mass, moment of inertia, track, wheel radius, grip, half length and half width of
-        its bumpers; a tyre's stiffness and damping; half the distances between walls along x and
-        along y, and a wall's stiffness and damping. SI units.
+        its bumpers; stiffness and damping of a tread and of an axle; half the distances between
+        walls along x and along y, and a wall's stiffness and damping. SI units.
     """
     robot = {name: float(entry[0]) for name, entry in data()["robot"].items()}
     grip = robot["grip"] if scene.grip is None else scene.grip
@@ -151,7 +153,15 @@ def numbers(scene: Scene) -> tuple[BodyNumbers, TyreNumbers, WallNumbers]:
         robot["wall_stiffness"] if scene.stiffness is None else scene.stiffness,
         robot["wall_damping"],
     )
-    return body, (robot["tyre_stiffness"], robot["tyre_damping"]), walls
+    tread = robot["tyre_stiffness"], robot["tyre_damping"]
+    axle = robot["axle_stiffness"] if scene.axle is None else scene.axle, robot["axle_damping"]
+    return body, tread + axle, walls
+
+
+@jit
+def no_stretches() -> Array:
+    """Of treads and axles that nothing loads, as `tyre_force` takes them for each side, (2, 3)."""
+    return np.zeros((2, 3))
 
 
 def alone(constants: Constants) -> Constants:
@@ -166,25 +176,30 @@ def tyre_force(
     """The force of the floor on the body at a tyre.
 
     Args:
-        stretch: How far the tread is stretched forward and sideways, m. A substep is added to it.
-        slip: Speed of the rim over the floor backward, m/s.
-        side_slip: The same to the right.
+        stretch: How far the tread is stretched forward and sideways, and how far the axle is
+            twisted at the rim, m. A substep is added to them.
+        slip: Speed over the floor backward that the rim has on a rigid axle, m/s.
+        side_slip: The rim's to the right.
         most: With no more than this does the tyre hold, N.
-        tyre: Stiffness and damping.
+        tyre: As in `numbers`.
 
     Returns:
         (forward, sideways), N.
     """
-    stiffness, damping = tyre
+    stiffness, damping, axle_stiffness, axle_damping = tyre
+    tread, axle = (stiffness, damping), (axle_stiffness, axle_damping)
+    slip -= twist_speed(stretch[2], stretch[0], slip, tread, axle)
     forward = stiffness * (stretch[0] + SUBSTEP_S * slip) + damping * slip
     sideways = stiffness * (stretch[1] + SUBSTEP_S * side_slip) + damping * side_slip
     force = hypot(forward, sideways)
     if force > most:
         forward, sideways = forward * most / force, sideways * most / force
-        stretch[0], stretch[1] = forward / stiffness, sideways / stiffness
+        stretch[0] = next_stretch(stretch[0], forward, tread)
+        stretch[1] = next_stretch(stretch[1], sideways, tread)
     else:
         stretch[0] += SUBSTEP_S * slip
         stretch[1] += SUBSTEP_S * side_slip
+    stretch[2] = next_stretch(stretch[2], forward, axle)
     return forward, sideways
 
 
@@ -291,7 +306,7 @@ def advance(
     Args:
         substeps: How many.
         place: As Place.
-        stretches: How far both tyres' treads are stretched forward and sideways, m, (2, 2).
+        stretches: Of treads and axles, as in `tyre_force`, m, (2, 3).
         states: The motors', as in sim_motor.motor.
         drives: What drives them, as SimMotor.drive returns it.
         mounts: -1 for a motor that is mounted mirrored, else 1.

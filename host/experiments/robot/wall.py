@@ -106,12 +106,14 @@ def world(cell: OneHit | SeriesCell) -> dict[str, str]:
     A real robot needs a wall ahead that it meets squarely, half a metre away or more.
     """
     farther_m = 0.0 if cell["part"] == "series" else 2 * TURN_M * cell["hit"] / cell["hits"]
+    axle = {} if cell["axle"] is None else {"axle": str(cell["axle"])}
     return {
         "walls": f"{NEAREST_M + farther_m:.4f}",
         "grip": str(cell["grip"]),
         "stiffness": str(cell["stiffness"]),
         "bumper": str(cell["bumper"]),
         "apart": str(cell["apart"]),
+        **axle,
     }
 
 
@@ -130,7 +132,8 @@ def _run_into_wall(cell: OneHit | SeriesCell, setting: Setting, *, stop: bool) -
     """Send a simulated robot off; to `stop`, end when it has bounced, else after SERIES_S."""
     seed = setting.seed_of(cell)
     scene = Scene(**{name: float(value) for name, value in world(cell).items()})
-    brick = SimBrick(seed, motor=setting.constants, battery_v=setting.battery_v, scene=scene)
+    battery_v = setting.battery_v if cell["battery_v"] is None else cell["battery_v"]
+    brick = SimBrick(seed, motor=setting.constants, battery_v=battery_v, scene=scene)
     loop = Loop(brick.motors, brick.battery, brick.clock, seed)
     log = Log()
 

@@ -18,6 +18,8 @@ class Condition(TypedDict):
         stiffness: stiffness of the wall at one corner of the body (N/m).
         bumper: width of the body's front and rear (m).
         apart: how far the right wheel is ahead of the left one at the start (rad).
+        axle: stiffness of the axle of a wheel, at its rim (N/m); None for a rigid one.
+        battery_v: open-circuit voltage of the battery (V); None for the run's own.
     """
 
     k: float
@@ -25,6 +27,8 @@ class Condition(TypedDict):
     stiffness: float
     bumper: float
     apart: float
+    axle: float | None
+    battery_v: float | None
 
 
 class HitsCell(Condition):
@@ -114,6 +118,8 @@ class HitRow(NumberedHit):
     stiffness: NotRequired[float]
     bumper: NotRequired[float]
     apart: NotRequired[float]
+    axle: NotRequired[float | None]
+    battery_v: NotRequired[float | None]
     part: NotRequired[Literal["claim", "map"]]
     hits: NotRequired[int]
 
@@ -134,6 +140,8 @@ PAPER: Condition = {
     "stiffness": ROBOT["wall_stiffness"],
     "bumper": ROBOT["body_width"],
     "apart": 0.0,
+    "axle": None,
+    "battery_v": None,
 }
 WIDE_M, SPRINGY = 0.4, 1000.0
 ON_SMOOTH: Condition = {**PAPER, "grip": SMOOTH}
@@ -148,6 +156,8 @@ def condition_of(row: WallRow) -> Condition:
         "stiffness": row.get("stiffness", PAPER["stiffness"]),
         "bumper": row.get("bumper", PAPER["bumper"]),
         "apart": row.get("apart", PAPER["apart"]),
+        "axle": row.get("axle", PAPER["axle"]),
+        "battery_v": row.get("battery_v", PAPER["battery_v"]),
     }
 
 

@@ -14,12 +14,13 @@ from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.constants import GRAVITY, SUBSTEP_S, data
 from sim_motor.scene import Scene
-from sim_motor.world import PARTS, World, move_body, plate_inertia, tyre_force
+from sim_motor.world import PARTS, World, move_body, numbers, plate_inertia, tyre_force
 
 ROBOT = {name: entry[0] for name, entry in data()["robot"].items()}
 MASS, TRACK, RADIUS = ROBOT["mass"], ROBOT["track"], ROBOT["wheel_radius"]
 INERTIA = plate_inertia(MASS, ROBOT["body_length"], ROBOT["body_width"])
 BODY = (MASS, INERTIA, TRACK, RADIUS, 0.7, ROBOT["body_length"] / 2, ROBOT["body_width"] / 2)
+TYRE = numbers(Scene())[1]
 WALLS = (1.0, inf, ROBOT["wall_stiffness"], ROBOT["wall_damping"])
 
 
@@ -126,9 +127,9 @@ def test_a_wheel_at_the_traction_limit_slips_and_pushes_no_harder():
 
 @pytest.mark.parametrize("slip", [(0.3, 0.0), (-0.3, 0.0), (0.2, -0.2), (1e-7, 1e-7), (0.0, 0.0)])
 def test_a_tyre_holds_with_no_more_than_its_grip_and_against_its_slip(slip):
-    stretch = np.zeros(2)
+    stretch = np.zeros(3)
     for _ in range(300):
-        force = tyre_force(stretch, *slip, 2.4, (ROBOT["tyre_stiffness"], ROBOT["tyre_damping"]))
+        force = tyre_force(stretch, *slip, 2.4, TYRE)
         assert hypot(*force) <= 2.4 * (1 + 1e-12)
         assert all(part * way >= 0 for part, way in zip(force, slip, strict=True))
     assert hypot(*force) == pytest.approx(
