@@ -30,6 +30,8 @@ STEADY = 2.0
 # A wheel is in its well if the mean of sin^2(2 phi) is below this. It is 1 at the saddles between
 # wells, and above 0.4 for a wheel that goes to and fro over them.
 IN_WELL = 0.25
+# A largest exponent closer to 0 than this (1/s) counts as 0.
+NEAR_ZERO = 0.05
 _MEAN_SIN_6 = 5.0 / 16.0
 
 
@@ -66,6 +68,24 @@ class Watched(NamedTuple):
             mean > AGREE * size,
         )
         return np.select(cases, (REST, ROLL, BACK, CHAOS, ROLL), BACK)
+
+
+def kinds_by_exponents(watched: Watched, exponents: Array) -> NDArray[np.int64]:
+    """The attractor of each wheel, which is chaotic if its largest exponent is above 0.
+
+    Args:
+        watched: What the wheels did.
+        exponents: Their largest Lyapunov exponents, 1/s, (wheels,).
+
+    Returns:
+        Indices of KINDS, (wheels,). A wheel that rolls irregularly is chaotic, too, even if it
+        never turns round.
+    """
+    by_motion = watched.kinds()
+    moves, grows = by_motion != REST, exponents > NEAR_ZERO
+    mean, size = np.abs(watched.omega_mean), np.hypot(watched.omega_mean, watched.omega_std)
+    regular = np.where(by_motion != CHAOS, by_motion, np.where(mean > AGREE * size, ROLL, BACK))
+    return np.where(moves & grows, CHAOS, regular)
 
 
 @vectorised

@@ -17,7 +17,7 @@ from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, advance, rate_per_s
 from host.theory.engine.sliding import DRY
 from host.theory.model.symbolic import jacobian_at, rates_of_vector
-from host.theory.model.wheel import Array, Wheel
+from host.theory.model.wheel import Array, Wheel, numpy_rates
 from sim_motor.mathematics import with_mathematics
 
 # Between two orthonormalisations all vectors turn towards the fastest, by a factor of e^6 or less
@@ -78,6 +78,8 @@ def growth(
     count: int = 1,
     vectors: Array | None = None,
     fineness: float = FINE,
+    *,
+    with_flow: bool = False,
 ) -> Growth:
     """How tangent vectors grow that are orthonormalised again and again.
 
@@ -91,6 +93,10 @@ def growth(
         count: How many vectors.
         vectors: The first vectors, (wheels, 4, count); without them random ones, always the same.
         fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
+        with_flow: Whether the first vector is that of the flow itself, along which the exponent of
+            a wheel that moves for ever is 0. The others are then those across the flow, in
+            descending order. Two exponents that are close to 0 would otherwise take thousands of
+            seconds to part.
 
     Returns:
         The rates, and what is needed to go on.
@@ -105,17 +111,33 @@ def growth(
         )
     wheels, rounds = states.shape[1], _intervals(parameters, seconds, count)
     if vectors is None:
-        vectors = np.linalg.qr(np.random.default_rng(0).normal(size=(wheels, 4, count)))[0]
-    columns = np.tile(parameters, (1, count))
+        vectors = np.random.default_rng(0).normal(size=(wheels, 4, count))
+        if with_flow:
+            vectors[:, :, 0] = _flow(states, parameters).T
+        vectors = np.linalg.qr(vectors)[0]
+    first = 1 if with_flow else 0
+    columns = np.tile(parameters, (1, count - first))
     rates = np.empty((rounds, count, wheels))
     for step in range(rounds):
-        both = np.vstack([np.tile(states, (1, count)), vectors.transpose(1, 2, 0).reshape(4, -1)])
+        own, speed = vectors[:, :, first:], np.linalg.norm(_flow(states, parameters), axis=0)
+        both = np.vstack(
+            [np.tile(states, (1, count - first)), own.transpose(1, 2, 0).reshape(4, -1)]
+        )
         both = advance(both, columns, seconds / rounds, fineness, tangent_rates)
         # Copies of a chaotic wheel would part from the last bit on: all go on from the first.
         states = both[:4, :wheels]
-        vectors, upper = np.linalg.qr(both[4:].reshape(4, count, wheels).transpose(2, 0, 1))
+        grown = both[4:].reshape(4, count - first, wheels).transpose(2, 0, 1)
+        if with_flow:
+            # The flow takes its own vector along.
+            grown = np.dstack([(_flow(states, parameters) / speed).T, grown])
+        vectors, upper = np.linalg.qr(grown)
         rates[step] = np.log(np.abs(np.diagonal(upper, axis1=1, axis2=2))).T * (rounds / seconds)
     return Growth(rates, states, vectors)
+
+
+def _flow(states: Array, parameters: Array) -> Array:
+    """The rates of wheels, (4, wheels)."""
+    return np.array(numpy_rates(*states, *parameters))
 
 
 def pair_growth(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:

@@ -1,4 +1,4 @@
-"""The numbers of the study `lyapunov`, as plain data."""
+"""The numbers of the studies `lyapunov`, `lyapunov-line` and `lyapunov-plane`, as plain data."""
 
 from __future__ import annotations
 
@@ -13,9 +13,14 @@ class Spectrum(TypedDict):
 
     Attributes:
         wheels: how many wheels stayed on it.
-        exponents: means over blocks.
-        standard_errors: of the means, from blocks.
-        errors_by_wheels: the same from whole wheels; None for a single wheel.
+        exponents: means over wheels and times.
+        standard_errors: of the means: by wheels, if these are enough (see
+            host.theory.analysis.spectrum), else the greater one of the following two.
+        errors_by_wheels: from the spread between wheels; None for a single wheel.
+        errors_by_blocks: from the spread between blocks of time; None for a single block.
+        along_flow: the exponent along the flow, which is one of the four; it is 0 in the long run.
+            None for wheels that rest.
+        along_flow_error: its standard error.
         dimension: the Lyapunov dimension.
         by_pairs: the largest exponent by pairs of near wheels.
         by_pairs_error: its standard error.
@@ -27,6 +32,9 @@ class Spectrum(TypedDict):
     exponents: list[float]
     standard_errors: list[float]
     errors_by_wheels: list[float] | None
+    errors_by_blocks: list[float] | None
+    along_flow: float | None
+    along_flow_error: float | None
     dimension: float
     by_pairs: float
     by_pairs_error: float
@@ -34,15 +42,13 @@ class Spectrum(TypedDict):
     omega_std: float
 
 
-class PointAccuracy(TypedDict):
+class Accuracy(TypedDict):
     """How well the exponents (1/s) at the point agree with what must hold, and with each other."""
 
     sum_of_exponents_exact: float
     sum_of_exponents_off_by: float
     two_algorithms_differ_by: float
     two_algorithms_standard_error: float
-    zero_exponent_off_by: float | None
-    errors_by_wheels: list[float] | None
 
 
 class Point(Spectrum):
@@ -52,7 +58,7 @@ class Point(Spectrum):
     attractors: dict[Kind, Spectrum]
     of_wheels: int
     changed: int
-    accuracy: PointAccuracy
+    accuracy: Accuracy
 
 
 class Series(TypedDict):
@@ -82,15 +88,7 @@ class Line(TypedDict):
     at: list[AtK]
 
 
-class Disagreement(TypedDict):
-    """How often the kind of an attractor and its exponent disagree about chaos."""
-
-    chaotic_without_exponent: int
-    regular_with_exponent: int
-    of: int
-
-
-class Plane(Disagreement):
+class Plane(TypedDict):
     """Shares of the plane, and the share of points at which the start decides."""
 
     shares: dict[StartKind, dict[Kind, float]]
@@ -127,17 +125,6 @@ class HalvedSteps(TypedDict):
     median_speed_off_by_rad_s: float | None
 
 
-class StepAccuracy(TypedDict):
-    """The accuracy that the checks with half the step show."""
-
-    halved_steps: HalvedSteps
-    kind_against_exponent: Disagreement
-
-
-class Accuracy(PointAccuracy, StepAccuracy):
-    """All that is known of the accuracy."""
-
-
 class Constants(TypedDict):
     """The wheel's constants, by the paper's letters."""
 
@@ -149,18 +136,35 @@ class Constants(TypedDict):
 
 
 class Numbers(TypedDict):
-    """All numbers of the study."""
+    """All numbers of the study `lyapunov`.
 
+    Attributes:
+        verdict: the kind of the attractor, or hyperchaotic with two positive exponents.
+    """
+
+    verdict: str
     exponents: list[float]
     standard_errors: list[float]
     dimension: float
     constants: Constants
     point: Point
     series: Series | None
+    accuracy: Accuracy
+
+
+class LineNumbers(TypedDict):
+    """All numbers of the study `lyapunov-line`."""
+
+    tau: float
     line: Line
-    plane: Plane
     rolling_ends: RollingEnd | None
     crisis: CrisisNumbers | None
     through_a_crisis: bool
     lives: list[Lives]
-    accuracy: Accuracy
+    in_words: str
+
+
+class PlaneNumbers(Plane):
+    """All numbers of the study `lyapunov-plane`."""
+
+    accuracy: HalvedSteps

@@ -1,16 +1,26 @@
-"""What each piece of the study `lyapunov` computes."""
+"""What each piece of the studies `lyapunov`, `lyapunov-line` and `lyapunov-plane` computes."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
-from host.errors import NotDone
-from host.theory.analysis.attractors import KINDS, random_starts, settle, watch
+from host.errors import NotDone, WrongUse
+from host.theory.analysis.attractors import (
+    AGREE,
+    KINDS,
+    REST,
+    kinds_by_exponents,
+    random_starts,
+    settle,
+    watch,
+)
 from host.theory.analysis.branches import last_stable, rotations
 from host.theory.analysis.cycles import ROTATION
-from host.theory.analysis.tangent import growth, pair_growth, smooth_mean
+from host.theory.analysis.spectrum import exponents, largest_exponents
+from host.theory.analysis.tangent import pair_growth
+from host.theory.analysis.trajectories import SAMPLE_S, trajectory
 from host.theory.analysis.transients import least_chaotic_k, lives
+from host.theory.engine.ensemble import rate_per_s
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel, numpy_rates
 from host.theory.studies.lyapunov_rows import (
@@ -28,19 +38,43 @@ from host.theory.studies.lyapunov_rows import (
 
 # How long wheels settle (at least), are watched, and are measured, s.
 SETTLE_S, WATCH_S, MEASURE_S = 200.0, 100.0, 100.0
-# Steps where a kind and an exponent are enough (see host.theory.engine.ensemble); the part `check`
+# Steps where a kind and an exponent are enough (see host.theory.engine.ensemble); `step_check`
 # measures how good that is.
 FINENESS = 0.6
 # Wheels of the spectrum, how long their vectors turn into place, and the length of a block, s: much
 # longer than a chaotic wheel remembers.
-WHEELS, ALIGN_S, BLOCK_S = 64, 20.0, 100.0
-SERIES_S, SAMPLE_S = 300.0, 0.03
+WHEELS, ALIGN_S, BLOCK_S = 32, 20.0, 100.0
+# The series, in so many stretches one after the other.
+SERIES_S, STRETCHES = 300.0, 10
 # Rotations are followed from this part of the greatest k on; wheels show what comes after the last
 # stable one at this multiple of its k.
 LEAST_K, BEYOND_END = 1e-3, 1.02
 # Wheels whose lives are measured, and how long they are followed, s.
 LIVES_WHEELS, LIVES_S = 256, 2000.0
 CHECKED = 256
+# A wheel that changes faster (1/s) takes more than an hour.
+FASTEST = 5000.0
+
+
+def midpoints(most: float, points: int) -> Array:
+    """The midpoints of `points` equal intervals from 0 to `most`, (points,)."""
+    return np.asarray((np.arange(points) + 0.5) * most / points)
+
+
+def require_slow(wheel: Wheel) -> None:
+    """Raise WrongUse for a wheel that never settles, or is too fast to be followed for minutes."""
+    if wheel.friction == 0.0:
+        raise WrongUse(
+            "without friction a wheel can roll faster and faster, and never settles",
+            "give f above 0",
+        )
+    fastest = float(rate_per_s(wheel.columns(1))[0])
+    if not fastest <= FASTEST:
+        raise WrongUse(
+            f"a wheel with these constants and k = {wheel.k:g} changes within {1 / fastest:.1g} s:"
+            " minutes of it take too long",
+            "choose a larger tau, I or f, or a smaller k",
+        )
 
 
 def _settle_s(tau_s: float) -> float:
@@ -53,25 +87,31 @@ def spectrum_in_blocks(wheel: Wheel, seconds: float, rng: np.random.Generator) -
     parameters = wheel.columns(WHEELS)
     settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau_s))
     before = watch(settled, parameters, WATCH_S)
-    aligned = growth(before.states, parameters, ALIGN_S, 4)
-    spectrum = growth(aligned.states, parameters, seconds, 4, aligned.vectors)
-    pairs = pair_growth(aligned.states, parameters, seconds)
-    after = watch(spectrum.states, parameters, WATCH_S)
+    moving, regular = before.kinds() != REST, before.apart < AGREE
     blocks = max(1, round(seconds / BLOCK_S))
-    means = np.array([block.mean(axis=0) for block in np.array_split(spectrum.rates, blocks)])
+    found = exponents(before.states, parameters, ALIGN_S, seconds, blocks, moving, regular)
+    pairs = pair_growth(before.states, parameters, ALIGN_S + seconds)[round(ALIGN_S) :]
+    after = watch(found.states, parameters, WATCH_S)
     pair_means = np.array([block.mean(axis=0) for block in np.array_split(pairs, blocks)])
+    largest = found.blocks.mean(axis=0).max(axis=0)
+    # A wheel that repeats itself before or after has not been chaotic all the time.
+    kinds, later = (
+        kinds_by_exponents(seen, np.where(seen.apart < AGREE, 0.0, largest))
+        for seen in (before, after)
+    )
     return [
         {
             "wheel": own,
-            "kind": KINDS[before.kinds()[own]],
-            "kind_after": KINDS[after.kinds()[own]],
+            "kind": KINDS[kinds[own]],
+            "kind_after": KINDS[later[own]],
             "omega_mean": float(after.omega_mean[own]),
             "omega_std": float(after.omega_std[own]),
             "block": block,
-            "exponent_1": float(means[block, 0, own]),
-            "exponent_2": float(means[block, 1, own]),
-            "exponent_3": float(means[block, 2, own]),
-            "exponent_4": float(means[block, 3, own]),
+            "along_flow": bool(moving[own]),
+            "exponent_1": float(found.blocks[block, 0, own]),
+            "exponent_2": float(found.blocks[block, 1, own]),
+            "exponent_3": float(found.blocks[block, 2, own]),
+            "exponent_4": float(found.blocks[block, 3, own]),
             "by_pairs": float(pair_means[block, own]),
         }
         for own in range(WHEELS)
@@ -85,17 +125,12 @@ def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
     settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau_s))
     seen = watch(settled, parameters, WATCH_S)
     start = seen.states[:, int(seen.kinds().argmax())]
-    times = SAMPLE_S * np.arange(round(SERIES_S / SAMPLE_S))
-    path = solve_ivp(
-        lambda _, state: numpy_rates(*state, *wheel),
-        (0.0, SERIES_S),
-        start,
-        "DOP853",
-        times,
-        rtol=1e-9,
-        atol=1e-9,
-    ).y
+    stretches = [start[None]]
+    for _ in range(STRETCHES):
+        stretches.append(trajectory(stretches[-1][-1], wheel, SERIES_S / STRETCHES)[1:])
+    path = np.concatenate(stretches).T
     _, _, phi, omega = path
+    times = SAMPLE_S * np.arange(len(phi))
     force = wheel.inertia * numpy_rates(*path, *wheel)[3] + wheel.friction * omega
     columns = (times.tolist(), phi.tolist(), omega.tolist(), force.tolist())
     return [
@@ -109,8 +144,9 @@ def _attractors(parameters: Array, starts: Array, fineness: float = FINENESS) ->
     slowest = float(parameters[Wheel._fields.index("tau_s")].max())
     settled = settle(starts, parameters, _settle_s(slowest), fineness)
     seen = watch(settled, parameters, WATCH_S, fineness)
-    rates = growth(seen.states, parameters, MEASURE_S, fineness=fineness).rates
-    columns = (seen.kinds(), smooth_mean(rates)[0], seen.omega_mean, seen.omega_std)
+    moving = seen.kinds() != REST
+    largest = largest_exponents(seen.states, parameters, MEASURE_S, moving, fineness)
+    columns = (kinds_by_exponents(seen, largest), largest, seen.omega_mean, seen.omega_std)
     return [
         {"kind": KINDS[kind], "exponent": exponent, "omega_mean": mean, "omega_std": std}
         for kind, exponent, mean, std in zip(*(own.tolist() for own in columns), strict=True)

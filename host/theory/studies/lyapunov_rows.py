@@ -1,4 +1,4 @@
-"""The cells and rows of the study `lyapunov`, with the meaning of each column."""
+"""The cells and rows of the studies `lyapunov`, `lyapunov-line` and `lyapunov-plane`."""
 
 from __future__ import annotations
 
@@ -77,7 +77,9 @@ class Block(TypedDict):
         omega_mean: mean of omega after the measurement (rad/s).
         omega_std: standard deviation of omega after the measurement (rad/s).
         block: number of the block.
-        exponent_1: largest Lyapunov exponent (1/s); exponent_2 to exponent_4 in descending order.
+        along_flow: whether exponent_1 is that along the flow.
+        exponent_1: Lyapunov exponent (1/s): the one along the flow, 0 in the long run; of a wheel
+            that rests, the largest. exponent_2 to exponent_4: the others, in descending order.
         by_pairs: largest exponent, from pairs of close wheels (1/s).
     """
 
@@ -87,6 +89,7 @@ class Block(TypedDict):
     omega_mean: float
     omega_std: float
     block: int
+    along_flow: bool
     exponent_1: float
     exponent_2: float
     exponent_3: float
@@ -214,16 +217,12 @@ class StepCheckRow(CheckCell, StepCheck):
     """A row of part `check`."""
 
 
-LyapunovCell = PointCell | SeriesCell | GridCell | RollingCell | LivesCell | CheckCell
-LyapunovRow = BlockRow | SeriesRow | GridRow | RollingEndRow | LifeRow | StepCheckRow
-Measured = (
-    list[Block]
-    | list[SeriesSample]
-    | list[GridPoint]
-    | list[RollingEnd]
-    | list[Life]
-    | list[StepCheck]
-)
+LyapunovCell = PointCell | SeriesCell
+LyapunovRow = BlockRow | SeriesRow
+LineCell = GridCell | RollingCell | LivesCell
+LineRow = GridRow | RollingEndRow | LifeRow
+PlaneCell = GridCell | CheckCell
+PlaneRow = GridRow | StepCheckRow
 
 
 def blocks_of(rows: Iterable[LyapunovRow]) -> list[BlockRow]:
@@ -236,22 +235,22 @@ def series_of(rows: Iterable[LyapunovRow]) -> list[SeriesRow]:
     return [row for row in rows if row["part"] == "series"]
 
 
-def line_of(rows: Iterable[LyapunovRow]) -> list[GridRow]:
+def line_of(rows: Iterable[LineRow]) -> list[GridRow]:
     """The rows of part `line`."""
     return [row for row in rows if row["part"] == "line"]
 
 
-def plane_of(rows: Iterable[LyapunovRow]) -> list[GridRow]:
+def plane_of(rows: Iterable[PlaneRow]) -> list[GridRow]:
     """The rows of part `plane`."""
     return [row for row in rows if row["part"] == "plane"]
 
 
-def rolling_end_of(rows: Iterable[LyapunovRow]) -> RollingEndRow | None:
+def rolling_end_of(rows: Iterable[LineRow]) -> RollingEndRow | None:
     """The row of part `rolling`; None if rolling does not end."""
     return next((row for row in rows if row["part"] == "rolling"), None)
 
 
-def lives_of(rows: Iterable[LyapunovRow]) -> dict[float, list[LifeRow]]:
+def lives_of(rows: Iterable[LineRow]) -> dict[float, list[LifeRow]]:
     """The rows of part `lives`, by k."""
     found: dict[float, list[LifeRow]] = {}
     for row in rows:
@@ -260,6 +259,6 @@ def lives_of(rows: Iterable[LyapunovRow]) -> dict[float, list[LifeRow]]:
     return found
 
 
-def step_checks(rows: Iterable[LyapunovRow]) -> list[StepCheckRow]:
+def step_checks(rows: Iterable[PlaneRow]) -> list[StepCheckRow]:
     """The rows of part `check`."""
     return [row for row in rows if row["part"] == "check"]

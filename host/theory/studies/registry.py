@@ -108,8 +108,8 @@ TABLE = {
         ("M7",),
     ),
     "lyapunov": Entry(
-        "the Lyapunov spectrum at a point, the largest exponent along k and over the plane,"
-        " attractors and chaotic transients",
+        "the four Lyapunov exponents at a point, with errors, and what they say: at rest, regular,"
+        " chaotic or hyperchaotic",
         (
             A,
             TAU._replace(default=1.0),
@@ -118,14 +118,34 @@ TABLE = {
             I,
             Option(
                 "seconds",
-                2000.0,
+                250.0,
                 50.0,
                 1e6,
-                "how long to follow each of 64 wheels for the spectrum, s; beyond 2000 s, more"
-                " wheels",
+                "how long to follow each of 64 wheels, s; beyond 250 s, more wheels",
             ),
         ),
         ("M8",),
+    ),
+    "lyapunov-line": Entry(
+        "the route to chaos along k: attractors with their largest exponents, where rolling ends,"
+        " chaotic transients and the crisis",
+        (
+            A,
+            TAU._replace(default=1.0),
+            F,
+            I,
+            Option("k_to", 20.0, 1e-3, 1e4, "greatest k, without unit; the least is 0"),
+        ),
+    ),
+    "lyapunov-plane": Entry(
+        "attractors and the largest exponent over (k, tau), from random states and from rolling",
+        (
+            A,
+            F,
+            I,
+            Option("k_to", 20.0, 1e-3, 1e4, "greatest k, without unit; the least is 0"),
+            Option("tau_to", 1.5, 1e-3, 1e3, "greatest tau, s; the least is 0"),
+        ),
     ),
     "basins": Entry(
         "basins of attraction in (phi, omega), and of kicks: which kick at which phase of the cycle"

@@ -6,7 +6,6 @@ What wheels settle on, where rolling loses its stability, and whether chaos ends
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,16 +15,12 @@ from host.theory.analysis.transients import Crisis, Sample
 from host.theory.studies.lyapunov_numbers import (
     AtK,
     CrisisNumbers,
-    Disagreement,
     Line,
     Lives,
     Plane,
 )
-from host.theory.studies.lyapunov_rows import Attractor, GridRow, RollingEnd, StartKind
+from host.theory.studies.lyapunov_rows import GridRow, RollingEnd, StartKind
 
-# Exponents closer to 0 than this (1/s) count as 0 where the kind of an attractor is compared with
-# its exponent.
-NEAR_ZERO = 0.05
 _BIFURCATION: dict[BifurcationType, str] = {
     "neimark-sacker": "Neimark-Sacker point",
     "fold": "fold",
@@ -91,18 +86,6 @@ def tally(rows: list[GridRow]) -> Plane:
     return {
         "shares": shares,
         "start_decides": float(np.mean([len(kinds) > 1 for kinds in ends.values()])),
-        **disagreement(rows),
-    }
-
-
-def disagreement(rows: Sequence[Attractor]) -> Disagreement:
-    """How often an attractor's kind, from averages, and its exponent disagree about chaos."""
-    chaotic = np.array([row["kind"] == KINDS[CHAOS] for row in rows])
-    exponents = np.array([row["exponent"] for row in rows])
-    return {
-        "chaotic_without_exponent": int(np.sum(chaotic & (exponents < NEAR_ZERO))),
-        "regular_with_exponent": int(np.sum(~chaotic & (exponents > NEAR_ZERO))),
-        "of": len(rows),
     }
 
 

@@ -66,6 +66,14 @@ def quarter_turn(y, wheel):
     return np.array([x2, -x1, 0.0, omega]), run.t[-1]
 
 
+def turning(wheel):
+    """The state at phi = 0 of a wheel that turns steadily. Eqs. x-t and F_tan_ana."""
+    a, tau, k, _, f, _ = wheel
+    omega = np.sqrt((a * k * tau - 2 * f) / (2 * f * tau**2))
+    lag = omega * tau
+    return np.array([1.0, -lag, 0.0, omega * (1 + lag**2)]) / (1 + lag**2)
+
+
 def rotation(wheel, start):
     """The rotation: its state at phi = 0, and the time of a quarter turn."""
 
@@ -92,3 +100,20 @@ def multipliers(y, seconds, wheel):
     found = np.linalg.eigvals(back @ end[4:].reshape(4, 4))
     found = np.delete(found, np.argmin(abs(found - 1.0)))
     return found[np.argsort(-abs(found))]
+
+
+def growth_of_area(y, wheel, seconds, rng):
+    """The rate, 1/s, at which the area between two tangent vectors grows, after 10 s."""
+    vectors, total, begin = np.linalg.qr(rng.normal(size=(4, 2)))[0], 0.0, 10
+
+    def both(_, z):
+        driven = jacobian(z[:4], wheel) @ z[4:].reshape(4, 2)
+        return np.concatenate([rates(z[:4], wheel), driven.ravel()])
+
+    for second in range(begin + round(seconds)):
+        z = np.concatenate([y, vectors.ravel()])
+        end = solve_ivp(both, (0.0, 1.0), z, "DOP853", rtol=1e-7, atol=1e-9).y[:, -1]
+        y, (vectors, upper) = end[:4], np.linalg.qr(end[4:].reshape(4, 2))
+        if second >= begin:
+            total += np.log(abs(np.diag(upper))).sum()
+    return total / seconds

@@ -13,7 +13,7 @@ from host.runs.registry import complete_options
 from host.theory.analysis.hopf import bautin_tau_s
 from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.kicked import Continuous
-from host.theory.model.turning import constant_velocity, turning
+from host.theory.model.turning import constant_velocity
 from host.theory.model.wheel import Wheel
 from host.theory.studies import branch
 from host.theory.studies.registry import TABLE
@@ -100,7 +100,7 @@ def slow():
 
 def rotation_by_scipy(k):
     wheel = SLOW._replace(k=k)
-    begin = turning(np.zeros(1), np.array([constant_velocity(wheel)]), wheel)[:, 0]
+    begin = independent.turning(wheel)
     return *independent.rotation(wheel, begin), wheel
 
 
@@ -154,7 +154,7 @@ def test_the_shortest_sure_kick_is_at_the_edge_that_scipy_finds():
     found = sure_ranges(Continuous(), wheel, POSITION, 0, [0.0, 0.135, 0.145, 0.15], 60)
     ((shortest_s, longest_s),) = found
     assert longest_s == 0.15
-    begin = turning(np.zeros(1), np.array([constant_velocity(wheel)]), wheel)[:, 0]
+    begin = independent.turning(wheel)
     state, quarter_s = independent.rotation(wheel, begin)
     later_s = np.linspace(0.0, quarter_s, 60, endpoint=False)
     states = [independent.follow(state, wheel, s).y[:, -1] if s else state for s in later_s]

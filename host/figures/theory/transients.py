@@ -1,4 +1,4 @@
-"""Two panels of the figure `lyapunov`: how long chaotic transients last."""
+"""Two panels of the figure `lyapunov-line`: how long chaotic transients last."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from host.figures.style import COLOURS
 from host.theory.analysis.transients import ENTRY_S, FEWEST
-from host.theory.studies.lyapunov_numbers import Lives, Numbers
+from host.theory.studies.lyapunov_numbers import LineNumbers, Lives
 from host.theory.studies.lyapunov_rows import LifeRow
 
 _SMALL = 11
@@ -24,7 +24,7 @@ _ABOVE: Any = {
 }
 
 
-def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: Numbers) -> None:
+def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: LineNumbers) -> None:
     """The share of wheels that still switch, with the exponential of the same mean."""
     shown = _well_known(numbers)[-4:]
     if not shown:
@@ -55,7 +55,7 @@ def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: Number
     axes.xaxis.set_major_locator(MaxNLocator(5))
 
 
-def draw_lives(axes: Axes, numbers: Numbers) -> None:
+def draw_lives(axes: Axes, numbers: LineNumbers) -> None:
     """Mean lives against k, with the law of a crisis."""
     own = _well_known(numbers)
     axes.set_title("their mean life", fontsize=13, loc="left")
@@ -104,7 +104,7 @@ def draw_lives(axes: Axes, numbers: Numbers) -> None:
     axes.set_ylabel("mean life (s)")
 
 
-def _well_known(numbers: Numbers) -> list[tuple[Lives, float]]:
+def _well_known(numbers: LineNumbers) -> list[tuple[Lives, float]]:
     """The lives at each k where enough of them ended, and their mean (s)."""
     return [
         (entry, entry["mean_s"])
