@@ -6,8 +6,8 @@ A robot records the series. The other parts explain it, and only the simulated b
 - lives: how long many wheels switch until they roll steadily or rest, under one condition.
 - twins: pairs of runs that differ by a small jump of one potential, and how far apart their
   potentials are afterwards.
-- map: wheels with one latency and one moment of inertia. They are chaotic if they switch to the
-  end and twins end up apart.
+- map: wheels on bodies, with one lag of the rods and one voltage of the battery. They are chaotic
+  if they switch to the end and twins end up apart.
 - speed: turns per second at k = 8, tau = 0.25 s. It shows whether R2 still holds under a condition.
 - model: the paper's four equations of a wheel, driven by the unbounded force as in the paper, or by
   the bounded torque of the robot.
@@ -17,7 +17,14 @@ from __future__ import annotations
 
 from host.client.robot import Robot
 from host.experiments.robot import chaos_pieces as pieces
-from host.experiments.robot.chaos_numbers import Numbers, explain, reasons, series_numbers, tally
+from host.experiments.robot.chaos_numbers import (
+    Numbers,
+    explain,
+    in_words,
+    reasons,
+    series_numbers,
+    tally,
+)
 from host.experiments.robot.chaos_pieces import SEEN, TAU_S, UNSEEN, K
 from host.experiments.robot.chaos_rows import (
     CellRows,
@@ -27,7 +34,7 @@ from host.experiments.robot.chaos_rows import (
     lives_rows,
     series_of_wheels,
 )
-from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY
+from host.experiments.robot.switching import CONDITIONS, OLDER, ORDINARY
 from host.kicking.outcome import require_running
 from host.logs.log import Log
 from host.runs.claims import Claim
@@ -40,9 +47,9 @@ from robot.safety import RUNNING
 # R14 holds if this share of the wheels switches to the end of a series at least this long.
 SUSTAINED = 0.95
 CLAIMED_MIN = 10.0
-# The map: latencies, and multiples of the motor's moment of inertia.
-LATENCIES_S = (0.003, 0.015, 0.03, 0.045, 0.06, 0.075, 0.09, 0.12)
-INERTIAS = (0.25, 0.5, 1.0, 2.0, 4.0)
+# The map: how much older the rods are, and voltages of the battery.
+LAGS_S = (0.0, 0.0025, 0.004, 0.005, 0.0075, 0.01, 0.015)
+VOLTAGES_V = (6.5, 7.0, 7.5, 8.0, 9.0)
 
 
 def cells(options: Options, *, batch: bool) -> list[ChaosCell]:
@@ -50,18 +57,18 @@ def cells(options: Options, *, batch: bool) -> list[ChaosCell]:
     if not batch:
         return [{"part": "series", "condition": ORDINARY}]
     work: list[ChaosCell] = []
-    work += [{"part": "series", "condition": name} for name in (ORDINARY, DELAYED)]
+    work += [{"part": "series", "condition": name} for name in pieces.SHOWN]
     work += [{"part": "lives", "condition": name} for name in CONDITIONS]
     work += [{"part": "speed", "condition": name} for name in CONDITIONS]
     work += [
         {"part": "twins", "condition": name, "jump": jump}
-        for name in (ORDINARY, DELAYED)
+        for name in pieces.SHOWN
         for jump in (SEEN, UNSEEN)
     ]
     work += [
-        {"part": "map", "latency_s": latency_s, "inertia": inertia}
-        for latency_s in LATENCIES_S
-        for inertia in INERTIAS
+        {"part": "map", "rod_lag_s": lag_s, "battery_v": battery_v}
+        for lag_s in LAGS_S
+        for battery_v in VOLTAGES_V
     ]
     work += [{"part": "model", "wheel": "paper", "bounded": bounded} for bounded in (False, True)]
     work += [{"part": "model", "wheel": "robot", "bounded": bounded} for bounded in (False, True)]
@@ -124,9 +131,7 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         rate is not None and rate["interval"] is not None and rate["interval"][0] > of_noise()
         for rate in rates
     )
-    rates_text = ", ".join(
-        f"{rate['per_s']:.2f}/s" if rate else "none (too short, or still in part)" for rate in rates
-    )
+    rates_text = ", ".join(in_words(rate) for rate in rates)
     switching = (
         f"the share of wheels that switch to the end: {own['to_the_end']} of {own['wheels']}; half"
         f" of them switch until {own['median_until_s']:.1f} s"
@@ -139,8 +144,8 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
     if lives_rows(rows, ORDINARY):
         explanations = explain(rows)
         numbers = {**numbers, **explanations}
-        delayed = next(found for (condition, _), found in series.items() if condition == DELAYED)
-        notes += reasons(explanations, delayed["exponent"])
+        older = next(found for (condition, _), found in series.items() if condition == OLDER)
+        notes += reasons(explanations, older["exponent"])
     claim = Claim(
         "R14",
         "at k = 15 and tau = 1000 ms the motors switch irregularly: the motion is chaotic",

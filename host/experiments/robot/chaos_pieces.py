@@ -29,6 +29,7 @@ from host.experiments.robot.chaos_rows import (
 from host.experiments.robot.switching import (
     CONDITIONS,
     DELAYED,
+    OLDER,
     ORDINARY,
     Array,
     Condition,
@@ -53,14 +54,10 @@ TWIN_TICK, TWIN_S, TWIN_STEP_S = 300, 12.0, 0.25
 MAP_S, MAP_JUMP_S, PARTED_S, PARTED = 60.0, 40.0, 10.0, 1 / 3
 SPEED_S = 10.0
 # How many wheels, pairs of twins or runs make one piece.
-LIVES_WHEELS, LIVES_WHEELS_DELAYED, TWIN_PAIRS, MAP_WHEELS, SPEED_WHEELS, MODEL_RUNS = (
-    100,
-    16,
-    64,
-    4,
-    8,
-    4,
-)
+LIVES_WHEELS, LIVES_WHEELS_OTHERS, LIVES_WHEELS_DELAYED = 100, 40, 16
+TWIN_PAIRS, MAP_WHEELS, SPEED_WHEELS, MODEL_RUNS = 64, 4, 8, 4
+# Under these conditions a wheel is compared with its twins, and its course is kept.
+SHOWN = (ORDINARY, OLDER)
 MODEL_S, MODEL_STEP_S = 60.0, 0.002
 
 _chaotic_run = partial(wheels_run, k=K, tau_s=TAU_S)
@@ -89,7 +86,7 @@ def series(cell: SeriesCell, setting: Setting) -> list[Sample]:
     """One wheel, tick by tick."""
     condition = CONDITIONS[cell["condition"]]
     seconds, seed = 60 * setting.options["minutes"], setting.seed_of(cell)
-    records = _gather(_chaotic_run(condition, setting, 1, seconds, seed))[0]
+    records = _gather(_chaotic_run(condition, setting, 2, seconds, seed))[0]
     samples = records[:, [_PHI, _FORCE, _TORQUE]].tolist()
     return [
         {
@@ -106,7 +103,13 @@ def series(cell: SeriesCell, setting: Setting) -> list[Sample]:
 def lives(cell: LivesCell, setting: Setting) -> list[Life]:
     """How long each of many wheels switches, and what it does then."""
     condition = CONDITIONS[cell["condition"]]
-    wheels = LIVES_WHEELS_DELAYED if cell["condition"] == DELAYED else LIVES_WHEELS
+    wheels = (
+        LIVES_WHEELS
+        if cell["condition"] in SHOWN
+        else LIVES_WHEELS_DELAYED
+        if cell["condition"] == DELAYED
+        else LIVES_WHEELS_OTHERS
+    )
     seconds, seed = 60 * setting.options["minutes"], setting.seed_of(cell)
     rows: list[Life] = []
     for records in _chaotic_run(condition, setting, wheels, seconds, seed):
@@ -154,8 +157,8 @@ def twins(cell: TwinsCell, setting: Setting) -> list[Distance]:
 
 
 def map_wheels(cell: MapCell, setting: Setting) -> list[MapWheel]:
-    """What wheels with this latency and inertia do in the end, and whether their twins parted."""
-    condition = Condition(latency_s=cell["latency_s"], inertia=cell["inertia"])
+    """What wheels at this lag and voltage do in the end, and whether their twins parted."""
+    condition = Condition(rod_lag_s=cell["rod_lag_s"], battery_v=cell["battery_v"], body=True)
     seed, tick_s = setting.seed_of(cell), condition.tick_s
     jump = Jump(round(MAP_JUMP_S / tick_s), SEEN)
     plain = _gather(_chaotic_run(condition, setting, MAP_WHEELS, MAP_S, seed))

@@ -49,16 +49,16 @@ class TwinsCell(TypedDict):
 
 
 class MapCell(TypedDict):
-    """Wheels with one latency and one moment of inertia.
+    """Wheels on bodies with one lag of the rods and one voltage of the battery.
 
     Attributes:
-        latency_s: latency of the motor (s).
-        inertia: the motor's moment of inertia, as a multiple of its own (1).
+        rod_lag_s: how much older the rods' positions are than the angle in F_tan (s).
+        battery_v: open-circuit voltage of the battery (V).
     """
 
     part: Literal["map"]
-    latency_s: float
-    inertia: float
+    rod_lag_s: float
+    battery_v: float
 
 
 class ModelCell(TypedDict):
@@ -222,11 +222,11 @@ def twins_rows(rows: list[ChaosRow]) -> dict[tuple[str, float], list[TwinsRow]]:
 
 
 def map_rows(rows: list[ChaosRow]) -> dict[tuple[float, float], list[MapRow]]:
-    """The rows of part `map`, by (latency in s, multiple of the inertia)."""
+    """The rows of part `map`, by (lag of the rods in s, voltage of the battery)."""
     places: dict[tuple[float, float], list[MapRow]] = {}
     for row in rows:
         if row["part"] == "map":
-            places.setdefault((row["latency_s"], row["inertia"]), []).append(row)
+            places.setdefault((row["rod_lag_s"], row["battery_v"]), []).append(row)
     return places
 
 

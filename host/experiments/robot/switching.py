@@ -22,11 +22,13 @@ from robot.kick_requests import parse
 from robot.kicks import DIRECTION_TICKS, JUMP
 from robot.loop import Loop
 from robot.params import Params
+from sim_motor import robots
 from sim_motor.batch import CHANNELS, run
-from sim_motor.brick import HIGHEST_BATTERY_V
 from sim_motor.clock import LATE_MOST_S, VirtualClock
 from sim_motor.constants import SUBSTEP_S, Constants, load
+from sim_motor.scene import Scene
 from sim_motor.wheel_motor import SimMotor
+from sim_motor.world import alone
 
 Array = NDArray[np.float64]
 
@@ -49,7 +51,9 @@ class Condition:
         motor: name of the motor.
         battery_v: open-circuit voltage of the battery (V).
         latency_s: latency of the motors (s).
-        inertia: the motor's moment of inertia, as a multiple of its own (1).
+        rod_lag_s: how much older the rods' positions are than the angle in F_tan (s).
+        body: whether two wheels stand on one body, on a floor without walls; otherwise each wheel
+            carries half of it by itself.
     """
 
     max_duty_pct: float = _DEFAULT.max_duty_pct
@@ -57,15 +61,14 @@ class Condition:
     motor: str | None = None
     battery_v: float | None = None
     latency_s: float | None = None
-    inertia: float = 1.0
+    rod_lag_s: float = 0.0
+    body: bool = False
 
     def constants(self, setting: Setting) -> Constants:
         """The constants of motor and wheel."""
         published = load(self.motor) if self.motor else setting.constants
         latency_s = published.latency_s if self.latency_s is None else self.latency_s
-        return replace(
-            published, latency_s=latency_s, motor_inertia=self.inertia * published.motor_inertia
-        )
+        return replace(published, latency_s=latency_s)
 
     def supply_v(self, setting: Setting) -> float:
         """The battery's open-circuit voltage (V)."""
@@ -75,7 +78,14 @@ class Condition:
         """The parameters of the loop, with these changes."""
         params = Params()
         params.apply(
-            params.check({"max_duty_pct": self.max_duty_pct, "tick_s": self.tick_s, **changes})
+            params.check(
+                {
+                    "max_duty_pct": self.max_duty_pct,
+                    "tick_s": self.tick_s,
+                    "rod_lag_s": self.rod_lag_s,
+                    **changes,
+                }
+            )
         )
         return params
 
@@ -89,19 +99,22 @@ class Jump(NamedTuple):
 
 ORDINARY = "as it is"
 DELAYED = "latency of 70 ms"
+OLDER = "rods 7.5 ms older"
+# Half of the four readings and the two formulas between them in a program that reads the sensor
+# anew in each formula, at 3.65 ms a reading (python-ev3dev on the brick).
+OLDER_S = 0.0075
 _AA_V = 9.0  # six cells of 1.5 V
 CONDITIONS = {
     ORDINARY: Condition(),
-    "ticks of 40 ms": Condition(tick_s=0.04),
-    "motor nxt_unroller": Condition(motor="nxt_unroller"),
-    "duty up to 100 %": Condition(max_duty_pct=100.0),
+    "on one body": Condition(body=True),
     "100 %, 9 V": Condition(max_duty_pct=100.0, battery_v=_AA_V),
-    "100 %, 9 V, 40 ms": Condition(max_duty_pct=100.0, battery_v=_AA_V, tick_s=0.04),
-    "100 %, 9 V, nxt_unroller": Condition(
-        max_duty_pct=100.0, battery_v=_AA_V, motor="nxt_unroller"
-    ),
-    "100 %, 10 V": Condition(max_duty_pct=100.0, battery_v=HIGHEST_BATTERY_V),
     DELAYED: Condition(latency_s=0.07),
+    f"{OLDER}, wheels alone": Condition(rod_lag_s=OLDER_S),
+    "rods 5 ms older": Condition(rod_lag_s=0.005, body=True),
+    OLDER: Condition(rod_lag_s=OLDER_S, body=True),
+    f"{OLDER}, 7.2 V": Condition(rod_lag_s=OLDER_S, body=True, battery_v=7.2),
+    f"{OLDER}, ticks of 40 ms": Condition(rod_lag_s=OLDER_S, body=True, tick_s=0.04),
+    f"{OLDER}, nxt_unroller": Condition(rod_lag_s=OLDER_S, body=True, motor="nxt_unroller"),
 }
 
 
@@ -121,7 +134,7 @@ def wheels_run(
     Args:
         condition: how the brick differs from the setting's.
         setting: of the run.
-        wheels: how many wheels.
+        wheels: how many wheels; an even number on bodies.
         seconds: how long each runs (s).
         seed: seed of all chance.
         jump: a jump of a potential, None for no jump.
@@ -136,13 +149,28 @@ def wheels_run(
     published = condition.constants(setting)
     motors = published.specimens(wheels, rng)
     batched = published.latency_s + LATE_MOST_S + 2 * SUBSTEP_S < params.tick_s
-    group = max(1, _MOST_TICKS // ticks) if batched else 2
+    group = max(2, _MOST_TICKS // ticks // 2 * 2) if batched else 2
     for first in range(0, wheels, group):
         some = motors[first : first + group]
         one_seed = int(rng.integers(2**32))
-        if batched:
-            kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
-            supply_v = condition.supply_v(setting)
+        supply_v = condition.supply_v(setting)
+        if not batched:
+            yield _loop_run(some, supply_v, params, ticks, one_seed, jump)
+            continue
+        kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
+        if condition.body:
+            course = robots.run(
+                len(some) // 2,
+                ticks,
+                one_seed,
+                Scene(),
+                params=params,
+                kick=kick,
+                motors=[alone(motor) for motor in some],
+                battery_v=supply_v,
+            )
+            yield course.records.reshape(len(some), ticks, len(CHANNELS))
+        else:
             yield run(
                 len(some),
                 ticks,
@@ -153,8 +181,6 @@ def wheels_run(
                 battery_v=supply_v,
                 record=len(some),
             ).records
-        else:
-            yield _loop_run(some, condition.supply_v(setting), params, ticks, one_seed, jump)
 
 
 def _request(jump: Jump) -> dict[str, object]:

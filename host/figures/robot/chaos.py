@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.robot.chaos_pieces import SEEN, TAU_S, TWIN_S, UNSEEN
+from host.experiments.robot.chaos_numbers import tally
+from host.experiments.robot.chaos_pieces import SEEN, TAU_S, TWIN_S, UNSEEN, K
 from host.experiments.robot.chaos_rows import (
     ChaosRow,
     MapRow,
@@ -22,61 +21,60 @@ from host.experiments.robot.chaos_rows import (
     turning_points_rad,
     twins_rows,
 )
-from host.experiments.robot.switching import CONDITIONS, DELAYED, ORDINARY, SWITCHES
+from host.experiments.robot.switching import CONDITIONS, OLDER, ORDINARY
 from host.figures.style import COLOURS, SIZE, styled
 from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
+from host.util.intervals import wilson
+from robot.params import Params
 from sim_motor.settling import COUNT_RAD
 
 STRETCH_S = 20.0
-_BEGINS_S = {ORDINARY: 0.0, DELAYED: 60.0}
+_SLIDE = (16.0, 9.0)
+_BEGINS_S = {ORDINARY: 0.0, OLDER: 60.0}
 # Condition and jump of the twins that are drawn, with a label and its place.
 _TWINS = (
-    (DELAYED, SEEN, DELAYED, (2.0, 0.8)),
-    (ORDINARY, SEEN, ORDINARY, (8.5, 2e-3)),
-    (DELAYED, UNSEEN, "below the steps", (2.4, 1e-7)),
+    (OLDER, SEEN, OLDER, (2.2, 0.8)),
+    (ORDINARY, SEEN, ORDINARY, (8.0, 6e-5)),
+    (OLDER, UNSEEN, "a jump that no reading shows", (2.4, 1e-7)),
 )
-_SMALL = 11
-_ABOVE: Any = {
-    "loc": "lower left",
-    "bbox_to_anchor": (0.0, 1.0),
-    "fontsize": _SMALL,
-    "borderaxespad": 0.2,
-    "columnspacing": 1.2,
-}
+_SMALL = 12
 
 
 def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
     """Draw the rows of a simulated brick, or of a robot, which has neither twins nor map."""
     wheels = series_of_wheels(rows)
     places = map_rows(rows)
-    simulated = bool(places)
     with styled():
-        if simulated:
-            figure = Figure(**{**SIZE, "figsize": (10.0, 16.0)})
-            grid = figure.add_gridspec(5, 2, height_ratios=(2, 2, 4, 4, 3))
-        else:
-            figure = Figure(**{**SIZE, "figsize": (10.0, 9.0)})
-            grid = figure.add_gridspec(3, 2, height_ratios=(2, 2, 4))
+        figure = Figure(**{**SIZE, "figsize": _SLIDE})
+        grid = figure.add_gridspec(2, 3)
+        courses = grid[0, :2].subgridspec(2, 1)
         for place, ((condition, side), series) in enumerate(wheels.items()):
-            axes = figure.add_subplot(grid[place, :])
-            title = condition if simulated else f"{side} wheel"
-            _draw_torque(axes, series, title, _BEGINS_S[condition])
-        if simulated:
-            delayed = [own for (condition, _), own in wheels.items() if condition == DELAYED]
-            _draw_return_map(figure.add_subplot(grid[2, 0]), delayed)
-            _draw_twins(figure.add_subplot(grid[2, 1]), twins_rows(rows))
+            axes = figure.add_subplot(courses[place])
+            title = condition if places else f"{side} wheel"
+            _draw_torque(axes, series, title, _BEGINS_S[condition], last=place == 1)
+        axes = figure.add_subplot(grid[0, 2])
+        if places:
+            older = [own for (condition, _), own in wheels.items() if condition == OLDER]
+            _draw_return_map(axes, older, OLDER)
             end_s = max(series[-1]["t_s"] for series in wheels.values())
-            _draw_lives(figure.add_subplot(grid[3, :]), rows, end_s)
-            _draw_map(figure.add_subplot(grid[4, :]), places)
+            _draw_lives(figure.add_subplot(grid[1, 0]), rows, end_s)
+            _draw_twins(figure.add_subplot(grid[1, 1]), twins_rows(rows))
+            _draw_map(figure.add_subplot(grid[1, 2]), places)
         else:
-            _draw_return_map(figure.add_subplot(grid[2, 0]), list(wheels.values()))
-            _draw_intervals(figure.add_subplot(grid[2, 1]), list(wheels.values()))
-        figure.suptitle("$k$ = 15, $\\tau$ = 1 s: do the wheels switch irregularly?", fontsize=16)
+            _draw_return_map(axes, list(wheels.values()), "both wheels")
+            _draw_intervals(figure.add_subplot(grid[1, :]), list(wheels.values()))
+        figure.suptitle(
+            f"Chaos at $a$ = {Params().a:g}, $k$ = {K:g}, $\\tau$ = {TAU_S:g} s: do the wheels"
+            " switch irregularly?",
+            fontsize=18,
+        )
     return figure
 
 
-def _draw_torque(axes: Axes, series: list[SeriesRow], title: str, begin_s: float) -> None:
+def _draw_torque(
+    axes: Axes, series: list[SeriesRow], title: str, begin_s: float, *, last: bool
+) -> None:
     """Draw STRETCH_S seconds from begin_s on, or the last ones if the series ends before that."""
     t_s = np.array([row["t_s"] for row in series])
     torque = np.array([row["torque"] for row in series])
@@ -87,21 +85,21 @@ def _draw_torque(axes: Axes, series: list[SeriesRow], title: str, begin_s: float
     axes.set_xlim(begin_s, begin_s + STRETCH_S)
     axes.set_ylim(-1.15, 1.15)
     axes.set_ylabel("torque $M$")
-    axes.set_xlabel("time (s)")
-    axes.set_title(f"{title} (grey: the motor stalls)", fontsize=13, loc="left")
+    if last:
+        axes.set_xlabel("time (s)")
+    axes.set_title(f"{title} (grey: the motor stalls)", fontsize=14, loc="left")
 
 
-def _draw_return_map(axes: Axes, shown: list[list[SeriesRow]]) -> None:
+def _draw_return_map(axes: Axes, shown: list[list[SeriesRow]], of: str) -> None:
     """Draw the angle of each turning point against the one before."""
     for series, colour in zip(shown, COLOURS, strict=False):
         angles = np.degrees(turning_points_rad(series))
         axes.plot(angles[:-1], angles[1:], ".", color=colour, markersize=4)
-    axes.set_xlabel("angle of a turning point, modulo 90 (deg)")
-    axes.set_ylabel("angle of the next (deg)")
+    axes.set_xlabel("turning point, modulo 90 (deg)")
+    axes.set_ylabel("the next turning point (deg)")
     axes.set_xticks((0, 30, 60, 90))
     axes.set_yticks((0, 30, 60, 90))
-    title = "return map, " + DELAYED if len(shown) == 1 else "return map"
-    axes.set_title(title, fontsize=13, loc="left")
+    axes.set_title(f"return map: {of}", fontsize=14, loc="left")
 
 
 def _draw_intervals(axes: Axes, shown: list[list[SeriesRow]]) -> None:
@@ -121,29 +119,18 @@ def _draw_intervals(axes: Axes, shown: list[list[SeriesRow]]) -> None:
 
 
 def _draw_lives(axes: Axes, rows: list[ChaosRow], end_s: float) -> None:
-    """Draw the share of the wheels that still switch, against time."""
-    styles: Any = ("-", "--", ":")
-    for number, name in enumerate(CONDITIONS):
-        wheels = lives_rows(rows, name)
-        lasts = [row["end"] == SWITCHES for row in wheels]
-        stops_s = np.maximum([row["until_s"] for row in wheels], 0.1)
-        until_s = np.sort(np.where(lasts, np.inf, stops_s))
-        steps = np.append(until_s[until_s < end_s], end_s)
-        left = 100 * (1 - np.searchsorted(until_s, steps, side="right") / len(wheels))
-        axes.step(
-            np.append(0.1, steps),
-            np.append(100, left),
-            where="post",
-            color=COLOURS[number % len(COLOURS)],
-            linestyle=styles[number % 3],
-            label=name,
-        )
-    axes.set_xscale("log")
-    axes.set_xlim(0.5, end_s)
-    axes.set_ylim(0, 104)
-    axes.set_xlabel("time since the start (s)")
-    axes.set_ylabel("wheels that still switch (%)")
-    axes.legend(ncols=3, **_ABOVE)
+    """Draw which share of the wheels still switches in the end, under each condition."""
+    names = list(CONDITIONS)[::-1]
+    for place, name in enumerate(names):
+        own = tally(lives_rows(rows, name))
+        share, colour = own["to_the_end"] / own["wheels"], COLOURS[CONDITIONS[name].rod_lag_s > 0]
+        low, high = wilson(own["to_the_end"], own["wheels"])
+        axes.barh(place, 100 * share, color=colour, alpha=0.5)
+        axes.plot((100 * low, 100 * high), (place, place), color="black", linewidth=1.5)
+    axes.set_yticks(range(len(names)), names, fontsize=_SMALL)
+    axes.set_xlim(0, 100)
+    axes.set_xlabel(f"wheels that switch for {end_s / 60:.0f} min (%)")
+    axes.set_title("how many last (line: 95 % interval)", fontsize=14, loc="left")
 
 
 def _draw_twins(axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]]) -> None:
@@ -163,28 +150,24 @@ def _draw_twins(axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]]) -> N
     axes.set_ylim(1e-8, 10)
     axes.set_xlabel("time since a jump of $x_1$ (s)")
     axes.set_ylabel("distance of the potentials")
-    axes.set_title("how twins part", fontsize=13, loc="left")
+    axes.set_title("how twins part", fontsize=14, loc="left")
 
 
 def _draw_map(axes: Axes, places: dict[tuple[float, float], list[MapRow]]) -> None:
-    """Draw the share of chaotic wheels over latency and moment of inertia."""
-    latencies = sorted({latency_s for latency_s, _ in places})
-    inertias = sorted({inertia for _, inertia in places})
+    """Draw the share of chaotic wheels over the rods' lag and the battery's voltage."""
+    lags_s = sorted({lag_s for lag_s, _ in places})
+    voltages_v = sorted({battery_v for _, battery_v in places})
 
-    def share(latency_s: float, inertia: float) -> float:
-        return float(np.mean([is_chaotic(row) for row in places[latency_s, inertia]]))
+    def share(lag_s: float, battery_v: float) -> float:
+        return float(np.mean([is_chaotic(row) for row in places[lag_s, battery_v]]))
 
-    shares = np.array([[share(x, y) for x in latencies] for y in inertias])
+    shares = np.array([[share(x, y) for x in lags_s] for y in voltages_v])
     image = axes.imshow(
         100 * shares, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=100
     )
-    axes.set_xticks(range(len(latencies)), [f"{1000 * latency:g}" for latency in latencies])
-    axes.set_yticks(range(len(inertias)), [f"{inertia:g}" for inertia in inertias])
-    axes.set_xlabel("latency of the motors (ms)")
-    axes.set_ylabel("moment of inertia\n(multiple of the motor's)")
-    own = latencies.index(min(latencies)), inertias.index(1.0)
-    axes.plot(*own, marker="*", color="white", markersize=14)
+    axes.set_xticks(range(len(lags_s)), [f"{1000 * lag:g}" for lag in lags_s])
+    axes.set_yticks(range(len(voltages_v)), [f"{volts:g}" for volts in voltages_v])
+    axes.set_xlabel("rods older by (ms)")
+    axes.set_ylabel("battery (V)")
     axes.figure.colorbar(image, ax=axes, label="chaotic wheels (%)", fraction=0.06, pad=0.02)
-    axes.set_title(
-        "where it is chaotic ($\\bigstar$: published constants)", fontsize=13, loc="left"
-    )
+    axes.set_title("where it is chaotic", fontsize=14, loc="left")

@@ -13,6 +13,7 @@ from host.experiments.robot.chaos_numbers import APART_S, growth
 from host.experiments.robot.switching import (
     CONDITIONS,
     DELAYED,
+    OLDER,
     ORDINARY,
     RESTS,
     ROLLS,
@@ -117,11 +118,11 @@ def test_what_a_wheel_does_in_the_end_is_classified(after, expected):
     assert (until_s > 30.0) == (expected == SWITCHES)
 
 
-@pytest.mark.parametrize("name", [ORDINARY, DELAYED])
+@pytest.mark.parametrize("name", [ORDINARY, DELAYED, OLDER])
 def test_twins_are_the_same_up_to_the_jump_and_not_after_it(name):
-    plain, other = (runs(name, 3, 10.0, jump=jump) for jump in (None, Jump(100, 1e-3)))
+    plain, other = (runs(name, 4, 10.0, jump=jump) for jump in (None, Jump(100, 1e-3)))
     assert np.array_equal(plain[:, :100], other[:, :100])
-    assert plain.shape == (3, 333, len(CHANNELS))
+    assert plain.shape == (4, 333, len(CHANNELS))
     assert np.all(plain[:, 100, X1] < other[:, 100, X1])
     assert np.allclose(plain[:, 100, X1] + 1e-3, other[:, 100, X1], atol=1e-4)
 
@@ -135,6 +136,27 @@ def test_the_brick_as_it_is_stops_switching_within_a_minute():
     ends = [ending(phi, Params().tick_s) for phi in runs(ORDINARY, 40, 90.0)[:, :, PHI]]
     assert sum(end == SWITCHES for _, end in ends) == 0
     assert max(until_s for until_s, _ in ends) > 4.0  # chaos there is, but it does not last
+
+
+def test_wheels_on_bodies_whose_rods_are_older_go_on_switching():
+    """All of them, and their exponents are above that of noise; without the lag they do not."""
+    tick_s = Params().tick_s
+    for record in runs(OLDER, 20, 300.0):
+        assert ending(record[:, PHI], tick_s)[1] == SWITCHES
+        exponent, _ = from_series(record[:, FORCE], tick_s, APART_S)
+        assert exponent.interval[0] > of_noise()
+    ends = [ending(phi, tick_s)[1] for phi in runs("on one body", 20, 90.0)[:, :, PHI]]
+    assert ends == [ROLLS] * 20
+
+
+def test_a_wheel_alone_may_rest_for_good_where_its_reading_is_a_multiple_of_45_degrees():
+    """There M is 0 once the neurons have followed it. On a body the other wheel frees it."""
+    alone = runs(f"{OLDER}, wheels alone", 40, 300.0)
+    resting = [record for record in alone if ending(record[:, PHI], 0.03)[1] == RESTS]
+    assert len(resting) > 5
+    for record in resting:
+        assert round(record[-1, PHI] * 180 / pi) % 45 == 0
+        assert abs(record[-1, TORQUE]) < 0.01
 
 
 def test_with_a_longer_latency_wheels_go_on_switching_and_their_exponent_is_positive(delayed):
@@ -163,7 +185,7 @@ def test_it_is_the_bound_of_the_torque_that_ends_the_chaos_of_the_papers_model()
 
 def test_a_piece_done_again_has_the_same_rows_and_they_survive_json():
     for cell in (
-        {"part": "map", "latency_s": 0.075, "inertia": 1.0},
+        {"part": "map", "rod_lag_s": 0.0075, "battery_v": 7.5},
         {"part": "speed", "condition": ORDINARY},
     ):
         rows = chaos.simulate(cell, SETTING)
@@ -218,9 +240,10 @@ def _even(record):
 
 
 def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hold(monkeypatch):
-    monkeypatch.setattr(chaos, "LATENCIES_S", (0.003, 0.06))
-    monkeypatch.setattr(chaos, "INERTIAS", (1.0,))
+    monkeypatch.setattr(chaos, "LAGS_S", (0.0, 0.0075))
+    monkeypatch.setattr(chaos, "VOLTAGES_V", (7.5,))
     monkeypatch.setattr(chaos_pieces, "LIVES_WHEELS", 6)
+    monkeypatch.setattr(chaos_pieces, "LIVES_WHEELS_OTHERS", 2)
     monkeypatch.setattr(chaos_pieces, "LIVES_WHEELS_DELAYED", 2)
     monkeypatch.setattr(chaos_pieces, "TWIN_PAIRS", 4)
     setting = Setting(1, {"minutes": 1.0})
@@ -233,8 +256,16 @@ def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hol
     (claim,) = findings.claims
     assert claim.holds is None  # one minute
     assert claim.measured == 0.0
+    assert (
+        f"with {OLDER} than the angle in F_tan, and both wheels on one body, 6 of 6" in claim.note
+    )
     assert DELAYED in claim.note
-    assert "100 %, 10 V" in claim.note
+    assert "100 %, 9 V" in claim.note
+    lagged, own = (
+        [place["chaotic"] for place in findings.numbers["map"] if place["rod_lag_s"] == lag_s]
+        for lag_s in (0.0075, 0.0)
+    )
+    assert (lagged, own) == ([chaos_pieces.MAP_WHEELS], [0])
     json.dumps(findings.numbers, allow_nan=False)
     assert len(draw(rows, findings).axes) == 7
 
