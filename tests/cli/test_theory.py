@@ -68,12 +68,23 @@ def test_the_command_gives_the_hopf_point(kickctl):
         ("hopf", "--tau", "0"),
         ("fixpoints", "--k", "nan"),
         ("fixpoints", "--I", "0"),
+        ("branch", "--a", "0"),
+        ("branch", "--f", "0"),
+        ("branch", "--along", "f", "--f", "0"),
+        ("branch", "--along", "tau", "--k", "0"),
+        ("branch", "--tau", "1e-6"),
+        ("portrait", "--f", "0"),
+        ("phase-diagram", "--I", "1e-8"),
+        ("lyapunov", "--f", "0"),
+        ("lyapunov-line", "--f", "0"),
+        ("tick", "--f", "0"),
     ],
 )
-def test_degenerate_input_is_refused_in_words(kickctl, arguments):
+def test_degenerate_input_is_refused_in_words_before_anything_is_computed(kickctl, arguments):
     status, _, err = kickctl("theory", *arguments)
     assert status == 2
     assert "Traceback" not in err
+    assert "cells complete" not in err
     assert err.count("kickctl:") == 1
 
 

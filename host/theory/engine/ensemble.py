@@ -130,8 +130,16 @@ def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
     )
     return WrongUse(
         f"{seconds:g} s of a wheel with {words} would take {steps:.1e} steps",
-        "choose a larger tau or I, a smaller k",
+        "choose a larger tau or I, a smaller k" if constants[4] else "give f above 0",
     )
+
+
+def require_loose(parameters: Array, seconds: float) -> None:
+    """Raise WrongUse if a wheel with these constants, (6, wheels), is too stiff to be followed."""
+    needed = np.ceil(seconds * FINE * rate_per_s(parameters))
+    worst = int(np.argmax(needed))
+    if not needed[worst] <= MOST_STEPS:
+        raise too_stiff(seconds, parameters[:, worst], needed[worst])
 
 
 def advance(

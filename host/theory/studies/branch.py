@@ -29,7 +29,7 @@ from host.theory.analysis.cycles import ROTATION, Shooting
 from host.theory.analysis.fixpoints import fixpoint
 from host.theory.analysis.hopf import hopf
 from host.theory.analysis.merging import NEAR, merging_line, mergings, neutral_tau_s
-from host.theory.engine.flow import FINENESS
+from host.theory.engine.flow import FINENESS, steps_for
 from host.theory.model.turning import constant_velocity, driven, potentials
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, wheel_of
 from host.theory.studies.branch_cycles import rows_of_branches
@@ -57,7 +57,16 @@ _FIXPOINTS, _TAUS, _ANGLES = 121, 25, 73
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[BranchCell]:
-    """The branches, the merging and its line over tau, and the turning wheel."""
+    """The branches, the merging and its line over tau, and the turning wheel.
+
+    Raises WrongUse if no resting wheel begins to swing, or the wheel cannot be followed.
+    """
+    wheel = wheel_of(options)
+    hopf(wheel)
+    field, _, high = span(options)
+    last = with_constant(wheel, field, high)
+    fixpoint(0.0, last)
+    steps_for(1.0, last)  # as the search for a rotation takes them
     parts: list[Part] = ["fixpoints", "merging", "FB", "LLM"]
     if options["dry"] > 0.0:
         parts.append("dry")

@@ -13,7 +13,7 @@ import numpy as np
 from host.runs.contract import Setting
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import phase
-from host.theory.engine.ensemble import FINE, Averages, averages
+from host.theory.engine.ensemble import FINE, Averages, averages, require_loose
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import PHI, Array, resting, wheel_of
 from host.theory.studies.phase_diagram_report import report
@@ -54,7 +54,14 @@ def axes_of(panel: Panel, options: dict[str, Any]) -> tuple[Array, Array]:
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[PhaseDiagramCell]:
-    """Bands of time constants, and a sample for the step size."""
+    """Bands of time constants, and a sample for the step size.
+
+    Raises WrongUse if wheels are too stiff to be followed.
+    """
+    for panel in PANELS:
+        ks, taus = axes_of(panel, options)
+        stiffest = _parameters(options, taus, np.full(len(taus), ks[-1]))
+        require_loose(stiffest, max(options["transient"], options["seconds"]))
     bands: list[PhaseDiagramCell] = [
         {"panel": panel, "first": first, "end": min(first + BAND, options["points"])}
         for panel in PANELS

@@ -20,7 +20,7 @@ from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.manifolds import stable_manifolds, unstable_manifolds
 from host.theory.analysis.phases import Phase
 from host.theory.analysis.trajectories import limit_cycle, phase_of_cycle, trajectory
-from host.theory.engine.flow import FINENESS
+from host.theory.engine.flow import FINENESS, steps_for
 from host.theory.model.turning import turning
 from host.theory.model.wheel import OMEGA, PHI, Array, wheel_of
 from host.theory.studies.portrait_rows import (
@@ -49,15 +49,22 @@ TRAJECTORIES = (
     (1.7, 0.1),
     (-1.5, -0.1),
 )
+# The unstable manifolds are computed again with steps shorter by this.
+FINER = 2.0
 # The greatest speed shown, in units of the unstable manifolds' greatest speed.
 REACH = 2.5
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[PortraitCell]:
-    """One portrait each. Raises WrongUse if the wheel can rest at any angle."""
+    """One portrait each.
+
+    Raises WrongUse if the wheel can rest at any angle, or is too stiff to be followed.
+    """
     ks = PAPERS_K if options["k"] is None else (options["k"],)
     for k in ks:
-        fixpoint(0.0, wheel_of(options)._replace(k=k))
+        wheel = wheel_of(options)._replace(k=k)
+        fixpoint(0.0, wheel)
+        steps_for(FOLLOWED_S, wheel, FINER * FINENESS)
     return [{"k": k} for k in ks]
 
 
@@ -69,7 +76,7 @@ def simulate(cell: PortraitCell, setting: Setting) -> list[Point | Summary]:
         for n, point in enumerate(fixpoints(wheel))
     ]
     unstable = unstable_manifolds(SADDLE, wheel, FOLLOWED_S)
-    finer = unstable_manifolds(SADDLE, wheel, FOLLOWED_S, fineness=2 * FINENESS)
+    finer = unstable_manifolds(SADDLE, wheel, FOLLOWED_S, fineness=FINER * FINENESS)
     off = float(np.abs(unstable - finer)[:, : unstable.shape[1] // 2, PHI].max())
     for line, states in enumerate(unstable):
         rows += _points("unstable manifold", line, states[:, [PHI, OMEGA]])
