@@ -45,6 +45,11 @@ _CURVES: dict[ModelName, Any] = {
     SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 6},
 }
 _MAP = ListedColormap(_SHADES)
+# Which slice of the four dimensions is shown (host.theory.analysis.outcomes.starting_states).
+_SLICE = (
+    r"Basins: the slice of starts with the potentials of rest at their angle,"
+    r" $x_1 = \cos\varphi$, $x_2 = \sin\varphi$."
+)
 
 
 def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
@@ -52,6 +57,7 @@ def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
     numbers: Numbers = findings.numbers
     with styled():
         figure = Figure(figsize=(12.0, 9.0), dpi=1600 / 12, layout="constrained")
+        figure.supxlabel(_SLICE, fontsize=11)
         if len(numbers["no_wheel_rolls"]) == len(MODEL_NAMES):
             panels: Any = figure.subplots(1, 2, sharey=True)
             used = _draw_basins(panels, rows, findings)

@@ -37,6 +37,14 @@ _MARKERS: dict[Marked, tuple[str, str]] = {
     "stable": ("o", "black"),
     "unstable": ("o", "white"),
 }
+# Which slice of the four dimensions is shown (host.theory.model.turning).
+_SLICE = (
+    "Slice for the stable manifolds, where trajectories start too: the potentials of a wheel that"
+    " has always\nturned at its present speed,"
+    r" $x_1 = (\cos\varphi + \omega\tau\sin\varphi)/(1 + \omega^2\tau^2)$,"
+    r" $x_2 = (\sin\varphi - \omega\tau\cos\varphi)/(1 + \omega^2\tau^2)$."
+    "\nUnstable manifolds, limit cycles and trajectories are projections."
+)
 _STABLE, _UNSTABLE, _CYCLE = COLOURS[4], COLOURS[0], "#c00000"
 
 
@@ -53,7 +61,12 @@ def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
             np.arange(-4, 5) * pi / 4, [f"{degrees}°" for degrees in range(-180, 181, 45)]
         )
         figure.legend(
-            *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=12
+            *panels[0].get_legend_handles_labels(),
+            loc="outside lower center",
+            ncols=3,
+            fontsize=12,
+            title=_SLICE,
+            title_fontsize=11,
         )
     return figure
 
@@ -78,7 +91,7 @@ def _draw_lines(axes: Axes, rows: list[PointRow]) -> None:
                 color=_STABLE,
                 markersize=2.2,
             )
-    axes.plot([], [], color=_STABLE, label="stable manifolds of the saddles, cut")
+    axes.plot([], [], color=_STABLE, label="stable manifolds of the saddles, in a slice")
     for line in sorted({row["line"] for row in rows if row["part"] == "trajectory"}):
         _draw_turned(axes, _points(rows, "trajectory", line), (0,), color="black", linewidth=0.9)
     axes.plot([], [], color="black", linewidth=0.9, label="trajectories")

@@ -68,7 +68,8 @@ TABLE = {
     ),
     "portrait": Entry(
         "portraits in (phi, omega/2pi): fixpoints, manifolds of the saddles, limit cycles,"
-        " trajectories",
+        " trajectories. Stable manifolds are shown, and trajectories start, in the slice of states"
+        " whose potentials are those of a wheel that has always turned at its present speed",
         (
             A,
             TAU,
@@ -149,7 +150,8 @@ TABLE = {
     ),
     "basins": Entry(
         "basins of attraction in (phi, omega), and of kicks: which kick at which phase of the cycle"
-        " leads where",
+        " leads where. Starts are in the slice x1 = cos phi, x2 = sin phi, the potentials of rest;"
+        " wheels that are kicked roll on their cycle",
         (
             A,
             TAU,
