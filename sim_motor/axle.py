@@ -6,7 +6,6 @@ of its own, so that axle and tread, one behind the other, bear the same force.
 
 from math import inf
 
-from sim_motor.compiled import jit
 from sim_motor.constants import SUBSTEP_S, data
 
 
@@ -37,7 +36,6 @@ def stiffness_range() -> tuple[float, float]:
     return axle_stiffness(*softest), axle_stiffness(*stiffest)
 
 
-@jit
 def twist_speed(
     twist: float,
     stretch: float,
@@ -63,7 +61,6 @@ def twist_speed(
     return (tread[0] * stretch - axle[0] * twist + of_tread * slip) / (of_axle + of_tread)
 
 
-@jit
 def next_stretch(stretch: float, force: float, spring: tuple[float, float]) -> float:
     """How far a damped spring is stretched a substep later under a force.
 

@@ -22,7 +22,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from sim_motor.axle import next_stretch, twist_speed
-from sim_motor.compiled import jit
+from sim_motor.compiled import compiled, jit
 from sim_motor.compiled_motor import advance_in_place
 from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
 from sim_motor.motor import WHEEL_SPEED
@@ -34,6 +34,7 @@ WallNumbers = tuple[float, float, float, float]
 Drive = tuple[int, float, float]
 
 PARTS = 8
+_twist_speed, _next_stretch = compiled(twist_speed), compiled(next_stretch)
 
 
 class Place(NamedTuple):
@@ -188,18 +189,18 @@ def tyre_force(
     """
     stiffness, damping, axle_stiffness, axle_damping = tyre
     tread, axle = (stiffness, damping), (axle_stiffness, axle_damping)
-    slip -= twist_speed(stretch[2], stretch[0], slip, tread, axle)
+    slip -= _twist_speed(stretch[2], stretch[0], slip, tread, axle)
     forward = stiffness * (stretch[0] + SUBSTEP_S * slip) + damping * slip
     sideways = stiffness * (stretch[1] + SUBSTEP_S * side_slip) + damping * side_slip
     force = hypot(forward, sideways)
     if force > most:
         forward, sideways = forward * most / force, sideways * most / force
-        stretch[0] = next_stretch(stretch[0], forward, tread)
-        stretch[1] = next_stretch(stretch[1], sideways, tread)
+        stretch[0] = _next_stretch(stretch[0], forward, tread)
+        stretch[1] = _next_stretch(stretch[1], sideways, tread)
     else:
         stretch[0] += SUBSTEP_S * slip
         stretch[1] += SUBSTEP_S * side_slip
-    stretch[2] = next_stretch(stretch[2], forward, axle)
+    stretch[2] = _next_stretch(stretch[2], forward, axle)
     return forward, sideways
 
 

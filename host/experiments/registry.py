@@ -115,8 +115,8 @@ ROBOT = {
         ("R5", "R6"),
     ),
     "wall": Entry(
-        "a robot with k = 2 between two walls, which reverses by itself; grip, wall stiffness and k"
-        " vary",
+        "a robot with k = 2 between two walls, which reverses by itself: on which axles, floors,"
+        " fronts and batteries",
         (Option("bounces", 50, 1, 10000, "number of bounces to count"),),
         ("R13",),
     ),

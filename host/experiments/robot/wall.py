@@ -5,16 +5,16 @@ them; the log alone says how the hit went (see wall_hits).
 
 On a floor without grip the wheels do not stop at the wall: they turn on. A wheel that does stop
 obeys its rods alone. They draw it to the next of four angles, forward or backward, as its phase
-decides. If that is forward, the wheel presses against the wall until the wall's spring or the other
-wheel throws it over that point, or it rests there. If one wheel goes before the other, the robot
-turns on the spot.
+decides. If that is forward, the wheel presses against the wall and rests there, or the other wheel
+goes first and the robot turns on the spot. On a soft axle the blocked motor, which has most of the
+robot's kinetic energy, winds the axle up and springs back over that point.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from math import ceil, pi
-from typing import Any, TypedDict
+from typing import TypedDict
 
 import numpy as np
 
@@ -22,13 +22,11 @@ from host.client.robot import Robot
 from host.experiments.robot import unattended
 from host.experiments.robot.wall_hits import Motion, bounces, motion_since, read_hit, read_series
 from host.experiments.robot.wall_rows import (
+    ON_AXLES,
     ON_SMOOTH,
     PAPER,
     ROBOT,
     SMOOTH,
-    SPRINGY,
-    WIDE_M,
-    WITH_BUMPER,
     Condition,
     Hit,
     HitRow,
@@ -52,15 +50,17 @@ from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
 from robot.kicks import DIRECTION_TICKS, PHASE
 from robot.loop import Loop
+from sim_motor.axle import stiffness_range
 from sim_motor.brick import SimBrick
 from sim_motor.constants import GRAVITY
 from sim_motor.scene import Scene
 
-# The values that the maps vary.
-KS, GRIPS = (1.5, 2.0, 2.5, 3.0, 4.0), (0.7, 1.0, 1.34, 1.7, 2.0, 2.5)
-STIFFNESSES, BUMPERS = (500.0, 1000.0, 2000.0, 20000.0, 100000.0), (0.1, 0.16, 0.2, 0.3, 0.4)
-APARTS = (0.0, 0.2, 0.4, 0.8, 1.6, 2.4, 3.14)
-MAP_HITS = 12
+# The values that the maps vary: axles from the softest to the stiffest and a rigid one (N/m), grips
+# of carpets and beyond (1), fronts (m), and batteries (V).
+AXLES = (220.0, 300.0, 400.0, 600.0, 900.0, 1500.0, 3000.0, None)
+GRIPS = (1.34, 1.5, 1.6, 1.71, 1.83, 2.0, 2.5)
+BUMPERS, BATTERIES = (0.1, 0.16, 0.2, 0.25, 0.3, 0.4), (6.5, 7.0, 7.5, 8.0, 8.4)
+MAP_HITS = 40
 
 # The least distance between the walls. Over all hits it grows by what two turns of the wheels
 # cover, so that the wheels come to the wall at all phases.
@@ -68,6 +68,20 @@ NEAREST_M, TURN_M = 1.2, 2 * pi * WHEEL_RADIUS_M
 REST_S, WATCH_S, LOOK_S, SERIES_S = 1.5, 8.0, 0.6, 40.0
 # The paper asks that this share of this many hits bounces.
 TARGET, BOUNCES = 0.95, 50
+BEST_HITS = 4
+RANGE = stiffness_range()
+
+# Planes of conditions around the best one, by the name of what varies beside the axle. Some
+# conditions stand in two of them.
+MAPS: dict[str, list[Condition]] = {
+    "grip": [{**ON_AXLES, "axle": axle, "grip": grip} for grip in GRIPS for axle in AXLES],
+    "bumper": [
+        {**ON_AXLES, "axle": axle, "bumper": bumper} for bumper in BUMPERS for axle in AXLES
+    ],
+    "battery_v": [
+        {**ON_AXLES, "axle": axle, "battery_v": volts} for volts in BATTERIES for axle in AXLES
+    ],
+}
 
 
 def cells(options: Options, *, batch: bool) -> list[WallCell]:
@@ -75,29 +89,16 @@ def cells(options: Options, *, batch: bool) -> list[WallCell]:
     hits = options["bounces"]
     if not batch:
         return [{"k": PAPER["k"], "hit": hit} for hit in range(hits)]
-    work: list[WallCell] = []
-    done: list[Condition] = []
-    for condition in (PAPER, ON_SMOOTH, WITH_BUMPER):
-        work.append({"part": "claim", **condition, "hits": hits})
-        done.append(condition)
-    for condition in _map_conditions():
+    # To tell the best condition from one at TARGET takes more hits.
+    counts = [(PAPER, hits), (ON_SMOOTH, hits), (ON_AXLES, BEST_HITS * hits)]
+    work: list[WallCell] = [{"part": "claim", **where, "hits": count} for where, count in counts]
+    done = [condition for condition, _ in counts]
+    for condition in (condition for plane in MAPS.values() for condition in plane):
         if condition not in done:
             work.append({"part": "map", **condition, "hits": MAP_HITS})
             done.append(condition)
-    work += [{"part": "series", **condition} for condition in (PAPER, WITH_BUMPER)]
+    work += [{"part": "series", **condition} for condition in (PAPER, ON_AXLES)]
     return work
-
-
-def _map_conditions() -> list[Condition]:
-    """The conditions of the three maps; some stand in two of them."""
-    found: list[Condition] = [{**PAPER, "grip": grip, "k": k} for grip in GRIPS for k in KS]
-    found += [
-        {**PAPER, "stiffness": stiffness, "bumper": bumper}
-        for stiffness in STIFFNESSES
-        for bumper in BUMPERS
-    ]
-    found += [{**PAPER, "apart": apart} for apart in APARTS]
-    return found
 
 
 def world(cell: OneHit | SeriesCell) -> dict[str, str]:
@@ -110,9 +111,7 @@ def world(cell: OneHit | SeriesCell) -> dict[str, str]:
     return {
         "walls": f"{NEAREST_M + farther_m:.4f}",
         "grip": str(cell["grip"]),
-        "stiffness": str(cell["stiffness"]),
         "bumper": str(cell["bumper"]),
-        "apart": str(cell["apart"]),
         **axle,
     }
 
@@ -197,11 +196,13 @@ def _note(rows: list[WallRow], hits: list[HitRow]) -> str:
     if failed:
         ways = ", ".join(f"{how} ({count})" for how, count in failed.most_common())
         notes.append("the others: " + ways)
-    done, tried = count_bounces(hits_under(rows, WITH_BUMPER))
+    done, tried = count_bounces(hits_under(rows, ON_AXLES))
     if tried:
+        low, high = wilson(done, tried)
         notes.append(
-            f"with a bumper {WIDE_M:g} m wide that gives way by {1000 / SPRINGY:g} mm to 1 N at"
-            f" each end: {done} of {tried}"
+            f"with a front {ON_AXLES['bumper']:g} m wide, grip {ON_AXLES['grip']:g}, and wheels on"
+            f" axles of {ON_AXLES['axle']:g} N/m (computed range {RANGE[0]:.0f} to"
+            f" {RANGE[1]:.0f}): {done} of {tried} ({low:.1%} to {high:.1%})"
         )
     done, tried = count_bounces(hits_under(rows, ON_SMOOTH))
     if tried:
@@ -213,14 +214,6 @@ def _note(rows: list[WallRow], hits: list[HitRow]) -> str:
     return "; ".join(notes)
 
 
-class Maps(TypedDict):
-    """[condition, bounces, hits] at each condition of the three maps."""
-
-    grip_and_k: list[list[Any]]
-    stiffness_and_bumper: list[list[Any]]
-    apart: list[list[Any]]
-
-
 class Numbers(TypedDict):
     """What the hits of the claim came to, and the maps.
 
@@ -229,44 +222,35 @@ class Numbers(TypedDict):
         torque_after: median torque M after it (1).
         took_s: median time that a bounce takes (s).
         ended: how many hits ended in each way.
-        bounces_of_hits: the maps.
+        axle_range: what the stiffness of an axle may be (N/m).
+        bounces_of_hits: by what a map varies beside the axle, [condition, bounces, hits] of each
+            of its conditions.
     """
 
     torque_before: float | None
     torque_after: float | None
     took_s: float | None
     ended: dict[str, int]
-    bounces_of_hits: Maps
+    axle_range: tuple[float, float]
+    bounces_of_hits: dict[str, list[tuple[Condition, int, int]]]
 
 
 def _numbers(rows: list[WallRow], hits: list[HitRow]) -> Numbers:
-    """Medians over the bounces (None without one), and [condition, bounces, hits] of the maps."""
+    """Medians over the bounces (None without one), and the maps."""
     bounced = [row for row in hits if row["reversed"]]
 
     def median(values: list[float | None]) -> float | None:
         known = [value for value in values if value is not None]
         return float(np.median(known)) if known else None
 
-    def counts(condition: Condition) -> tuple[int, int]:
-        return count_bounces(hits_under(rows, condition))
-
     return {
         "torque_before": median([row["before"] for row in bounced]),
         "torque_after": median([row["after"] for row in bounced]),
         "took_s": median([row["took_s"] for row in bounced]),
         "ended": dict(Counter(row["ended"] for row in hits)),
+        "axle_range": RANGE,
         "bounces_of_hits": {
-            "grip_and_k": [
-                [[grip, k], *counts({**PAPER, "grip": grip, "k": k})] for grip in GRIPS for k in KS
-            ],
-            "stiffness_and_bumper": [
-                [
-                    [stiffness, bumper],
-                    *counts({**PAPER, "stiffness": stiffness, "bumper": bumper}),
-                ]
-                for stiffness in STIFFNESSES
-                for bumper in BUMPERS
-            ],
-            "apart": [[apart, *counts({**PAPER, "apart": apart})] for apart in APARTS],
+            name: [(where, *count_bounces(hits_under(rows, where))) for where in conditions]
+            for name, conditions in MAPS.items()
         },
     }

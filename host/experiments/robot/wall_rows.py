@@ -15,18 +15,14 @@ class Condition(TypedDict):
     Attributes:
         k: spring constant (1).
         grip: friction coefficient of the tyres on the floor (1).
-        stiffness: stiffness of the wall at one corner of the body (N/m).
         bumper: width of the body's front and rear (m).
-        apart: how far the right wheel is ahead of the left one at the start (rad).
         axle: stiffness of the axle of a wheel, at its rim (N/m); None for a rigid one.
         battery_v: open-circuit voltage of the battery (V); None for the run's own.
     """
 
     k: float
     grip: float
-    stiffness: float
     bumper: float
-    apart: float
     axle: float | None
     battery_v: float | None
 
@@ -115,9 +111,7 @@ class HitRow(NumberedHit):
 
     k: float
     grip: NotRequired[float]
-    stiffness: NotRequired[float]
     bumper: NotRequired[float]
-    apart: NotRequired[float]
     axle: NotRequired[float | None]
     battery_v: NotRequired[float | None]
     part: NotRequired[Literal["claim", "map"]]
@@ -132,20 +126,19 @@ class SeriesRow(SeriesCell, Tick):
 WallCell = HitsCell | SeriesCell | TrialCell
 WallRow = HitRow | SeriesRow
 
-# The paper's condition: a rough floor, and wheels in phase, as the robot's program starts them.
+# The ordinary condition: a rough floor, and wheels that sit on the motors rigidly.
 CARPET, SMOOTH = ROBOT["grip_on_carpet"], ROBOT["grip"]
 PAPER: Condition = {
     "k": 2.0,
     "grip": CARPET,
-    "stiffness": ROBOT["wall_stiffness"],
     "bumper": ROBOT["body_width"],
-    "apart": 0.0,
     "axle": None,
     "battery_v": None,
 }
-WIDE_M, SPRINGY = 0.4, 1000.0
 ON_SMOOTH: Condition = {**PAPER, "grip": SMOOTH}
-WITH_BUMPER: Condition = {**PAPER, "bumper": WIDE_M, "stiffness": SPRINGY}
+# Among the conditions under which the robot always reverses: a long axle, the roughest carpet in
+# the source of `grip_on_carpet`, and a front wider than the body.
+ON_AXLES: Condition = {**PAPER, "grip": 1.83, "bumper": 0.25, "axle": 400.0}
 
 
 def condition_of(row: WallRow) -> Condition:
@@ -153,9 +146,7 @@ def condition_of(row: WallRow) -> Condition:
     return {
         "k": row["k"],
         "grip": row.get("grip", PAPER["grip"]),
-        "stiffness": row.get("stiffness", PAPER["stiffness"]),
         "bumper": row.get("bumper", PAPER["bumper"]),
-        "apart": row.get("apart", PAPER["apart"]),
         "axle": row.get("axle", PAPER["axle"]),
         "battery_v": row.get("battery_v", PAPER["battery_v"]),
     }

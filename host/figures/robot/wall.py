@@ -1,21 +1,31 @@
-"""A robot at a wall: the torque M while it bounces to and fro, and where it bounces.
+"""A robot at a wall: the torque M while it drives to and fro, and where a wall reverses it.
 
-Maps show the share of bounces over grip and k, over wall and bumper, and over the wheels' phases.
+Maps show the share of hits that reverse it over the axles' stiffness and the floor's grip, the
+width of the front, and the battery's voltage.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.robot.wall import APARTS, BUMPERS, GRIPS, KS, STIFFNESSES
+from host.experiments.robot.wall import (
+    AXLES,
+    BATTERIES,
+    BUMPERS,
+    GRIPS,
+    MAP_HITS,
+    MAPS,
+    RANGE,
+    TARGET,
+)
 from host.experiments.robot.wall_rows import (
+    ON_AXLES,
     PAPER,
-    WITH_BUMPER,
+    ROBOT,
     Condition,
     HitRow,
     SeriesRow,
@@ -27,37 +37,60 @@ from host.experiments.robot.wall_rows import (
 from host.figures.heat_map import draw_heat_map
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
-from host.util.intervals import wilson
 
 
-class Scale(NamedTuple):
-    """An axis of a map: its values, its label, and a factor for the label's unit."""
+class Plane(NamedTuple):
+    """A map: what it varies upward, its values and label, and those that a source gives or assumes.
 
+    Attributes:
+        title: Where in the other dimensions the map lies.
+    """
+
+    name: str
     values: tuple[float, ...]
     label: str
-    factor: float = 1.0
+    known: tuple[float, float]
+    title: str
 
 
-_SHOWN = ((PAPER, "the body's own width"), (WITH_BUMPER, "a wide, springy bumper"))
-_OVER_K = Scale(KS, "$k$")
-_OVER_GRIP = Scale(GRIPS, "grip of the tyres")
-_OVER_BUMPER = Scale(BUMPERS, "width of the bumper (m)")
-_OVER_STIFFNESS = Scale(STIFFNESSES, "stiffness of the wall (kN/m)", 0.001)
-_TALL = {**SIZE, "figsize": (10.0, 9.6)}
+_GRIPS = f"grip {ON_AXLES['grip']:g}"
+_FRONT = f"front {ON_AXLES['bumper']:g} m"
+_BATTERY = f"{ROBOT['battery_voltage']:g} V"
+_PLANES = (
+    Plane("grip", GRIPS, "grip of the tyres (1)", (1.34, 1.83), f"{_FRONT}, {_BATTERY}"),
+    Plane(
+        "bumper",
+        BUMPERS,
+        "width of the front (m)",
+        (ROBOT["body_width"],) * 2,
+        f"{_GRIPS}, {_BATTERY}",
+    ),
+    Plane(
+        "battery_v",
+        BATTERIES,
+        "battery (V)",
+        (ROBOT["battery_voltage"],) * 2,
+        f"{_GRIPS}, {_FRONT}",
+    ),
+)
+_SHOWN = (
+    (PAPER, "wheels fixed to the motors"),
+    (ON_AXLES, f"wheels on axles of {ON_AXLES['axle']:g} N/m"),
+)
+_SLIDE: Any = {**SIZE, "figsize": (13.33, 7.5), "dpi": 120}
+_REGION: Any = {"color": COLOURS[1], "linewidth": 3.5, "solid_capstyle": "projecting"}
+_KNOWN: Any = {"color": COLOURS[2], "linewidth": 6, "clip_on": False, "solid_capstyle": "butt"}
 
 
 def draw(rows: list[WallRow], findings: Findings) -> Figure:
     """Draw series and maps of simulated rows, or the hits alone of a robot's rows."""
-    claim = findings.claims[0]
-    low, high = claim.interval or (0.0, 1.0)
     simulated = bool(series_under(rows, PAPER))
     with styled():
-        figure = Figure(**(_TALL if simulated else SIZE))
-        figure.suptitle(
-            f"At the wall, $k$ = 2: {claim.measured:.0%} of the hits bounce (95 % interval"
-            f" {low:.0%} to {high:.0%})",
-            fontsize=16,
-        )
+        figure = Figure(**(_SLIDE if simulated else SIZE))
+        title = f"A wall reverses the robot ($k$ = 2) in {_words(hits_under(rows, PAPER))} hits"
+        if simulated:
+            title += f", and on soft axles in {_words(hits_under(rows, ON_AXLES))}"
+        figure.suptitle(title, fontsize=17)
         if simulated:
             _draw_simulated(figure, rows)
         else:
@@ -65,28 +98,31 @@ def draw(rows: list[WallRow], findings: Findings) -> Figure:
     return figure
 
 
+def _words(hits: list[HitRow]) -> str:
+    done, tried = count_bounces(hits)
+    return f"{done} of {tried}"
+
+
 def _draw_simulated(figure: Figure, rows: list[WallRow]) -> None:
-    grid = figure.add_gridspec(3, 3, height_ratios=(5, 5, 9))
-    series = [figure.add_subplot(grid[place, :]) for place in range(len(_SHOWN))]
+    grid = figure.add_gridspec(2, 6, height_ratios=(5, 11))
+    series = [figure.add_subplot(grid[0, 3 * place : 3 * place + 3]) for place in range(2)]
     for axes, (condition, words) in zip(series, _SHOWN, strict=True):
         _draw_series(axes, series_under(rows, condition), condition, words)
-    series[-1].set_xlabel("time (s)")
-    style: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.97), "handlelength": 1.4}
-    share_legend(series[0], series, ncols=3, fontsize=11, **style)
-
-    def over_floor(k: float, grip: float) -> Condition:
-        return {**PAPER, "k": k, "grip": grip}
-
-    def over_wall(bumper: float, stiffness: float) -> Condition:
-        return {**PAPER, "bumper": bumper, "stiffness": stiffness}
-
-    floor, wall, phases = (figure.add_subplot(grid[2, column]) for column in range(3))
-    _draw_map(floor, rows, over_floor, _OVER_K, _OVER_GRIP)
-    floor.set_title("bounced (%): floor and $k$", fontsize=12)
-    _draw_map(wall, rows, over_wall, _OVER_BUMPER, _OVER_STIFFNESS)
-    wall.set_title("bounced (%): body and wall", fontsize=12)
-    _draw_apart(phases, rows)
-    phases.set_title("bounced (%): phases", fontsize=12)
+    series[0].set_ylabel("torque $M$ (1)")
+    share_legend(series[0], series, ncols=3, fontsize=11, loc="upper right", handlelength=1.4)
+    for place, plane in enumerate(_PLANES):
+        _draw_plane(figure.add_subplot(grid[1, 2 * place : 2 * place + 2]), rows, plane)
+    handles = [
+        figure.axes[-1].plot([], [], **style, label=label)[0]
+        for style, label in (
+            (_REGION, f"{100 * TARGET:.0f} % of {MAP_HITS} hits or more"),
+            (
+                _KNOWN,
+                "computed for LEGO axles; published (grip), assumed (front), nominal (battery)",
+            ),
+        )
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=13)
 
 
 def _draw_series(axes: Axes, ticks: list[SeriesRow], condition: Condition, words: str) -> None:
@@ -98,55 +134,50 @@ def _draw_series(axes: Axes, ticks: list[SeriesRow], condition: Condition, words
     bounced = [row["t_s"] for row in ticks if row["bounce"]]
     axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
     for number, time in enumerate(bounced):
-        label = "bounce" if number == 0 else None
+        label = "reversal" if number == 0 else None
         axes.axvline(time, color=COLOURS[1], linewidth=1.6, zorder=0, label=label)
     for side, color, width in (("left", "black", 2.6), ("right", COLOURS[5], 1.4)):
         axes.plot(t, torques[side], color=color, linewidth=width, label=f"{side} wheel")
-    count = f"{len(bounced)} bounce{'' if len(bounced) == 1 else 's'} in {t[-1]:.0f} s"
-    axes.set_title(
-        f"{words} ({condition['bumper']:g} m, {condition['stiffness'] / 1000:g} kN/m): {count}",
-        loc="left",
-        fontsize=12,
-    )
-    axes.set_ylabel("torque $M$")
-    axes.set_ylim(-1.1, 1.1)
+    count = f"{len(bounced)} reversal{'' if len(bounced) == 1 else 's'}"
+    front = f"grip {condition['grip']:g}, front {condition['bumper']:g} m"
+    axes.set_title(f"{words}, {front}: {count}", loc="left", fontsize=13)
+    axes.set_xlabel("time (s)")
+    axes.set_ylim(-1.1, 1.9)
+    axes.set_yticks((-1, 0, 1))
     axes.set_xlim(0, t[-1])
 
 
-def _draw_map(
-    axes: Axes,
-    rows: list[WallRow],
-    condition: Callable[[float, float], Condition],
-    across: Scale,
-    up: Scale,
-) -> None:
-    """Draw the share of hits that bounced under condition(x, y), for all x across and y up."""
-    counts = [
-        [count_bounces(hits_under(rows, condition(x, y))) for x in across.values] for y in up.values
-    ]
-    draw_heat_map(
-        axes, [[_percent(count) for count in line] for line in counts], 100.0, fontsize=13
-    )
-    for axis, scale in ((axes.xaxis, across), (axes.yaxis, up)):
-        labels = [f"{scale.factor * value:g}" for value in scale.values]
-        axis.set_ticks(np.arange(len(labels)) + 0.5, labels)
-        axis.set_label_text(scale.label)
+def _draw_plane(axes: Axes, rows: list[WallRow], plane: Plane) -> None:
+    """Draw the share of hits that reversed the robot, each axle's in a column."""
+    counts = [count_bounces(hits_under(rows, condition)) for condition in MAPS[plane.name]]
+    shares = np.array([done / tried if tried else np.nan for done, tried in counts])
+    table = shares.reshape(len(plane.values), len(AXLES))
+    draw_heat_map(axes, 100 * table, 100.0, fontsize=12)
+    _outline(axes, table >= TARGET)
+    axes.set_title(f"reversed (%): {plane.title}", fontsize=13)
+    stiffnesses = ["rigid" if axle is None else f"{axle:g}" for axle in AXLES]
+    axes.set_xticks(np.arange(len(AXLES)) + 0.5, stiffnesses, rotation=40)
+    axes.set_yticks(np.arange(len(plane.values)) + 0.5, [f"{value:g}" for value in plane.values])
+    axes.set_xlabel("stiffness of the axles at the rim (N/m)")
+    axes.set_ylabel(plane.label)
+    known = [place for place, axle in enumerate(AXLES) if axle and _within(axle, RANGE)]
+    axes.plot((known[0], known[-1] + 1), (0, 0), **_KNOWN)
+    known = [place for place, value in enumerate(plane.values) if _within(value, plane.known)]
+    axes.plot((0, 0), (known[0], known[-1] + 1), **_KNOWN)
 
 
-def _percent(count: tuple[int, int]) -> float:
-    done, tried = count
-    return 100 * done / tried if tried else np.nan
+def _within(value: float, bounds: tuple[float, float]) -> bool:
+    """Whether bounds that are known to some per cent hold a value."""
+    return 0.99 * bounds[0] <= value <= 1.01 * bounds[1]
 
 
-def _draw_apart(axes: Axes, rows: list[WallRow]) -> None:
-    counts = [count_bounces(hits_under(rows, {**PAPER, "apart": apart})) for apart in APARTS]
-    shares = np.array([_percent(count) for count in counts])
-    low, high = 100 * np.array([wilson(*count) for count in counts]).T
-    errors = np.abs([shares - low, high - shares])
-    axes.errorbar(APARTS, shares, errors, color=COLOURS[0], marker="o", capsize=4)
-    axes.set_xlabel("between the wheels (rad)")
-    axes.set_xticks(np.arange(5) * np.pi / 4, ["0", "π/4", "π/2", "3π/4", "π"])
-    axes.set_ylim(0, 104)
+def _outline(axes: Axes, inside: Any) -> None:
+    """Draw the border of the fields that are inside."""
+    padded = np.pad(inside, 1)
+    for row, column in np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1]):
+        axes.plot((column, column + 1), (row, row), **_REGION)
+    for row, column in np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1]):
+        axes.plot((column, column), (row, row + 1), **_REGION)
 
 
 def _draw_hits(axes: Axes, hits: list[HitRow]) -> None:

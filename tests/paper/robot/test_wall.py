@@ -199,7 +199,7 @@ def test_the_figure_is_drawn_from_a_robots_rows_and_from_simulated_ones():
             **{side + "_torque": 0.8 for side in WHEELS},
             "bounce": tick == 9,
         }
-        for condition in (wall_rows.PAPER, wall_rows.WITH_BUMPER)
+        for condition in (wall_rows.PAPER, wall_rows.ON_AXLES)
         for tick in range(20)
     ]
     simulated = [*rows_of(5, 2, **FLOOR), *series]
