@@ -133,6 +133,15 @@ def test_a_robot_over_a_link_does_as_the_simulation_does():
     assert row["before"] == pytest.approx(same["before"], rel=0.05)
 
 
+def test_the_maps_cross_where_the_best_condition_is():
+    for name, conditions in wall.MAPS.items():
+        assert len({condition["axle"] for condition in conditions}) == len(wall.AXLES)
+        along = {
+            key for where in conditions for key in where if where[key] != wall_rows.ON_AXLES[key]
+        }
+        assert along == {"axle", name}
+
+
 # What comes of it.
 
 
@@ -141,6 +150,21 @@ def test_on_a_rough_floor_most_hits_bounce_and_m_changes_its_sign():
     bounced = [row for row in rows if row["reversed"]]
     assert len(bounced) >= 8
     assert all(row["before"] > 0.5 and row["after"] < -0.5 for row in bounced)
+
+
+def test_on_soft_axles_nearly_every_hit_bounces():
+    """The blocked motor springs back on its axle. A rigid one reverses two of three hits."""
+    rows = wall.simulate({"part": "claim", **wall_rows.ON_AXLES, "hits": 24}, SETTING)
+    assert sum(row["reversed"] for row in rows) >= 22
+    assert all(row["after"] < -0.5 for row in rows if row["reversed"])
+
+
+def test_the_battery_of_a_condition_counts_before_that_of_the_run():
+    """A weaker battery lets the wheels turn more slowly, so that M is greater."""
+    cell = {**FLOOR, "hits": 1}
+    weak = Setting(1, SETTING.options, battery_v=6.5)
+    own, run = (wall.simulate(cell | volts, weak) for volts in ({"battery_v": 8.0}, {}))
+    assert own[0]["before"] < run[0]["before"] - 0.01
 
 
 def test_on_a_smooth_floor_the_tyres_spin_at_the_wall():
