@@ -60,7 +60,7 @@ def run_loop(seed, scene, changes, request=None, later=None):
         (2, Scene(), {"k": 15.0, "tau_s": 1.0, "rod_lag_s": 0.0075}, None, {"k": 8.0}),
         (
             3,
-            Scene(walls=3.0, across=0.6, bumper=0.3),
+            Scene(walls=3.0, across=0.6, bumper=0.3, axle=400.0),
             {"k": 8.0},
             {"mode": "phase", "ticks": 4, "wheel": "left"},
             None,
