@@ -2,20 +2,29 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from host.commands._motor import add_motor
 from host.commands._options import add_take_over
 from host.commands._recording import conclude, recorded
-from host.commands._terminal import robot_of
+from host.commands._terminal import robot_of, say
 from host.errors import NotDone
 
-HELP = "bring the robot into a motion primitive by kicks, or to rest by the spring constant k"
+HELP = (
+    "bring the robot into a motion primitive by kicks, to rest by the spring constant k, or into a"
+    " mode of the paper by its parameters"
+)
+PRIMITIVES = ("forward", "backward", "spin-left", "spin-right", "stopped")
+MODES = ("chaos", "wall-turner")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The primitive."""
+    """The primitive or mode."""
     parser.add_argument(
-        "primitive", choices=("forward", "backward", "spin-left", "spin-right", "stopped")
+        "primitive",
+        choices=(*PRIMITIVES, *MODES),
+        help="where to go. chaos sets k = 15, tau_s = 1 s and rod_lag_s = 7.5 ms; wall-turner sets"
+        " k = 2. From both, a primitive first gives the robot its own parameters back",
     )
     add_motor(parser)
     add_take_over(parser)
@@ -23,22 +32,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Start the robot if it does not run, and drive there. Raises NotDone if it gets nowhere."""
+    from host.kicking.modes import MODES as PARAMETERS
+    from host.kicking.modes import enter, leave
     from host.kicking.outcome import require_control, require_running
     from host.kicking.primitives import drive
     from host.kicking.robot_motor import motor_of
 
     with robot_of(options, moves=True, sends="kick") as robot:
-        # Before anything moves.
-        motor = None if options.primitive == "stopped" else motor_of(robot, options.motor)
+        # Before anything moves. To stop the robot, or to leave it to itself, nobody has to know.
+        unplanned = options.primitive in ("stopped", "chaos")
+        motor = None if unplanned else motor_of(robot, options.motor)
         require_control(robot)
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)
+        if options.primitive in MODES:
+            say(f"{options.primitive}: {PARAMETERS[options.primitive].advice}.")
         with recorded(robot, f"drive-{options.primitive}") as recording:
-            result = drive(robot, recording.log, options.primitive, motor)
+            if options.primitive in MODES:
+                result = enter(robot, recording.log, options.primitive, motor)
+            else:
+                back = leave(robot)
+                result = {**drive(robot, recording.log, options.primitive, motor), "restored": back}
+                if back:
+                    say(f"The robot has its own parameters back: {in_words(back)}.")
         result.update(brick=robot.link.uri, seed=robot.hello["seed"])
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
-    if result["k"] != result["k_before"]:
+    if options.primitive in MODES:
+        how += f", with {in_words(result['params'])}"
+    elif result["k"] != result["k_before"]:
         how += f", and k from {result['k_before']:g} to {result['k']:g}"
     verdict = (
         f"The robot reached {options.primitive}"
@@ -58,3 +80,11 @@ def run(options: argparse.Namespace) -> int:
     if not result["reached"]:
         raise NotDone(f"the robot did not reach {options.primitive}", "try again")
     return 0
+
+
+def in_words(params: dict[str, Any]) -> str:
+    """Parameters as text, as in 'k = 2, tau_s = 1'."""
+    from robot.params import TABLE
+
+    units = {name: TABLE[name].unit.replace("1", "") for name in params}
+    return ", ".join(f"{name} = {value:g} {units[name]}".rstrip() for name, value in params.items())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from host.kicking.modes import CHAOS, MODES, WALL_TURNER
 from robot.params import TABLE
 
 
@@ -15,16 +16,20 @@ class Preset(NamedTuple):
 
 
 def _near_default(**changes: float) -> dict[str, float]:
-    return {name: float(TABLE[name].default) for name in ("a", "tau_s", "k")} | changes
+    names = ("a", "tau_s", "k", "rod_lag_s")
+    return {name: float(TABLE[name].default) for name in names} | changes
 
 
 # docs/claims.md has the robot's values: below k = 0.47 it rests; at 2 it turns round at a wall by
-# itself; 8 is the paper's own; with 15 and a slow neuron it turns to and fro irregularly.
+# itself; 8 is the paper's own; with 15, a slow neuron and older rods it turns to and fro without a
+# rhythm.
 PRESETS = {
     "rest": Preset("rest: springs too weak to roll (k = 0.3)", _near_default(k=0.3)),
-    "gentle": Preset("gentle: turns round at a wall (k = 2)", _near_default(k=2.0)),
+    "gentle": Preset(
+        "gentle: turns round at a wall (k = 2)", _near_default(**MODES[WALL_TURNER].params)
+    ),
     "locomotion": Preset("locomotion: forward or backward (k = 8)", _near_default(k=8.0)),
-    "chaos": Preset("chaos: to and fro (k = 15, tau = 1 s)", _near_default(k=15.0, tau_s=1.0)),
+    "chaos": Preset("chaos: to and fro (k = 15, tau = 1 s)", _near_default(**MODES[CHAOS].params)),
 }
 PRIMITIVES = {
     "forward": "roll forward",

@@ -55,6 +55,17 @@ def test_drive_reaches_every_primitive(kickctl, primitive, seed):
         assert log.omega(side)[-10:].mean() * {"+": 1, "-": -1}[sign] > 10
 
 
+def test_drive_goes_into_chaos_and_says_what_a_real_robot_needs(kickctl):
+    status, out, err = kickctl("drive", "chaos", "--brick", "sim://?grip=1.7&seed=3", "--json")
+    result = json.loads(out)
+    assert status == 0
+    assert result["reached"] is True
+    assert result["params"] == {"k": 15.0, "tau_s": 1.0, "rod_lag_s": 0.0075}
+    assert min(result["turns"].values()) >= 3
+    assert "7.2 to 7.5 V" in err
+    assert json.loads(kickctl("log", "replay", result["log"], "--json")[1])["exact"] is True
+
+
 def test_drive_stopped_rests_by_a_pulse_of_k_and_stays_at_rest(kickctl):
     status, out, _ = kickctl("drive", "stopped", "--seed", "1", "--json")
     result = json.loads(out)

@@ -38,13 +38,14 @@ from host.experiments.robot.switching import (
     switches,
     wheels_run,
 )
+from host.kicking.modes import CHAOS, MODES
 from host.runs.contract import Setting
 from host.theory.model.wheel import acceleration
 from robot.controller import actual_positions, step_wheel
 from robot.params import Params
 from sim_motor.batch import CHANNELS
 
-K, TAU_S = 15.0, 1.0
+K, TAU_S = (MODES[CHAOS].params[name] for name in ("k", "tau_s"))
 # The jumps that make twins: one that is lost between the steps of duty and encoder, and one of
 # several steps.
 UNSEEN, SEEN = 1e-6, 1e-3

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.experiments.robot import unattended
+from host.kicking.modes import CHAOS, MODES
 from host.logs.motion import directions
 from host.runs.contract import Setting
 from robot.kick_requests import parse
@@ -100,9 +101,7 @@ class Jump(NamedTuple):
 ORDINARY = "as it is"
 DELAYED = "latency of 70 ms"
 OLDER = "rods 7.5 ms older"
-# Half of the four readings and the two formulas between them in a program that reads the sensor
-# anew in each formula, at 3.65 ms a reading (python-ev3dev on the brick).
-OLDER_S = 0.0075
+OLDER_S = MODES[CHAOS].params["rod_lag_s"]
 _AA_V = 9.0  # six cells of 1.5 V
 CONDITIONS = {
     ORDINARY: Condition(),

@@ -1,0 +1,207 @@
+"""Modes of the paper's robot that parameters make, and the way there and back.
+
+`enter` sets a mode's parameters, and `leave` gives the robot its own ones back, also from another
+program on the same machine: a small file keeps them for as long as the robot's program runs.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from host.client.robot import Robot
+from host.errors import KickctlError, NotDone
+from host.kicking.outcome import Outcome, kick_and_watch
+from host.kicking.primitives import drive, headings
+from host.logs.log import Log
+from host.logs.motion import directions
+from host.util.installation import deploy_command
+from host.util.whole_files import write_text
+from robot.kicks import PHASE, WHEELS
+from robot.params import TABLE
+from robot.user_folders import cache_folder
+from sim_motor.constants import Constants
+
+
+class Mode(NamedTuple):
+    """Parameters under a name.
+
+    Attributes:
+        params: What the paper's robot needs for it, by name. All others stay.
+        advice: What a real robot needs, and what to watch.
+    """
+
+    params: dict[str, float]
+    advice: str
+
+
+CHAOS, WALL_TURNER = "chaos", "wall-turner"
+MODES = {
+    # The rods' lag is no number of the paper. A program that reads the sensor anew in each formula,
+    # 3.65 ms for a reading, computes F_i from positions that are two readings older than F_tan.
+    CHAOS: Mode(
+        {"k": 15.0, "tau_s": 1.0, "rod_lag_s": 0.0075},
+        "both wheels turn to and fro without a rhythm. A real robot needs room on all sides, and a"
+        " battery of 7.2 to 7.5 V: far below that its wheels roll steadily",
+    ),
+    WALL_TURNER: Mode(
+        {"k": 2.0},
+        "at a wall the wheels turn round by themselves. A real robot needs a carpet, on which the"
+        " tyres do not spin, long axles from motors to wheels, which spring back, and a battery of"
+        " 7.2 to 7.5 V",
+    ),
+}
+# How long the robot is watched in chaos, and how often each wheel must change its direction to
+# count. It does so about once in 1.1 s.
+CHAOS_S, LEAST_TURNS = 12.0, 3
+MOST_KICKS = 4
+# How many robots' own parameters are kept.
+_KEPT = 50
+
+
+def mode_of(params: dict[str, Any]) -> str:
+    """The mode that these parameters make; empty for none."""
+    return next(
+        (
+            name
+            for name, mode in MODES.items()
+            if all(params.get(key) == value for key, value in mode.params.items())
+        ),
+        "",
+    )
+
+
+def enter(robot: Robot, log: Log, name: str, motor: Constants | None = None) -> dict[str, Any]:
+    """Bring a robot that runs into a mode. Its own parameters are kept for `leave`.
+
+    Args:
+        robot: The robot.
+        log: A log that records it already.
+        name: A key of MODES.
+        motor: As in `host.kicking.primitives.drive`.
+
+    Returns:
+        {primitive, reached, before, after, kicks, k, k_before, params, own}: as
+        `host.kicking.primitives.drive` does, with the mode's parameters and those of the robot that
+        stood in their place.
+
+    Raises:
+        KickctlError: The robot does not run, or cannot be reached. If it can, it has its own
+            parameters back.
+    """
+    in_force = robot.status()["params"]
+    wanted = {key: value for key, value in MODES[name].params.items() if key in in_force}
+    if missing := sorted(set(MODES[name].params) - set(wanted)):
+        raise NotDone(
+            f"the robot's program has no parameter {', '.join(missing)}",
+            f"bring this release to it: {deploy_command()}",
+        )
+    own = _before(robot, in_force) or {key: in_force[key] for key in wanted}
+    _keep(robot, own)
+    before = headings(robot, log)
+    try:
+        robot.set(**{**own, **wanted})
+        found = _into_chaos(robot, log) if name == CHAOS else drive(robot, log, "forward", motor)
+    except BaseException:
+        with suppress(KickctlError):
+            leave(robot)
+        raise
+    return {
+        **found,
+        "primitive": name,
+        "before": before,
+        "k": wanted["k"],
+        "k_before": float(in_force["k"]),
+        "params": wanted,
+        "own": own,
+    }
+
+
+def leave(robot: Robot) -> dict[str, Any]:
+    """Give a robot in a mode its own parameters back.
+
+    Returns:
+        What was set; empty if the robot was in no mode. Where nobody knows what it had before,
+        these are the defaults.
+    """
+    back = _before(robot, robot.status()["params"])
+    if back:
+        robot.set(**back)
+        _forget(robot)
+    return back
+
+
+def _before(robot: Robot, in_force: dict[str, Any]) -> dict[str, Any]:
+    """The parameters from before the mode in which a robot is; empty if it is in none."""
+    mode = mode_of(in_force)
+    own = _own(robot) if mode else {}
+    if mode == CHAOS and not own:
+        return {key: TABLE[key].default for key in MODES[mode].params}
+    return own  # who set k = 2 by hand wants it
+
+
+def _into_chaos(robot: Robot, log: Log) -> dict[str, Any]:
+    """Watch both wheels turn to and fro; kick those that rest."""
+    kicks: list[Outcome] = []
+    while True:
+        first = len(log)
+        robot.wait(CHAOS_S)
+        turns = {side: _turns(log, side, first) for side in WHEELS}
+        resting = [side for side in WHEELS if turns[side] == 0]
+        if not resting or len(kicks) >= MOST_KICKS:
+            break
+        side = "both" if len(resting) == len(WHEELS) else resting[0]
+        kicks.append(kick_and_watch(robot, log, PHASE, wheel=side))
+    return {
+        "reached": min(turns.values()) >= LEAST_TURNS,
+        "after": {side: f"{count} turns in {CHAOS_S:g} s" for side, count in turns.items()},
+        "kicks": [outcome.as_dict() for outcome in kicks],
+        "turns": turns,
+    }
+
+
+def _turns(log: Log, side: str, first: int) -> int:
+    """How often a wheel has changed its direction since this row of a log."""
+    way = directions(log.column(side + "_phi_rad")[first:])
+    moving = way[way != 0]
+    return int(np.count_nonzero(np.diff(moving)))
+
+
+def _place(robot: Robot) -> Path | None:
+    """The file with the own parameters of a robot whose program has not ended since."""
+    folder = cache_folder()
+    boot = str(robot.hello["boot"])
+    return Path(folder) / "own-parameters" / f"{boot}.json" if folder and boot.isalnum() else None
+
+
+def _own(robot: Robot) -> dict[str, Any]:
+    """The own parameters of a robot in a mode; empty if this machine does not know them."""
+    place = _place(robot)
+    try:
+        kept = json.loads(place.read_text(encoding="utf-8")) if place else {}
+    except (OSError, ValueError):
+        return {}
+    return kept if isinstance(kept, dict) and set(kept) <= set(TABLE) else {}
+
+
+def _keep(robot: Robot, own: dict[str, Any]) -> None:
+    place = _place(robot)
+    if place is None:
+        return
+    with suppress(OSError):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        write_text(place, json.dumps(own, allow_nan=False))
+        for old in sorted(place.parent.glob("*.json"), key=os.path.getmtime)[:-_KEPT]:
+            old.unlink()
+
+
+def _forget(robot: Robot) -> None:
+    place = _place(robot)
+    if place is not None:
+        with suppress(OSError):
+            place.unlink()
