@@ -61,6 +61,7 @@ REAL_TIME = (
     "tests/web/test_access.py",
     "tests/web/test_baton.py",
     "tests/web/test_page.py",
+    "tests/web/test_projector.py",
     "tests/web/test_stop.py",
     "tests/unit/robot/test_program.py",
     "tests/unit/robot/test_watchdog.py",

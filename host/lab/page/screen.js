@@ -8,6 +8,8 @@ const PROJECTOR = "lab.projector";
 // The names of the theme's colours that the key beside the wheels shows.
 const MARKS = ["target", "actual", "force", "memory"];
 const WIDE = matchMedia("(min-width: 1600px)");
+// Where the style sheet lays the parts out below each other, too.
+const NARROW = matchMedia("(max-width: 68rem)");
 
 export class Screen {
     constructor() {
@@ -40,13 +42,14 @@ export class Screen {
     }
 
     /**
-     * The theme for a drawing; a small one has a smaller text.
+     * The theme for a drawing; a small one has a smaller text, but not on a projector.
      * @param {HTMLCanvasElement} canvas
      * @param {number} letters For how many letters' heights the drawing needs room in a line.
      * @param {number} lines For how many lines it needs room.
      * @returns {object}
      */
     themeFor(canvas, letters, lines) {
+        if (this.projector && !NARROW.matches) return this.theme;
         const room = Math.min(canvas.clientWidth / letters, canvas.clientHeight / lines);
         const text = Math.min(this.theme.text, room);
         return text < this.theme.text ? { ...this.theme, text } : this.theme;

@@ -76,6 +76,7 @@ const PROJECTED = 1 / 40;
  * @property {Object<string, string>} grey the same names, for what is no longer up to date
  * @property {number} scale device pixels per CSS pixel
  * @property {number} text height of the text, CSS pixels
+ * @property {number} least no text is smaller than this, in heights of the text
  * @property {number} line width of an ordinary line, CSS pixels
  * @property {number[]} dash of a dashed line, for setLineDash
  * @property {function} start see `start`
@@ -118,8 +119,9 @@ export function theme({ dark, scale, height }, projector = false) {
     const text = projector ? Math.max(TEXT, height * PROJECTED) : TEXT;
     const line = text / 8;
     const dash = [3 * line, 2 * line];
+    const least = projector ? 1 : 0;
     const tools = { start, write, measure, rule, arrowHead, ticks, number };
-    return { colours, grey, scale, text, line, dash, ...tools };
+    return { colours, grey, scale, text, least, line, dash, ...tools };
 }
 
 /**
@@ -179,7 +181,7 @@ function write(ctx, text, x, y, how) {
  * @returns {number} its width, CSS pixels
  */
 function measure(ctx, text, { size = 1, bold = false, symbol = false }) {
-    const height = size * this.text * (symbol ? 1.12 : 1);
+    const height = Math.max(size, this.least) * this.text * (symbol ? 1.12 : 1);
     const style = (symbol ? "italic " : "") + (bold ? "bold " : "");
     ctx.font = `${style}${height}px ${symbol ? SYMBOLS : FAMILY}`;
     return ctx.measureText(text).width;

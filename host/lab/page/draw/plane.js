@@ -68,7 +68,8 @@ export function draw(canvas, state, theme) {
     ctx.clip();
     for (const trace of state.traces ?? []) course(pen, state, trace, box, x, y);
     ctx.restore();
-    for (const trace of state.traces ?? []) present(pen, state, trace, box, x, y);
+    const names = [];
+    for (const trace of state.traces ?? []) present(pen, state, trace, box, x, y, names);
 }
 
 function range(axis) {
@@ -105,7 +106,7 @@ function axes({ ctx, colours, theme }, state, box, x, y) {
         theme.write(ctx, label(theme, value, x.pi), at, bottom + 0.8 * text, how);
     }
     how.align = "right";
-    for (const value of theme.ticks(y.low, y.high, box.height / (2.6 * text), y.pi ? Math.PI : 1)) {
+    for (const value of theme.ticks(y.low, y.high, box.height / (2 * text), y.pi ? Math.PI : 1)) {
         const at = bottom - ((value - y.low) / y.long) * box.height;
         ctx.fillStyle = colours.grid;
         ctx.fillRect(box.left, at - 0.5, box.width, 1);
@@ -216,7 +217,7 @@ function course(pen, state, trace, box, x, y) {
 }
 
 /** Where the state is now, and where a quenched kick lets it seem to be. */
-function present({ ctx, colours, theme }, state, trace, box, x, y) {
+function present({ ctx, colours, theme }, state, trace, box, x, y, names) {
     const { start = 0, count = 0 } = state;
     if (!trace.x || !trace.y || !(count > 0)) return;
     const text = theme.text;
@@ -238,7 +239,12 @@ function present({ ctx, colours, theme }, state, trace, box, x, y) {
     const [px, py] = at(vx, vy);
     const far = px > box.left + box.width - 4 * text;
     const how = { colour: ctx.strokeStyle, align: far ? "right" : "left", halo: colours.paper };
-    theme.write(ctx, trace.name ?? "", px + (far ? -0.7 : 0.7) * text, py, { ...how, size: 0.9 });
+    // Where two points are near each other, the second one's name moves towards the middle.
+    const near = names.find(([u, v]) => Math.abs(u - px) < 6 * text && Math.abs(v - py) < text);
+    const level = near ? near[1] + (near[1] > box.top + box.height / 2 ? -1.2 : 1.2) * text : py;
+    names.push([px, level]);
+    const aside = px + (far ? -0.7 : 0.7) * text;
+    theme.write(ctx, trace.name ?? "", aside, level, { ...how, size: 0.9 });
     if (!trace.ghost) return;
     const [gx, gy] = [within(trace.ghost.x, x), within(trace.ghost.y, y)];
     if (!Number.isFinite(gx + gy)) return;

@@ -4,7 +4,7 @@
  * From above: membrane potentials of both wheels, torques M with the stall band, angular
  * velocities, and delta t with the control period. The left wheel's lines are solid, the right
  * wheel's dashed. Kicks are bands with their names. Where many records share a pixel column, their
- * least and greatest value are drawn, so that a spike of one tick stays visible.
+ * extremes are drawn, so that a spike of one tick stays visible. Rows without room are left out.
  */
 
 // A line does not bridge a longer gap, s: there, records are lost.
@@ -13,21 +13,14 @@ const GAP_S = 0.25;
 const DENSE = 1.5;
 // How many records are drawn in one go: Chromium paints long paths slowly.
 const PIECE = 32;
+const LEAST = 1.2; // the height of a strip of weight 1 at least, in heights of the text
+// What a row may reach to, by its quantity: 1 and rad/s.
+const X = [1, 2, 5, 10, 20];
+const OMEGA = [5, 10, 20, 50, 100];
 const ROWS = [
-    {
-        symbol: "x",
-        weight: 1.5,
-        limits: [1, 2, 5, 10, 20],
-        lines: wheels(["x1", "x2"], ["x₁", "x₂"]),
-    },
+    { symbol: "x", weight: 1.5, limits: X, lines: wheels(["x1", "x2"], ["x₁", "x₂"]) },
     { symbol: "M", weight: 1, limits: [1], lines: wheels(["torque"]) },
-    {
-        symbol: "ω",
-        unit: "rad/s",
-        weight: 1,
-        limits: [5, 10, 20, 50, 100],
-        lines: wheels(["omega_rad_s"]),
-    },
+    { symbol: "ω", unit: "rad/s", weight: 1, limits: OMEGA, lines: wheels(["omega_rad_s"]) },
     {
         symbol: "Δt",
         unit: "ms",
@@ -93,16 +86,23 @@ export function draw(canvas, state, theme) {
     const view = { ctx, colours, theme, left, right, now, pixels: (right - left) / seconds };
     const shown = recent(state, now - seconds);
     const header = 1.5 * text;
-    const weights = ROWS.reduce((sum, row) => sum + row.weight, 0);
-    const share = (bottom - top - ROWS.length * header) / weights;
+    const { rows, share } = fitting(bottom - top, header, LEAST * text);
     let y = top;
     times(view, state, seconds, top, bottom);
-    for (const row of ROWS) {
+    for (const row of rows) {
         const box = { top: y + header, bottom: y + header + share * row.weight };
         legend(view, row, state, y + 0.42 * header);
         strip(view, row, state, shown, box);
         y = box.bottom;
     }
+}
+
+/** The rows that have room, and how high one of weight 1 is then. */
+function fitting(room, header, least, rows = ROWS) {
+    const weights = rows.reduce((sum, row) => sum + row.weight, 0);
+    const share = (room - rows.length * header) / weights;
+    if (share >= least || rows.length === 1) return { rows, share };
+    return fitting(room, header, least, rows.slice(0, -1));
 }
 
 /** The part of the rings from a time on, as the first record's number and one behind the last. */

@@ -96,7 +96,7 @@ export function draw(canvas, state, theme) {
         if (state.kick) ghosts(sheet, [state.seen1, state.seen2], pin);
         force(sheet, state.torque, pin);
     }
-    readout(sheet, state, width);
+    readout(sheet, state, width, height);
     if (state.kick) {
         ctx.strokeStyle = colours.kick;
         ctx.lineWidth = 2 * theme.line;
@@ -250,8 +250,8 @@ function arc({ ctx, theme, x, y, radius }, from, to, colour, width) {
     theme.arrowHead(ctx, x + r * right, y - r * up, -up * way, -right * way, head, colour);
 }
 
-/** Numbers where the picture is empty: below on the right. */
-function readout({ ctx, colours, theme, x, y, radius }, state, width) {
+/** Numbers where the picture is empty, below on the right: as many as there is room for. */
+function readout({ ctx, colours, theme, x, y, radius }, state, width, height) {
     const text = theme.text;
     const left = x + Math.max(1.2 * radius, 0.8 * radius + 2 * text);
     const room = Math.min(width - left - 0.5 * text, 11 * text);
@@ -265,6 +265,7 @@ function readout({ ctx, colours, theme, x, y, radius }, state, width) {
     theme.write(ctx, state.kick || (state.title ?? ""), left, line, how);
     const row = (name, value, unit, colour) => {
         line += step;
+        if (line > height - 0.5 * text) return;
         theme.write(ctx, name, left, line, { colour, symbol: name.length === 1, bold: true });
         const numbers = left + Math.min(5.4 * text, room - 3.7 * text);
         theme.write(ctx, value, numbers, line, { colour, align: "right" });
