@@ -150,7 +150,9 @@ def _drive_brick(options):
     button = BackButton(lambda text: say(text, sys.stderr))
     panels = (watchdog, lights, speaker, button, Notify(os.environ))
     try:
-        return run(options, motors, battery, MonotonicClock(), choose_seed(options), panels, True)
+        return run(
+            options, motors, battery, MonotonicClock(), choose_seed(options), panels, brick=True
+        )
     finally:
         alone.close()
 

@@ -23,6 +23,7 @@ class Peer(object):
         session: The conversation, a robot.session.Session.
         since: When the link was opened, by the robot's clock (s).
         lasting: Whether it is a serial line, which stays open through noise and silence.
+        records_s: How long records may wait for others to be sent with them (s).
 
     Attributes:
         frame: The frame to answer next, (type, payload), or None.
@@ -36,7 +37,7 @@ class Peer(object):
         watched: What the server waits for on this link, a mask of select.epoll.
     """
 
-    def __init__(self, link, session, since, lasting):
+    def __init__(self, link, session, since, lasting, records_s=0.0):
         self.link = link
         self.fd = link.fileno()
         self.session = session
@@ -47,6 +48,8 @@ class Peer(object):
         self.out = bytearray()
         self.due = self.streaming = False
         self.watched = 0
+        self._records_s = records_s
+        self._records_due = since
 
     @property
     def reads(self):
@@ -59,6 +62,15 @@ class Peer(object):
         return (self.frame is not None and len(self.out) < FULL_BYTES) or (
             self.streaming and not self.out
         )
+
+    def reader(self, now):
+        """Whether records are due to it, or an event.
+
+        Args:
+            now: The robot's clock (s).
+        """
+        session = self.session
+        return session.subscribed and (now >= self._records_due or session.event_waits)
 
     def events(self):
         """What to wait for on the link, a mask of select.epoll: nothing while its turn is due."""
@@ -110,6 +122,8 @@ class Peer(object):
         """
         if not self.out:
             self.moved = now
+        if self.streaming:
+            self._records_due = now + self._records_s
         while self.streaming and len(self.out) < STREAM_BYTES:
             frame = self.session.stream()
             if frame is None:

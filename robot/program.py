@@ -16,6 +16,9 @@ from robot.serial_line import BAUD, SerialLine
 from robot.server import Server
 from robot.wire import PORT
 
+# On the brick, sending a record takes as long as a tick, and sending four hardly longer.
+RECORDS_S = 0.1
+
 
 def say(text, stream):
     """Print a line, if it can be printed.
@@ -103,7 +106,7 @@ def choose_seed(options):
     return int.from_bytes(os.urandom(4), "big") if options.seed is None else options.seed
 
 
-def run(options, motors, battery, clock, seed, panels=(), lock_memory=False):
+def run(options, motors, battery, clock, seed, panels=(), brick=False):
     """Serve hosts and run the loop until SIGINT or SIGTERM. Prints READY when it listens.
 
     Args:
@@ -112,10 +115,11 @@ def run(options, motors, battery, clock, seed, panels=(), lock_memory=False):
         battery: A robot.motors.Battery, or None.
         clock: A robot.motors.Clock.
         seed: Random seed of the neurons' start values.
-        panels: What people see and touch on the robot, and what watches the loop. The time between
-            ticks goes to their serve(loop), which must return at once; close() ends them. Those
+        panels: What people see and touch on the robot, and what watches the loop. Between two ticks
+            their serve(loop) is called once, and must return at once; close() ends them. Those
             that show which robot this is name their `ways`, see robot.beacon.
-        lock_memory: Whether to keep the program from being swapped out, if the kernel allows it.
+        brick: Whether this machine is as slow and small as the brick: then hosts get records ten
+            times a second, and the program is kept from being swapped out, if the kernel allows it.
 
     Returns:
         The exit status: 0 when it was ended, 2 if it could not start.
@@ -127,13 +131,13 @@ def run(options, motors, battery, clock, seed, panels=(), lock_memory=False):
         settings = _settings(options)
         if settings:
             loop.set_params(settings)
-        server = Server(loop, secret)
+        server = Server(loop, secret, RECORDS_S if brick else 0.0)
         port = _listen(server, options)
         if options.serial is not None:
             server.attach(SerialLine(options.serial, _warn).open)
         if new:
             _warn("wrote a new token: {}".format(options.token))
-        loop.memory_locked = lock_memory and schedule.lock_memory()
+        loop.memory_locked = brick and schedule.lock_memory()
         loop.real_time = schedule.take_priority(schedule.LOOP_PRIORITY)
         panels = (*panels, schedule.Collector())
         try:
@@ -226,9 +230,14 @@ def _serve(options, loop, server, port, panels):
     host = "[{}]".format(host) if ":" in host else host
     say("READY tcp://{}:{}".format(host, port), sys.stdout)
 
+    box, seen = loop.blackbox, None
+
     def serve(timeout_s):
-        for panel in panels:
-            panel.serve(loop)
+        nonlocal seen
+        if seen != box.next_tick:
+            seen = box.next_tick
+            for panel in panels:
+                panel.serve(loop)
         server.serve(timeout_s)
 
     _run(loop, server, serve)

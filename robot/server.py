@@ -53,9 +53,12 @@ class Server(object):
     Args:
         loop: The robot, a robot.loop.Loop.
         token: The robot's token, 32 bytes.
+        records_s: How long records may wait for others to be sent with them (s). Events, and what
+            a host asks for, do not wait.
     """
 
-    def __init__(self, loop, token):
+    def __init__(self, loop, token, records_s=0.0):
+        self._records_s = records_s
         self.boot = new_id()
         self._loop = loop
         self._token = token
@@ -111,7 +114,7 @@ class Server(object):
             The Peer at its other end.
         """
         session = Session(self._loop, self._token, self.boot)
-        peer = Peer(link, session, self._loop.clock.now(), lasting)
+        peer = Peer(link, session, self._loop.clock.now(), lasting, self._records_s)
         self._peers.append(peer)
         self._by_fd[peer.fd] = peer
         self._poll.register(peer.fd, peer.events())
@@ -154,7 +157,7 @@ class Server(object):
             self._sweep(now)
         if self._turns.tick != self._loop.blackbox.next_tick:
             self._turns.tick = self._loop.blackbox.next_tick
-            self._choose_readers()
+            self._choose_readers(now)
         more = True
         while more:
             # Everybody is heard again and again, so that a stop is obeyed before the next tick.
@@ -171,10 +174,12 @@ class Server(object):
         If there is more to read than time, those who have waited longest come first.
         """
         clock = self._loop.clock
+        ready = self._poll.poll(0)
+        if not ready and not self._lines:
+            return False
         now = clock.now()
         until = max(until, now + HEARING_S)
         accepted = False
-        ready = self._poll.poll(0)
         if len(ready) > 1:
             ready.sort(key=self._heard)
         for fd, mask in ready:
@@ -219,6 +224,8 @@ class Server(object):
 
         Returns whether there was any turn.
         """
+        if not self._turns.waiting:
+            return False
         begin = now = self._loop.clock.now()
         peer = self._turns.next(until)
         worked = peer is not None
@@ -243,23 +250,27 @@ class Server(object):
         self._turns.end(answers, min(now - begin, 2.0 * self._loop.params.tick_s))
         return now
 
-    def _choose_readers(self):
+    def _choose_readers(self, now):
         """Choose who gets the records of the tick that is over."""
-        firsts = [line.peer for line in self._lines] + [self._driver]
+        for line in self._lines:
+            self._have_read(line.peer, now)
+        self._have_read(self._driver, now)
         left = STREAMS_PER_TICK
-        for peer in firsts:
-            if peer is not None and peer.session.subscribed:
-                peer.streaming = True
-                self._turns.call(peer)
         for _ in self._peers:
             self._place = (self._place + 1) % len(self._peers)
             peer = self._peers[self._place]
-            if peer.session.subscribed and not peer.streaming:
-                peer.streaming = True
-                self._turns.call(peer)
+            if self._have_read(peer, now):
                 left -= 1
                 if not left:
                     return
+
+    def _have_read(self, peer, now):
+        """Give a peer, if there is one, the records that are due to it. Returns whether any are."""
+        if peer is None or peer.streaming or not peer.reader(now):
+            return False
+        peer.streaming = True
+        self._turns.call(peer)
+        return True
 
     def _answer(self, peer):
         """Answer a peer's frame, and give it a place if that is what the frame asks for."""

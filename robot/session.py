@@ -104,6 +104,11 @@ class Session(object):
         """Whether the peer wants records."""
         return self._cursor is not None
 
+    @property
+    def event_waits(self):
+        """Whether the robot has an event for the peer that wants records."""
+        return not self._introduced or self._event_cursor != self._loop.blackbox.next_event
+
     def receive(self, kind, payload):
         """Take in a frame.
 
@@ -282,9 +287,10 @@ class Session(object):
         Returns:
             The frame as bytes, None if the peer has everything.
         """
-        if self._cursor is None:
-            return None
         box = self._loop.blackbox
+        news = self._cursor != box.next_tick or self._event_cursor != box.next_event
+        if self._cursor is None or (self._introduced and not news):
+            return None
         oldest = box.oldest_tick
         if self._cursor < oldest:
             lost = {"event": "lost", "tick": oldest, "from": self._cursor}

@@ -57,6 +57,11 @@ class Turns(object):
         if peer.due:
             self._queue.remove(peer)
 
+    @property
+    def waiting(self):
+        """Whether any peer waits for its turn."""
+        return bool(self._queue)
+
     def next(self, until):
         """Begin the next turn, if there is time.
 

@@ -5,6 +5,7 @@ import hmac
 import json
 import struct
 import zlib
+from functools import lru_cache
 
 PROTOCOL = (1, 2)
 # Where robots listen: KICK on a telephone's keys.
@@ -15,6 +16,8 @@ _HEADER = struct.Struct(">2sBH")
 _CHECK = struct.Struct(">I")
 _SAMPLES = struct.Struct(">I")
 _SEAL = struct.Struct(">Q16s")
+_LENGTH = struct.Struct(">I")
+_COUNTER = struct.Struct(">Q")
 MAX_PAYLOAD = 4096
 MAX_SAMPLES = MAX_PAYLOAD - _SAMPLES.size
 OVERHEAD = _HEADER.size + _CHECK.size
@@ -28,6 +31,17 @@ TYPES = (HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP)
 
 NONCE_BYTES = 16
 TOKEN_BYTES = 32
+# The robot's token, and the keys of the sessions that seal commands.
+KEYS_KEPT = 8
+
+
+def _no_constant(name):
+    raise ValueError("{} is not a number in JSON".format(name))
+
+
+# Made once: json.dumps and json.loads make new ones for each message with settings of its own.
+_TO_JSON = json.JSONEncoder(allow_nan=False, separators=(",", ":")).encode
+_FROM_JSON = json.JSONDecoder(parse_constant=_no_constant).decode
 
 
 class BadMessage(Exception):
@@ -85,7 +99,7 @@ def dump(message):
     Raises:
         ValueError: It holds NaN or an infinity, which JSON has no words for.
     """
-    return json.dumps(message, allow_nan=False, separators=(",", ":")).encode("utf-8")
+    return _TO_JSON(message).encode("ascii")
 
 
 def encode_samples(number, records):
@@ -118,10 +132,6 @@ def open_samples(payload):
     return _SAMPLES.unpack_from(payload)[0], payload[_SAMPLES.size :]
 
 
-def _no_constant(name):
-    raise ValueError("{} is not a number in JSON".format(name))
-
-
 def load(payload):
     """Read JSON.
 
@@ -135,7 +145,7 @@ def load(payload):
         BadMessage: They hold anything else.
     """
     try:
-        message = json.loads(payload.decode("utf-8"), parse_constant=_no_constant)
+        message = _FROM_JSON(payload.decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise BadMessage("not JSON: {}".format(error)) from error
     if not isinstance(message, dict):
@@ -212,11 +222,15 @@ def digest(key, *parts):
     Returns:
         32 bytes.
     """
-    code = hmac.new(key, digestmod=hashlib.sha256)
-    for part in parts:
-        code.update(struct.pack(">I", len(part)))
-        code.update(part)
+    code = _keyed(key).copy()
+    code.update(b"".join([_LENGTH.pack(len(part)) + part for part in parts]))
     return code.digest()
+
+
+@lru_cache(maxsize=KEYS_KEPT)
+def _keyed(key):
+    """HMAC-SHA256 that has taken in its key already, which is half of the work."""
+    return hmac.new(key, digestmod=hashlib.sha256)
 
 
 class Handshake(object):
@@ -292,4 +306,4 @@ def unseal(key, counter, payload):
 
 
 def _mac(key, counter, payload):
-    return digest(key, struct.pack(">Q", counter), payload)[:16]
+    return digest(key, _COUNTER.pack(counter), payload)[:16]

@@ -10,7 +10,7 @@ import socket
 import pytest
 
 from robot import wire
-from robot.record import STATES
+from robot.record import STATES, STRUCT
 from robot.server import Server
 from robot.session import Session
 from tests.rig import TOKEN, BusyClock, Rig, whole
@@ -23,10 +23,10 @@ STOP = wire.encode(wire.STOP, b"")
 class Desk(Rig):
     """A robot that runs, and takes HELLO_S of its virtual time for each frame."""
 
-    def __init__(self):
+    def __init__(self, records_s=0.0):
         Rig.__init__(self)
         self.clock = self.loop.clock = BusyClock()
-        self.server = Server(self.loop, TOKEN)
+        self.server = Server(self.loop, TOKEN, records_s)
         self.address = ("127.0.0.1", self.server.listen("127.0.0.1", 0))
         self.links = []
         self.loop.start()
@@ -110,3 +110,39 @@ def test_a_serve_without_a_word_from_anybody_leaves_all_links_open(desk):
     for link in links:
         with pytest.raises(BlockingIOError):
             link.recv(1)
+
+
+def frames(link):
+    """Whole frames that have arrived; records as how many they are."""
+    try:
+        data = link.recv(1 << 16)
+    except BlockingIOError:
+        return []
+    return [
+        len(wire.open_samples(payload)[1]) // STRUCT.size
+        if kind == wire.SAMPLES
+        else wire.load(payload)
+        for kind, payload in whole(data)
+    ]
+
+
+def test_records_wait_for_each_other_and_events_do_not():
+    desk = Desk(records_s=0.1)
+    try:
+        reader = desk.connect()
+        reader.send(hello() + wire.encode_json(wire.ASK, {"id": 1, "do": "subscribe"}))
+        desk.run(10)
+        frames(reader)
+        got = []
+        for _ in range(40):
+            desk.run()
+            got += frames(reader)
+        assert sum(got) >= 36
+        assert max(got) <= 4
+        assert len(got) <= 10
+        desk.loop.fail("the test")
+        desk.run()
+        events = [item["reason"] for item in frames(reader) if isinstance(item, dict)]
+        assert events == ["the test"]
+    finally:
+        desk.close()
