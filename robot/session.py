@@ -5,7 +5,6 @@ The order of it is in PROTOCOL.md.
 
 import binascii
 import os
-import re
 import sys
 
 from robot import __version__, commands, wire
@@ -27,9 +26,19 @@ _MACHINE = "{} {} {}".format(
 )
 # What a screen would obey, or show as nothing: controls, zero widths, directions, halves of pairs
 # and private letters. Not what `isprintable` says: Python 3.5 knows no letter younger than 2015.
-_NOT_FOR_SCREENS = re.compile(
-    "[\x00-\x1f\x7f-\xa0\xad\u061c\u180e\u2000-\u200f\u2028-\u202f\u205f-\u206f\ud800-\uf8ff"
-    "\ufeff\ufff0-\uffff\U000e0000-\U0010ffff]"
+_NOT_FOR_SCREENS = (
+    ("\x00", "\x1f"),
+    ("\x7f", "\xa0"),
+    ("\xad", "\xad"),
+    ("\u061c", "\u061c"),
+    ("\u180e", "\u180e"),
+    ("\u2000", "\u200f"),
+    ("\u2028", "\u202f"),
+    ("\u205f", "\u206f"),
+    ("\ud800", "\uf8ff"),
+    ("\ufeff", "\ufeff"),
+    ("\ufff0", "\uffff"),
+    ("\U000e0000", "\U0010ffff"),
 )
 SEE_PROTOCOL = "see PROTOCOL.md for what the robot understands"
 
@@ -42,7 +51,12 @@ def new_id():
 def _printable(name):
     """A peer's name, cut to a decent length and without anything that a screen would obey."""
     # People are shown names in single quotes, which a name must not seem to end.
-    return _NOT_FOR_SCREENS.sub("", name[:40]).replace("'", "\u2019")
+    letters = [
+        letter
+        for letter in name[:40]
+        if " " <= letter <= "~" or not any(low <= letter <= high for low, high in _NOT_FOR_SCREENS)
+    ]
+    return "".join(letters).replace("'", "\u2019")
 
 
 def _name_in(payload):
