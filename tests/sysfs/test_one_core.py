@@ -65,5 +65,6 @@ def test_a_loop_that_never_sleeps_is_stopped_on_one_processor(tmp_path):
         process.terminate()
         assert b"the loop was silent" in process.communicate()[1]
     finally:
-        process.kill()
-        process.communicate()
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
