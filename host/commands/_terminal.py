@@ -205,11 +205,14 @@ def answer(options: argparse.Namespace, result: dict[str, Any], sentence: str) -
 
 def _lines(summary: dict[str, Any]) -> Iterator[str]:
     """The results of a run: claims, main numbers (in words if it has them), accuracies, files."""
+    from host.runs.answers import lines
     from host.runs.claims import Claim
 
     for claim in summary["claims"]:
         yield Claim.from_dict(claim).sentence()
-    if "in_words" in summary["numbers"]:
+    if summary["answers"]:
+        yield from lines(summary["answers"])
+    elif "in_words" in summary["numbers"]:
         yield summary["numbers"]["in_words"]
     else:
         for name, value in _single_values(summary["numbers"]):

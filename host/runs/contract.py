@@ -16,6 +16,7 @@ from typing import Any, Protocol
 
 from host.client.robot import Robot
 from host.logs.log import Log
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from sim_motor.constants import Constants, load
 
@@ -104,11 +105,13 @@ class Findings:
         claims: The paper's claims that it measured.
         numbers: Other numbers: a dictionary of plain data, or a list of dictionaries.
         files: Texts to keep as files, by the name of the file.
+        answers: The main numbers, as a table for people.
     """
 
     claims: list[Claim]
     numbers: Any
     files: dict[str, str] = field(default_factory=dict)
+    answers: list[Answer] = field(default_factory=list)
 
 
 class Experiment(Protocol):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from host.errors import FigureInterrupted, KickctlError, mark_kept
+from host.runs.answers import as_data
 from host.runs.contract import Cell, Findings, Row, Setting
 from host.runs.folder import Study
 from host.util.progress import progress
@@ -165,6 +166,7 @@ def finish(
     summary = {
         **about,
         "claims": [claim.as_dict() for claim in findings.claims],
+        "answers": as_data(findings.answers),
         "numbers": findings.numbers,
         "trials": len(rows),
         "spoiled": study.spoiled(),

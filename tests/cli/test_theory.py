@@ -61,6 +61,15 @@ def test_the_command_gives_the_hopf_point(kickctl):
     assert found["omega_hopf"] == pytest.approx(hopf(Wheel(tau_s=1.0)).omega)
 
 
+def test_the_answer_is_a_table_and_json_has_the_same(kickctl):
+    out = kickctl("theory", "portrait", "--k", "1.4")[1]
+    assert "  phase at k = 1.4         S, at rest\n" in out
+    answers = json.loads(kickctl("theory", "portrait", "--k", "1.4", "--json")[1])["answers"]
+    assert answers[0]["name"] == "rest is unstable from k"
+    assert answers[0]["value"] == pytest.approx(hopf(Wheel()).k)
+    assert answers[1]["value"] == "S, at rest"
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -8,6 +8,7 @@ from typing import TypedDict
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.outcomes import BACKWARD, FORWARD, OUTCOMES, Outcome
 from host.theory.engine.kicked import KICKS
@@ -147,7 +148,24 @@ def report(rows: list[BasinsRow], setting: Setting) -> Findings:
             "phases": PHASES,
         },
     }
-    return Findings([], numbers)
+    answers = [
+        Answer(f"{outcome}, {model} model", 100 * share, None, "% of starts")
+        for model, own in numbers["basins"].items()
+        for outcome, share in own["shares"].items()
+        if share
+    ]
+    answers += [_kick_answer(kick) for kick in numbers["kicks"]]
+    return Findings([], numbers, answers=answers)
+
+
+def _kick_answer(kick: KickNumbers) -> Answer:
+    """The lengths at which a kick is sure to reverse a wheel."""
+    sign = {1: " +", -1: " -", 0: ""}[kick["sign"]]
+    name = f"{kick['mode']}{sign} kick, {kick['model']} model: reverses"
+    if len(kick["reversed"]) == 1:  # a kick without a length
+        return Answer(name, f"at {kick['reversed'][0]['share']:.1%} of phases")
+    ranges = [f"{1000 * low:.6g} to {1000 * high:.6g} ms" for low, high in kick["sure_s"]]
+    return Answer(f"{name} at all phases", ", ".join(ranges) or "at no length")
 
 
 def reversals(kicks: list[KickRow]) -> dict[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TypedDict
 
+from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.model.wheel import Wheel, wheel_of
 from host.theory.studies import branch_tables as tables
@@ -123,7 +124,24 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
         claim_m9(turned),
     ]
     foreign = setting.elsewhere(**PAPER)
-    return Findings([claim.doubted(foreign) for claim in claims], numbers)
+    answers = _answers(rows, numbers, near)
+    return Findings([claim.doubted(foreign) for claim in claims], numbers, answers=answers)
+
+
+def _answers(rows: list[BranchRow], numbers: Numbers, near: list[list[float]]) -> list[Answer]:
+    """The special points, and where the formula fits."""
+    letter = numbers["along"]
+    answers = [
+        Answer(f"{row['type']}, {_NAMES[row['part']]}, at {letter}", row["value"])
+        for row in tables.special_points(rows)
+    ]
+    both = numbers["coexistence_with_rotations"]
+    if both:
+        answers.append(
+            Answer("rotations beside rest or swinging", f"{both['from']:.9g} to {both['to']:.9g}")
+        )
+    fits = ", ".join(f"{low:.9g} to {high:.9g}" for low, high in near) or "nowhere"
+    return [*answers, Answer(f"constant-velocity formula within 5 % for {letter}", fits)]
 
 
 def _special_point(row: SpecialRow, along: str, wheel: Wheel) -> dict[str, object]:

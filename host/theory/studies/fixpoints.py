@@ -7,6 +7,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import Fixpoint, Kind, fixpoints, growth_by_time_course
@@ -112,6 +113,12 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     drive = wheel.a * wheel.k * wheel.tau_s / 2
     ratio = f"{drive / wheel.friction:.2f}" if wheel.friction else "infinite"
     foreign = setting.elsewhere(**PAPER, k=PAPER_K)
+    answers = []
+    for first, degrees in ((one[0], "0°, 90°, 180°, 270°"), (one[1], "45°, 135°, 225°, 315°")):
+        answers.append(Answer(f"at {degrees}", first["kind"]))
+        for real, imaginary in eigenvalues(first):
+            angle = f" and {abs(imaginary):.6g} rad/s" if imaginary else ""
+            answers.append(Answer("  eigenvalue", f"{real:.9g}/s{angle}"))
     return Findings(
         [
             Claim(
@@ -141,4 +148,5 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
             ).doubted(foreign),
         ],
         numbers,
+        answers=answers,
     )

@@ -6,10 +6,12 @@ The paper's estimate stands beside it.
 from __future__ import annotations
 
 from itertools import pairwise
+from math import pi
 from typing import Any, TypedDict
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import ANGLES
@@ -98,11 +100,12 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
     point, through, small = point_of(rows), line_of(rows), limit_of(rows)
     ratio = point["k_estimate"] / point["k_hopf"]
     slow = wheel.friction * wheel.tau_s / wheel.inertia
-    between = [
+    found = [
         bautin_tau_s(wheel, row["tau"], after["tau"])
         for row, after in pairwise(through)
         if (row["l1"] < 0) != (after["l1"] < 0)
     ]
+    changes = [tau_s for tau_s in found if tau_s is not None]
     off = abs(point["k_by_eigenvalues"] / point["k_hopf"] - 1)
     numbers: Numbers = {
         "k_hopf": point["k_hopf"],
@@ -110,7 +113,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
         "l1": point["l1"],
         "k_estimate": point["k_estimate"],
         "supercritical": point["l1"] < 0,
-        "l1_changes_sign_at_tau": [tau_s for tau_s in between if tau_s is not None],
+        "l1_changes_sign_at_tau": changes,
         "gamma_at_hopf": {
             f"{angle:.4f}": adaptive_friction(angle, wheel._replace(k=point["k_hopf"]))
             for angle in ANGLES[:2]
@@ -131,4 +134,13 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
         f" {small['k_estimate'] / small['k_hopf']:.3f}. Limit cycles are born"
         f" {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",
     )
-    return Findings([claim.doubted(setting.elsewhere(**PAPER))], numbers)
+    answers = [
+        Answer("Hopf bifurcation at k", point["k_hopf"]),
+        Answer("the paper's estimate of k", point["k_estimate"]),
+        Answer("wheels swing with", point["omega_hopf"] / (2 * pi), None, "Hz"),
+        Answer("cycles are born", "stable" if point["l1"] < 0 else "unstable"),
+        Answer("first Lyapunov coefficient l1", point["l1"]),
+        *(Answer("l1 changes its sign at tau", tau_s, None, "s") for tau_s in changes),
+    ]
+    claims = [claim.doubted(setting.elsewhere(**PAPER))]
+    return Findings(claims, numbers, answers=answers)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.transients import crisis, sample
 from host.theory.model.wheel import Array, wheel_of
@@ -79,4 +80,19 @@ def report(rows: list[LineRow], setting: Setting) -> Findings:
         "lives": [lives_numbers(one) for one in samples],
         "in_words": words,
     }
-    return Findings([], numbers)
+    answers = [
+        Answer("rolling is stable up to k", rolls and rolls["k"]),
+        Answer("it ends in a", rolls and rolls["type"]),
+        Answer("a little above, wheels are", rolls and rolls["above"]),
+    ]
+    if found:
+        answers += [
+            Answer("chaos lasts above k (crisis)", found.k, _error(found.k_interval)),
+            Answer("power of the mean life", found.power, _error(found.power_interval)),
+        ]
+    return Findings([], numbers, answers=answers)
+
+
+def _error(interval: tuple[float, float]) -> float:
+    """A standard error from a 95 % interval."""
+    return (interval[1] - interval[0]) / (2 * 1.96)

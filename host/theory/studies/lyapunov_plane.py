@@ -6,15 +6,19 @@ from typing import Any
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.attractors import CHAOS, KINDS
 from host.theory.model.wheel import wheel_of
 from host.theory.studies import lyapunov_pieces as pieces
 from host.theory.studies.lyapunov_numbers import HalvedSteps, PlaneNumbers
 from host.theory.studies.lyapunov_rows import (
+    ANY,
+    ROLLS,
     GridPoint,
     PlaneCell,
     PlaneRow,
+    StartKind,
     StepCheck,
     StepCheckRow,
     plane_of,
@@ -24,6 +28,7 @@ from host.theory.studies.route_to_chaos import tally
 
 # Values of k, and of tau, and values of tau in a cell.
 POINTS, BAND = 60, 4
+_STARTS: dict[StartKind, str] = {ANY: "random states", ROLLS: "rolling"}
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[PlaneCell]:
@@ -54,7 +59,12 @@ def report(rows: list[PlaneRow], setting: Setting) -> Findings:
         **tally(plane_of(rows)),
         "accuracy": halved_steps(step_checks(rows)),
     }
-    return Findings([], numbers)
+    answers = [
+        Answer(f"{kind}, from {_STARTS[start]}", 100 * share, None, "%")
+        for start, shares in numbers["shares"].items()
+        for kind, share in shares.items()
+    ]
+    return Findings([], numbers, answers=answers)
 
 
 def halved_steps(rows: list[StepCheckRow]) -> HalvedSteps:

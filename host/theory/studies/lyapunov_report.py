@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from host.errors import NotDone
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.attractors import CHAOS, KINDS
@@ -60,7 +61,24 @@ def report(rows: list[LyapunovRow], setting: Setting) -> Findings:
     # The interval of the exponent says whether a short run is enough, if it is above zero.
     short = "" if claim.holds else setting.short_of(seconds=LONG_S)
     foreign = setting.elsewhere(**PAPER | {"tau": PAPER_TAU_S, "k": PAPER_K})
-    return Findings([claim.doubted(foreign, short)], numbers)
+    return Findings([claim.doubted(foreign, short)], numbers, answers=_answers(numbers))
+
+
+def _answers(numbers: Numbers) -> list[Answer]:
+    point = numbers["point"]
+    pairs = zip(numbers["exponents"], numbers["standard_errors"], strict=True)
+    return [
+        Answer("the wheel is", numbers["verdict"]),
+        *(Answer(f"exponent {n}", value, error, "/s") for n, (value, error) in enumerate(pairs, 1)),
+        Answer("exponent 1, by pairs of wheels", point["by_pairs"], point["by_pairs_error"], "/s"),
+        Answer("Lyapunov dimension", numbers["dimension"]),
+        Answer("|mean of omega|", point["omega_mean_abs"], None, "rad/s"),
+        Answer("standard deviation of omega", point["omega_std"], None, "rad/s"),
+        *(
+            Answer(f"wheels that are {kind}", 100 * own["wheels"] / point["of_wheels"], None, "%")
+            for kind, own in point["attractors"].items()
+        ),
+    ]
 
 
 def verdict_of(point: Point) -> str:

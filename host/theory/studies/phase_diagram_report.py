@@ -7,6 +7,7 @@ from typing import NotRequired, TypedDict
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.hopf import critical_k, estimate
@@ -88,7 +89,13 @@ def report(rows: list[PhaseDiagramRow], setting: Setting) -> Findings:
     constants = {name: value for name, value in PAPER.items() if name in options}
     foreign = setting.elsewhere(**constants, k_to=20.0, tau_to=1.5, start="sweep")
     coarse = setting.short_of(points=200, transient=100.0, seconds=100.0)
-    return Findings([_claim(numbers, ways[0]).doubted(foreign, coarse)], numbers)
+    answers = [
+        Answer(f"{name} in the {where}", 100 * share, None, "%")
+        for where, shares in numbers["shares"].items()
+        for name, share in shares.items()
+    ]
+    claim = _claim(numbers, ways[0]).doubted(foreign, coarse)
+    return Findings([claim], numbers, answers=answers)
 
 
 def _misjudged(rows: list[PointRow], wheel: Wheel) -> dict[str, float]:

@@ -13,6 +13,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import fixpoint, fixpoints
@@ -34,6 +35,12 @@ from host.theory.studies.portrait_rows import (
 )
 from host.theory.studies.registry import PAPER
 
+_NAMES: dict[Phase, str] = {
+    "S": "S, at rest",
+    "FB": "FB, forth and back",
+    "LLM": "LLM, rolling",
+    "C": "C, irregular",
+}
 PAPERS_K: dict[float, Phase] = {1.4: "S", 1.65: "FB", 1.85: "LLM"}
 # How long trajectories and unstable manifolds are followed, s.
 FOLLOWED_S = 14.0
@@ -149,7 +156,9 @@ def report(rows: list[PortraitRow], setting: Setting) -> Findings:
     }
     of_three = "" if len(found) == len(PAPERS_K) else "the claim is made for k = 1.4, 1.65 and 1.85"
     claim = _claim(found, k_hopf).doubted(setting.elsewhere(**PAPER), of_three)
-    return Findings([claim], numbers)
+    answers = [Answer("rest is unstable from k", k_hopf)]
+    answers += [Answer(f"phase at k = {row['k']:g}", _NAMES[row["kind"]]) for row in found]
+    return Findings([claim], numbers, answers=answers)
 
 
 def _claim(found: list[SummaryRow], k_hopf: float) -> Claim:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from math import log2
 from typing import TypedDict
 
+from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.hopf import estimate
 from host.theory.model.wheel import wheel_of
@@ -104,7 +105,21 @@ def report(rows: list[TickStudyRow], setting: Setting) -> Findings:
             order: _accuracy(rows, order, limit, late=options["latency"] > 0.0) for order in ORDERS
         },
     }
-    return Findings([], numbers)
+    answers = [Answer("without ticks: rest is unstable from k", limit["k_c"])]
+    answers += _thresholds("without ticks", numbers["continuous"])
+    for order, own in (("new", numbers["new"]), ("old", numbers["old"])):
+        answers.append(Answer(f"torque by {order} potentials: rest is unstable from k", own["k_c"]))
+        answers.append(Answer(f"torque by {order} potentials: shift", own["shift_pct"], None, "%"))
+        answers += _thresholds(f"torque by {order} potentials", own)
+    return Findings([], numbers, answers=answers)
+
+
+def _thresholds(where: str, own: ContinuousNumbers | OrderNumbers) -> list[Answer]:
+    return [
+        Answer(f"{where}: rolls from k", own["k_rolls"]),
+        Answer(f"{where}: stops below k", own["k_stops"]),
+        Answer(f"{where}: turns at k = 8", own["hz"], None, "Hz"),
+    ]
 
 
 def shift_pct(k_c: float | None, k_hopf: float) -> float | None:
