@@ -34,10 +34,16 @@ class Allowance:
 
 @dataclass
 class Score:
-    """How many guesses a page has made, and how many were right."""
+    """How many guesses a page has made, and how many were right.
+
+    For the same kicks: how many the simulation has predicted, and how often what it thought
+    likeliest was right.
+    """
 
     guesses: int = 0
     right: int = 0
+    predicted: int = 0
+    simulation: int = 0
 
 
 @dataclass(frozen=True)

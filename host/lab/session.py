@@ -55,6 +55,7 @@ class Session:
         self._states_due = 0.0
         self._counted = (0, 0)
         self._guesses: dict[str, tuple[str | None, Score]] = {}
+        self._likeliest: dict[str, dict[str, str]] = {}
 
     # Connections.
 
@@ -138,15 +139,25 @@ class Session:
             for page in self.pages.values():
                 self._greet(page)
         else:
+            if message["type"] == "prediction" and message["kick_id"] in self._guesses:
+                self._likeliest[message["kick_id"]] = {
+                    side: max(shares, key=shares.__getitem__)
+                    for side, shares in message["shares"].items()
+                }
             self.broadcast(message)
 
     def _tell_outcome(self, outcome: Message) -> None:
         """Tell each page what a kick did, what was guessed, and how often it guessed right."""
         guess, score = self._guesses.pop(outcome["kick_id"], (None, None))
-        right = _guessed_right(guess, outcome) if guess is not None and outcome["result"] else None
-        if right is not None and score is not None:
+        likeliest = self._likeliest.pop(outcome["kick_id"], None)
+        right = None
+        if guess is not None and score is not None and outcome["result"]:
+            right = _came_true(dict.fromkeys(outcome["result"], guess), outcome)
             score.guesses += 1
             score.right += right
+            if likeliest is not None:
+                score.predicted += 1
+                score.simulation += _came_true(likeliest, outcome)
         for page in self.pages.values():
             page.send({**outcome, "guess": guess, "right": right, "score": asdict(page.score)})
 
@@ -267,7 +278,9 @@ class Session:
             arguments["id"] = uuid.uuid4().hex
             self._guesses[arguments["id"]] = guess, page.score
             while len(self._guesses) > GUESSES_KEPT:
-                del self._guesses[next(iter(self._guesses))]
+                oldest = next(iter(self._guesses))
+                del self._guesses[oldest]
+                self._likeliest.pop(oldest, None)
 
         def answered(result: Message | KickctlError) -> None:
             page.answer(request, result)
@@ -369,10 +382,11 @@ class Session:
             self.broadcast({"type": "pages", "driving": driving, "watching": counted[1]})
 
 
-def _guessed_right(guess: str, outcome: Message) -> bool:
-    """Whether a guess is true of each kicked wheel. One that stays at rest has stopped, too."""
+def _came_true(expected: dict[str, str], outcome: Message) -> bool:
+    """Whether what was expected is true of each kicked wheel. One at rest has stopped, too."""
     return all(
-        guess == result or (guess == "stops" and outcome["after"][side] == STOPPED)
+        expected.get(side) == result
+        or (expected.get(side) == "stops" and outcome["after"][side] == STOPPED)
         for side, result in outcome["result"].items()
     )
 

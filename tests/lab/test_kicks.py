@@ -8,6 +8,8 @@ from host.lab.stepped_station import SteppedStation
 from robot.params import Params
 from tests.lab.conftest import QuietLab
 
+EXPECTED = {side: {"reverses": 40, "continues": 8, "stops": 0} for side in ("left", "right")}
+
 
 class Oracle:
     """Stands in for the process that predicts, and keeps what it is asked."""
@@ -17,7 +19,7 @@ class Oracle:
 
     def ask(self, question, done):
         self.questions.append(question)
-        done({"shares": {}, "of": 48})
+        done({"shares": EXPECTED, "of": 48})
 
 
 class Steps(QuietLab):
@@ -79,15 +81,26 @@ def test_the_outcome_says_who_has_guessed_right(lab):
     assert outcome["result"] == {"left": "reverses"}
     assert outcome["reversed"]
     assert outcome["guess"] == other.latest("outcome")["guess"] == "reverses"
-    assert outcome["score"] == {"guesses": 1, "right": 1}
-    assert other.latest("outcome")["score"] == {"guesses": 0, "right": 0}
+    assert outcome["score"] == {"guesses": 1, "right": 1, "predicted": 1, "simulation": 1}
+    assert set(other.latest("outcome")["score"].values()) == {0}
+    lab.station.forecasts = None
     kick(visit, mode="membrane", guess="continues")
     lab.station.step(5.0)
     visit.leave()
     again = lab.driver(resume=1)
     kick(again, mode="membrane", guess=None)
     lab.station.step(5.0)
-    assert again.latest("outcome")["score"] == {"guesses": 2, "right": 1}
+    score = again.latest("outcome")["score"]
+    assert score == {"guesses": 2, "right": 1, "predicted": 1, "simulation": 1}
+
+
+def test_the_simulation_can_be_wrong_where_a_guess_is_right(lab, monkeypatch):
+    monkeypatch.setitem(EXPECTED["right"], "continues", 48)
+    visit = lab.driver()
+    kick(visit, mode="membrane", guess="reverses")
+    lab.station.step(5.0)
+    score = visit.latest("outcome")["score"]
+    assert score == {"guesses": 1, "right": 1, "predicted": 1, "simulation": 0}
 
 
 def test_a_stop_leaves_no_outcome(lab):
@@ -105,7 +118,7 @@ def test_a_stop_leaves_no_outcome(lab):
 def test_anyone_may_ask_what_a_kick_would_do(lab):
     visit = lab.viewer()
     reply = visit.ask("predict", robot="anna", kick={"mode": "phase", "ticks": 4})
-    assert reply["result"] == {"shares": {}, "of": 48}
+    assert reply["result"] == {"shares": EXPECTED, "of": 48}
     assert "error" in visit.ask("predict", robot="anna", kick=7)
     lab.station.forecasts = None
     error = visit.ask("predict", robot="anna", kick={"mode": "phase"})["error"]

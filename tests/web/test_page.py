@@ -235,7 +235,7 @@ def test_a_guess_stands_beside_prediction_and_outcome(visit, lab, station):
     kick(visitor, station, "#kick-phase")
     visitor.reads(".verdict", "Left reversed, as 31 of 32 predicted.")
     visitor.reads(".verdict", "Guess: reverse. Correct.")
-    visitor.reads(".verdict", "1 of 1 guess correct so far.")
+    visitor.reads(".verdict", "Correct so far: you 1 of 1. The simulation 1 of 1.")
     visitor.reads("#said", "Left wheel reversed, Right wheel reversed.")
 
 

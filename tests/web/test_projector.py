@@ -93,7 +93,7 @@ def test_texts_in_drawings_are_large_and_do_not_cover_each_other(projector, stat
 def test_the_verdict_is_seen_without_scrolling(projector, station, stopped):
     projector.page.check("#guess-0", force=True)
     kick(projector, station, "#kick-phase")
-    projector.reads(".verdict", "correct so far")
+    projector.reads(".verdict", "The simulation 1 of 1.")
     if stopped:
         projector.page.keyboard.press("Escape")
         station.step(1.0)

@@ -149,7 +149,7 @@ export class Store {
         this.selected = 0;
         this.baton = { driver: null, you: false, asking: [], why: "" };
         this.pages = { driving: 0, watching: 0 };
-        this.score = { guesses: 0, right: 0 };
+        this.score = { guesses: 0, right: 0, predicted: 0, simulation: 0 };
         this.note = null;
     }
 

@@ -123,8 +123,11 @@ export const texts = {
     unknown: "–",
     ownGuess: (guess, right) =>
         `Guess: ${VERBS[guess]}. ${right === null ? "" : right ? "Correct." : "Not this time."}`,
-    score: ({ guesses, right }) =>
-        guesses ? `${right} of ${counted(guesses, "guess", "guesses")} correct so far.` : "",
+    score: ({ guesses, right, predicted, simulation }) =>
+        sentences(
+            guesses && `correct so far: you ${right} of ${guesses}`,
+            predicted && `the simulation ${simulation} of ${predicted}`,
+        ),
     ifNow: (kick) => `Now, a ${texts.kickLine(kick).toLowerCase()} would:`,
 
     moves: "Movements",
