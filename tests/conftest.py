@@ -60,6 +60,7 @@ REAL_TIME = (
     "tests/sysfs/",
     "tests/web/test_access.py",
     "tests/web/test_baton.py",
+    "tests/web/test_hidden.py",
     "tests/web/test_page.py",
     "tests/web/test_projector.py",
     "tests/web/test_stop.py",
