@@ -6,8 +6,10 @@ from dataclasses import replace
 from typing import TypedDict
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from host.runs.claims import Claim
+from host.theory.model.wheel import Array
 from host.theory.studies.branch_rows import WAYS, CyclePart
 from host.theory.studies.branch_tables import (
     BranchRow,
@@ -24,6 +26,8 @@ from host.theory.studies.branch_tables import (
 _PASSAGES: dict[CyclePart, int] = {"FB": 2, "LLM": 4, "dry": 4}
 # A merging is extrapolated from this many last cycles of a branch that ends close to it (relative).
 _LAST, _CLOSE = 25, 1e-2
+# A line for the period is fitted to so many of them.
+_CLOSEST = 8
 # Two values of a merging that differ by less (relative) are the same.
 _SAME = 1e-6
 # Where the paper's portraits find a wheel forth and back, and rolling.
@@ -32,6 +36,21 @@ _SWINGS_K, _ROLLS_K = 1.65, 1.85
 
 # `from` is a word of the language.
 Coexistence = TypedDict("Coexistence", {"from": float, "to": float})
+
+
+class PeriodLaw(TypedDict):
+    """How the period grows towards a merging: by this much (s) for each unit of ln(distance).
+
+    Attributes:
+        slope_s: of a line through the last cycles. It approaches the limit as slowly as a small
+            power of the distance.
+        limit_s: from a fit to the last cycles that takes this power into account.
+        predicted_s: minus the passages by a saddle in a period, divided by its growth rate.
+    """
+
+    slope_s: float
+    limit_s: float
+    predicted_s: float
 
 
 class FoldNumbers(TypedDict):
@@ -67,6 +86,35 @@ def extrapolated(rows: list[BranchRow], part: CyclePart, merging: MergingRow) ->
         np.column_stack([np.ones_like(times), *decays]), values - merging["value"], rcond=None
     )[0]
     return float(merging["value"] + solution[0])
+
+
+def period_law(rows: list[BranchRow], part: CyclePart, merging: MergingRow) -> PeriodLaw | None:
+    """The logarithmic law of the period near the merging; None if the branch does not go there."""
+    cycles = _last_cycles(rows, part, merging["value"])
+    if len(cycles) < _LAST:
+        return None
+    (growth, _), (decay, _), *_ = merging["eigenvalues"]
+    distances = np.array([row["value"] - merging["value"] for row in cycles])
+    periods = np.array([row["period"] for row in cycles])
+    times = periods / _PASSAGES[part]
+
+    def terms(rate: float) -> Array:
+        decays = np.exp(np.outer(times - times[0], [-rate, decay, -2 * rate]))
+        return np.asarray(decays / distances[:, None])
+
+    def misfit(rate: float) -> float:
+        coefficients = np.linalg.lstsq(terms(rate), np.ones_like(times), rcond=None)[0]
+        return float(np.sum((terms(rate) @ coefficients - 1) ** 2))
+
+    close = slice(-_CLOSEST, None)
+    slope = np.polyfit(np.log(np.abs(distances[close])), periods[close], 1)[0]
+    bounds = (0.8 * growth, 1.2 * growth)
+    rate = minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-9}).x
+    return {
+        "slope_s": float(slope),
+        "limit_s": -_PASSAGES[part] / float(rate),
+        "predicted_s": -_PASSAGES[part] / growth,
+    }
 
 
 def _last_cycles(rows: list[BranchRow], part: CyclePart, value: float) -> list[CycleRow]:

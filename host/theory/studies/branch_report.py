@@ -19,10 +19,12 @@ from host.theory.studies.branch_formula import (
 from host.theory.studies.branch_merging import (
     Coexistence,
     DryNumbers,
+    PeriodLaw,
     claim_m5,
     coexistence,
     dry_branch,
     extrapolated,
+    period_law,
 )
 from host.theory.studies.branch_rows import CyclePart, Part
 from host.theory.studies.branch_tables import BranchEndRow, BranchRow, MergingRow, SpecialRow
@@ -61,6 +63,7 @@ class Numbers(TypedDict):
     along: str
     mergings: list[float]
     merging_by_extrapolation: dict[CyclePart, float | None]
+    period_law: dict[CyclePart, PeriodLaw | None]
     saddle_quantity: float | None
     saddle_quantity_vanishes_at_tau: list[float | None]
     coexistence_with_rotations: Coexistence | None
@@ -81,10 +84,15 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
     merging = mergings[0] if mergings else None
     deviations, turned = deviations_of(rows), turning(rows)
     second: dict[CyclePart, float | None] = {}
+    laws: dict[CyclePart, PeriodLaw | None] = {}
     if merging:
         second = {
             "FB": extrapolated(rows, "FB", merging),
             "LLM": extrapolated(rows, "LLM", merging),
+        }
+        laws = {
+            "FB": period_law(rows, "FB", merging),
+            "LLM": period_law(rows, "LLM", merging),
         }
     both = coexistence(rows, first_hopf, merging) if along == "k" else None
     near = near_ranges(deviations, tables.formula_edges(rows))
@@ -96,6 +104,7 @@ def report(rows: list[BranchRow], setting: Setting) -> Findings:
         "along": along,
         "mergings": [row["value"] for row in mergings],
         "merging_by_extrapolation": second,
+        "period_law": laws,
         "saddle_quantity": merging["saddle_quantity"] if merging else None,
         "saddle_quantity_vanishes_at_tau": [row["tau"] for row in tables.neutral_points(rows)],
         "coexistence_with_rotations": both,
@@ -135,6 +144,13 @@ def _answers(rows: list[BranchRow], numbers: Numbers, near: list[list[float]]) -
         Answer(f"{row['type']}, {_NAMES[row['part']]}, at {letter}", row["value"])
         for row in tables.special_points(rows)
     ]
+    for part, law in numbers["period_law"].items():
+        if law:
+            words = (
+                f"{law['slope_s']:.5g} s per ln(distance), in the limit {law['limit_s']:.5g} s;"
+                f" the saddle's growth rate says {law['predicted_s']:.5g} s"
+            )
+            answers.append(Answer(f"period near the merging, {_NAMES[part]}", words))
     both = numbers["coexistence_with_rotations"]
     if both:
         answers.append(

@@ -2,13 +2,16 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from host.figures.theory.branch import draw
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
+from host.theory.model.wheel import Wheel
 from host.theory.studies import branch
 from host.theory.studies.registry import TABLE
+from tests.paper.theory import independent
 from tests.paper.theory.table import rows_of
 
 
@@ -62,6 +65,18 @@ def test_two_methods_agree_in_each_number(found, rows):
     assert accuracy["cycles_against_time_stepping_rad_per_s"] < 1e-6
     assert accuracy["product_of_multipliers"] < 1e-12
     assert {row["part"] for row in rows if row["kind"] == "check"} == {"FB", "LLM", "dry"}
+
+
+def test_the_period_grows_towards_the_merging_as_the_saddles_growth_rate_says(found):
+    """Swinging passes two saddles in a period, rolling four."""
+    saddle = [np.sqrt(0.5), -np.sqrt(0.5), -np.pi / 4, 0.0]
+    wheel = Wheel(k=found.numbers["k_merge"])
+    growth = np.linalg.eigvals(independent.jacobian(saddle, wheel)).real.max()
+    for part, passages in (("FB", 2), ("LLM", 4)):
+        law = found.numbers["period_law"][part]
+        assert law["predicted_s"] == pytest.approx(-passages / growth, rel=1e-9)
+        assert law["limit_s"] == pytest.approx(law["predicted_s"], rel=2e-3)
+        assert law["slope_s"] == pytest.approx(law["predicted_s"], rel=0.025)
 
 
 def test_rest_swings_and_rotations_are_stable_where_the_paper_finds_them(rows):
