@@ -4,6 +4,7 @@ Hypothesis counts no time, nothing outside of the test's own folder is touched, 
 real time are marked.
 """
 
+import gc
 import os
 import signal
 import sys
@@ -74,6 +75,16 @@ def pytest_configure(config):
     # Whoever runs the tests in a shell's background has ^C ignored, and so have their children.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+# What collection makes stays until the end: neither then nor in each full collection of a test does
+# the collector have to look through it.
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection():
+    gc.disable()
+    yield
+    getattr(gc, "freeze", gc.collect)()  # Python 3.5 has no freeze
+    gc.enable()
 
 
 # Before `-m` chooses by the marks.

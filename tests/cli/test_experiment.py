@@ -113,9 +113,10 @@ def test_a_run_that_was_interrupted_anywhere_comes_to_the_same(toy, tmp_path, cu
     assert one == other
 
 
-def test_a_killed_process_goes_on_where_it_was(tmp_path):
+def test_a_killed_process_goes_on_where_it_was(kickctl, tmp_path):
     """Killed in the middle of its work, the result is that of a run that was not."""
-    command = [sys.executable, "-m", "host", "--json", "experiment", "reliability", "--trials", "3"]
+    arguments = ["--json", "experiment", "reliability", "--trials", "3"]
+    command = [sys.executable, "-m", "host", *arguments]
     folder = tmp_path / "killed"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(
@@ -125,20 +126,14 @@ def test_a_killed_process_goes_on_where_it_was(tmp_path):
             time.sleep(0.001)
         process.send_signal(signal.SIGKILL)
     assert process.returncode == -signal.SIGKILL
-    outcomes = []
-    for out in (folder, tmp_path / "whole"):
-        done = subprocess.run(
-            [*command, "--out", str(out)],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode in (0, 1), done.stderr
-        outcomes.append(json.loads(done.stdout))
-    assert outcomes[0]["numbers"] == outcomes[1]["numbers"]
-    assert Path(outcomes[0]["table"]).read_bytes() == Path(outcomes[1]["table"]).read_bytes()
+    status, out, err = kickctl(*arguments, "--out", str(folder))
+    assert status in (0, 1), err
+    resumed = json.loads(out)
+    status, out, err = kickctl(*arguments, "--out", str(tmp_path / "whole"))
+    assert status in (0, 1), err
+    whole = json.loads(out)
+    assert resumed["numbers"] == whole["numbers"]
+    assert Path(resumed["table"]).read_bytes() == Path(whole["table"]).read_bytes()
 
 
 def size(folder):

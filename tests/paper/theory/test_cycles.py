@@ -26,7 +26,6 @@ from host.theory.model.turning import constant_velocity, driven, potentials
 from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
 
 PAPER = Wheel()
-K_MERGE = merging(PAPER).k
 
 
 def types(branch):
@@ -57,6 +56,12 @@ def rolls_by_scipy(wheel):
 
 
 @pytest.fixture(scope="module")
+def k_merge():
+    """Where swinging and rolling merge at the paper's constants."""
+    return merging(PAPER).k
+
+
+@pytest.fixture(scope="module")
 def swinging():
     return swings(PAPER, "k", 0.02, 20.0)[0]
 
@@ -70,26 +75,28 @@ def rolling_8():
 # The global bifurcation
 
 
-def test_another_integrator_finds_the_merging_between_the_same_wheels():
-    assert [rolls_by_scipy(PAPER._replace(k=K_MERGE * (1 + off))) for off in (-1e-9, 1e-9)] == [
+def test_another_integrator_finds_the_merging_between_the_same_wheels(k_merge):
+    assert [rolls_by_scipy(PAPER._replace(k=k_merge * (1 + off))) for off in (-1e-9, 1e-9)] == [
         False,
         True,
     ]
 
 
-def test_the_merging_lies_between_the_papers_portraits_and_does_not_depend_on_how_it_is_sought():
-    assert hopf(PAPER).k < 1.65 < K_MERGE < 1.85
+def test_the_merging_lies_between_the_papers_portraits_and_does_not_depend_on_how_it_is_sought(
+    k_merge,
+):
+    assert hopf(PAPER).k < 1.65 < k_merge < 1.85
     for how in ({"near": 1e-5}, {"near": 1e-7}, {"fineness": 5.0}):
         (found,) = mergings(PAPER, 1.7, 1.9, points=2, **how)
-        assert found.k == pytest.approx(K_MERGE, rel=1e-13)
+        assert found.k == pytest.approx(k_merge, rel=1e-13)
 
 
-def test_slower_wheels_and_stronger_forces_merge_at_the_same_place_in_their_own_units():
+def test_slower_wheels_and_stronger_forces_merge_at_the_same_place_in_their_own_units(k_merge):
     slower = merging(PAPER._replace(tau_s=3 * 0.25, inertia=9 * 0.05, friction=3 * 0.5))
     stronger = merging(PAPER._replace(inertia=7 * 0.05, friction=7 * 0.5))
-    assert slower.k == pytest.approx(K_MERGE, rel=1e-12)
+    assert slower.k == pytest.approx(k_merge, rel=1e-12)
     assert 3 * slower.saddle_quantity == pytest.approx(merging(PAPER).saddle_quantity, rel=1e-9)
-    assert stronger.k == pytest.approx(7 * K_MERGE, rel=1e-12)
+    assert stronger.k == pytest.approx(7 * k_merge, rel=1e-12)
 
 
 def test_the_saddles_eigenvalues_add_up_to_the_divergence_and_one_is_that_of_the_decoupled_sum():
@@ -98,8 +105,8 @@ def test_the_saddles_eigenvalues_add_up_to_the_divergence_and_one_is_that_of_the
     assert np.abs(eigenvalues + 1 / 0.25).min() < 1e-9
 
 
-def test_along_friction_wheels_roll_below_the_merging_and_it_is_the_same_one():
-    (found,) = mergings(PAPER._replace(k=K_MERGE), 0.3, 0.9, "friction", points=4)
+def test_along_friction_wheels_roll_below_the_merging_and_it_is_the_same_one(k_merge):
+    (found,) = mergings(PAPER._replace(k=k_merge), 0.3, 0.9, "friction", points=4)
     assert found.wheel.friction == pytest.approx(0.5, rel=1e-12)
     assert not found.passes_above
 
@@ -191,13 +198,15 @@ def test_cycles_are_born_at_the_exact_hopf_bifurcation_and_grow_as_the_square_ro
     assert np.pi / small[0].unknowns[3] == pytest.approx(hopf(PAPER).omega, rel=1e-3)
 
 
-def test_both_branches_end_at_the_merging_from_their_own_side_without_bifurcations(swinging):
+def test_both_branches_end_at_the_merging_from_their_own_side_without_bifurcations(
+    swinging, k_merge
+):
     branch = rotations(PAPER, "k", 1.0, 4.0)[0]
     assert types(swinging) == types(branch) == []
     assert [way.end for way in branch.ways] == [MERGING, RANGE]
     swing, roll = (
-        swinging.ways[0].points[-1].unknowns[4] / K_MERGE - 1,
-        branch.ways[0].points[-1].unknowns[4] / K_MERGE - 1,
+        swinging.ways[0].points[-1].unknowns[4] / k_merge - 1,
+        branch.ways[0].points[-1].unknowns[4] / k_merge - 1,
     )
     assert -1e-7 < swing < 0.0 < roll < 1e-7
     assert branch.ways[1].points[-1].unknowns[4] == pytest.approx(4.0, rel=1e-12)
@@ -213,13 +222,13 @@ def test_at_tau_of_a_second_there_are_folds_on_both_sides_and_a_neimark_sacker_p
     assert np.abs(pair) == pytest.approx(1.0, abs=1e-9)
 
 
-def test_dry_friction_makes_the_rotations_end_in_a_fold_above_a_homoclinic_end():
+def test_dry_friction_makes_the_rotations_end_in_a_fold_above_a_homoclinic_end(k_merge):
     dry = PAPER._replace(dry_friction=0.1)
     (branch,), (end,) = rotations(dry, "k", 1.0, 4.0), mergings(dry, 1.0, 4.0)
     down = branch.ways[0]
     (fold,) = down.bifurcations
     assert (fold.type, down.end) == (FOLD, MERGING)
-    assert K_MERGE < fold.point.unknowns[4] < end.k
+    assert k_merge < fold.point.unknowns[4] < end.k
     assert down.points[-1].unknowns[4] == pytest.approx(end.k, rel=1e-6)
     assert all(
         branch.shooting.path(point.unknowns)[:, OMEGA, 0].min() > 0.0 for point in down.points

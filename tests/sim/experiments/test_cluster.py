@@ -9,7 +9,6 @@ import signal
 from pathlib import Path
 
 import pytest
-from distributed import LocalCluster
 from matplotlib.figure import Figure
 
 from host.errors import NoLink, WrongUse
@@ -24,6 +23,8 @@ KICKS = 36 * 30
 @pytest.fixture(scope="module")
 def cluster():
     """Two processes of one thread each."""
+    from distributed import LocalCluster
+
     with LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
     ) as cluster:
@@ -86,6 +87,8 @@ def test_nothing_is_lost_with_a_worker_that_is_killed(cluster, scramble):
 
 
 def test_a_cluster_that_is_lost_in_the_middle_is_reported_in_words(scramble):
+    from distributed import LocalCluster
+
     with LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
     ) as brief:
