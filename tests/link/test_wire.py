@@ -1,5 +1,7 @@
 """Frames and messages against noise, damage and malice."""
 
+import hashlib
+import hmac
 import json
 import zlib
 
@@ -262,3 +264,9 @@ def test_both_ends_of_a_handshake_agree_and_nobody_else():
     one = derived[0]
     assert len({one.host_proof, one.robot_proof, one.key}) == 3
     assert vars(wire.Handshake(b"t" * 32, b"h", b"r")) == vars(one)
+
+
+@pytest.mark.parametrize("key", [b"t" * wire.TOKEN_BYTES, b"", b"k" * 64])
+def test_a_digest_is_the_hmac_of_its_parts_behind_their_lengths_also_the_second_time(key):
+    expected = hmac.new(key, b"\0\0\0\2ab\0\0\0\0\0\0\0\1c", hashlib.sha256).digest()
+    assert [wire.digest(key, b"ab", b"", b"c") for _ in range(2)] == [expected] * 2
