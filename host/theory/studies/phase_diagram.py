@@ -31,9 +31,9 @@ __all__ = ["cells", "report", "simulate"]
 
 # The paper's inset.
 INSET_K, INSET_TAU = 5.0, 0.5
-# Time constants in a cell. With both ways a cell occupies both cores, and little is lost if a run
-# is interrupted.
-BAND = 128
+# Time constants in a cell. With both ways a cell has two blocks of wheels, one for each core; with
+# fewer, one instruction would do fewer wheels.
+BAND = 32
 # Each wheel is pushed by this angle (rad): one that starts exactly at rest would stay there.
 PUSH = 1e-3
 # Points that are computed again, with steps FINER times smaller.
