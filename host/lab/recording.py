@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,8 @@ class Recording:
 
     Attributes:
         path: The log's file.
-        whole: Whether it has its end.
+        whole: Whether it has its end, and all before it.
+        failed: Whether it ends early, since it could not be written.
 
     Raises:
         LogError: The file cannot be created.
@@ -33,13 +35,17 @@ class Recording:
         # The folder in which the program works may change.
         self.path: Path = self._file.path.absolute()
         self.whole = False
-        self._failed = False
+        self.failed = False
         self._say = say
 
     @property
     def name(self) -> str:
         """The file's name."""
         return self.path.name
+
+    def ending(self) -> dict[str, bool]:
+        """How it ends, as pages hear it: {whole, failed}."""
+        return {"whole": self.whole, "failed": self.failed}
 
     def take_records(self, records: list[Record]) -> None:
         """Write records."""
@@ -51,16 +57,19 @@ class Recording:
 
     def close(self) -> None:
         """End the log."""
+        if self.failed:
+            with suppress(OSError):  # has been said already
+                self._file.close()
         self._try(self._file.close)
-        self.whole = True
+        self.whole = not self.failed
 
     def _try(self, write: Callable[[], None]) -> None:
-        if self._failed:
+        if self.failed:
             return
         try:
             write()
         except OSError as error:
-            self._failed = True
+            self.failed = True
             self._say(
                 f"the log {self.name} ends here, since it cannot be written: {error.strerror}",
                 "is the disk full? The robot goes on",

@@ -330,7 +330,7 @@ class Session:
     def logs(self) -> list[Message]:
         """The logs that this lab has recorded, as pages get them."""
         return [
-            {"name": name, "robot": station.name, "whole": recording.whole}
+            {"name": name, "robot": station.name} | recording.ending()
             for station in self.stations.values()
             for name, recording in station.logs.items()
         ]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from host.client.robot import connect
 from host.lab import derived
-from robot.controller import target_position
+from robot.controller import rod_force, tangential_force, target_position
 from robot.kicks import WHEELS
 from robot.record import Record
 
@@ -148,3 +148,12 @@ def test_a_restart_begins_anew_where_the_robot_is():
     follower.take_event({"event": "restart", "tick": 0})
     assert follower.derive(blank._replace(left_phi_rad=-50.0)) is None
     assert follower.derive(blank._replace(left_phi_rad=-50.0, t_s=1.0))[-3:] == here
+
+
+@given(*[st.floats(-1, 1)] * 2, st.floats(-pi, pi))
+def test_springs_as_drawn_would_pull_the_pin_the_other_way(target1, target2, phi):
+    """As docs/lab.md and the key beside the wheels say of the arrow."""
+    pin = np.array([cos(phi), sin(phi)])
+    pull = [rod_force(target1, pin[0], 8.0), rod_force(target2, pin[1], 8.0)]
+    along_rim = pin[0] * pull[1] - pin[1] * pull[0]  # positive: counterclockwise, forward
+    assert tangential_force(*pull, *pin) == pytest.approx(-along_rim, abs=1e-12)

@@ -270,7 +270,7 @@ def test_a_log_is_recorded_listed_and_downloaded_by_who_has_a_key(lab, station, 
         station.step(1.0)
         await tab.ask("do", robot="sim", command="record", arguments={"on": False})
         listed = (await tab.ask("logs"))["result"]["logs"]
-        assert {"name": name, "robot": "sim", "whole": True} in listed
+        assert {"name": name, "robot": "sim", "whole": True, "failed": False} in listed
         url = f"{site(lab.drive_url)}/logs/{name}"
         for headers in ({}, {"Authorization": "Bearer x"}, {"Authorization": key(lab.view_url)}):
             async with browser.http.get(url, headers=headers) as answer:

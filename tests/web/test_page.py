@@ -31,6 +31,7 @@ def kick(visitor, station, button):
 
 def test_the_wheels_turn(visit, station):
     visitor = visit()
+    assert "sign of the paper" in visitor.page.get_attribute(".mark-force", "title")
     before = visitor.robot()["record"]
     station.step(0.3)
     visitor.until(f"r.record.tick >= {before['tick'] + 10}")

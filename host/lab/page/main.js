@@ -34,7 +34,7 @@ for (const target of document.querySelectorAll("[data-label]")) {
 
 byId("key").append(
     ...Object.entries(texts.key).map(([mark, words]) =>
-        element("li", { className: `mark-${mark}` }, words),
+        element("li", { className: `mark-${mark}`, title: texts.keyHints[mark] ?? "" }, words),
     ),
 );
 

@@ -45,8 +45,8 @@ export function createRecording(root, lab) {
 
 const recordingOf = (lab) => lab.store.robot?.status.recording ?? null;
 
-function link({ name, whole }, lab) {
-    return button(texts.download(name, whole), () => download(name, lab), "link");
+function link({ name, whole, failed }, lab) {
+    return button(texts.download(name, whole, failed), () => download(name, lab), "link");
 }
 
 /** Fetch a log with the page's key, which an ordinary link could not show. */

@@ -47,6 +47,11 @@ export const texts = {
         force: "force",
         memory: "memory",
     },
+    keyHints: {
+        force:
+            "The arrow is F_tan with the sign of the paper: positive drives the wheel forward." +
+            " Springs drawn like these would pull the pin just as hard, but the other way.",
+    },
     handNote: "Drag one to pull it by hand, or hold an arrow key on it.",
     strips: "The last seconds",
     planes: "Phase planes",
@@ -185,7 +190,8 @@ export const texts = {
     recordingNow: (name) => `Recording to ${name}`,
     logs: "Logs to download",
     noLogs: "This lab has recorded no log yet.",
-    download: (name, whole) => (whole ? name : `${name} (still growing)`),
+    download: (name, whole, failed) =>
+        name + (failed ? " (ends early: not written in full)" : whole ? "" : " (still growing)"),
     downloadFailed: (why) => ({ message: `the log did not come: ${why}`, hint: "try again" }),
 
     takeOver: (host) => `Take over from ${host}`,
