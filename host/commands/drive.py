@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "primitive",
         choices=(*PRIMITIVES, *MODES),
-        help="where to go. chaos sets k = 15, tau_s = 1 s and rod_lag_s = 7.5 ms; wall-turner sets"
+        help="where to go. chaos sets k = 15, tau_s = 1 s and rod_lag_s = 6 ms; wall-turner sets"
         " k = 2. From both, a primitive first gives the robot its own parameters back",
     )
     add_motor(parser)

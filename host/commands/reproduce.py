@@ -48,10 +48,19 @@ def run(options: argparse.Namespace) -> int:
     essentials = f"report {page}" if page else ""
     if options.json:
         claims = [claim.as_dict() for claim in done.claims]
-        show({"claims": claims, "skipped": done.skipped, "report": page}, essentials)
+        at_preset = [claim.as_dict() for claim in done.at_preset.values()]
+        show(
+            {
+                "claims": claims,
+                "at_preset": at_preset,
+                "skipped": done.skipped,
+                "report": page,
+            },
+            essentials,
+        )
     else:
         with essential(essentials):
-            _print(done.claims, done.skipped)
+            _print(done.claims, done.at_preset, done.skipped)
             if page:
                 print(essentials)
     if done.page is None:
@@ -59,21 +68,30 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _print(claims: list["Claim"], skipped: dict[str, str]) -> None:
+def _print(claims: list["Claim"], at_preset: dict[str, "Claim"], skipped: dict[str, str]) -> None:
     from rich.table import Table
 
-    table = Table("", "claim", "paper", "measured", "", show_lines=True)
+    from host.runs.presets import ABOUT
+
+    table = Table("", "claim", "paper", "measured", "in the setting 'paper'", show_lines=True)
     for claim in claims:
+        other = at_preset.get(claim.id)
         table.add_row(
             claim.id,
             claim.claim,
             claim.paper,
-            claim.number(),
-            claim.verdict.upper() if claim.holds is False else claim.verdict,
+            _measured(claim),
+            _measured(other) if other else "",
         )
     for number in skipped:
-        table.add_row(number, "", "", "", "not measured")
+        table.add_row(number, "", "", "not measured", "")
     print_table(table)
+    if at_preset:
+        print(ABOUT)
     for number, note in [(claim.id, claim.note) for claim in claims] + list(skipped.items()):
         if note:
             print(f"{number}: {note}")
+
+
+def _measured(claim: "Claim") -> str:
+    return f"{claim.number()}: {claim.verdict.upper() if claim.holds is False else claim.verdict}"

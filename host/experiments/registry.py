@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from host.runs.presets import OPTION as PRESET
 from host.runs.registry import Entry, Option
 
 # On simulated cars, which need no robot: `kickctl[bodies]`.
@@ -82,25 +83,31 @@ ROBOT = {
     "primitives": Entry(
         "all motion primitives from each other by kicks, stopped and back: success rates and times,"
         " speed, duty, torque",
-        (Option("trials", 10, 1, 1000, "number of tries of each transition"),),
+        (Option("trials", 10, 1, 1000, "number of tries of each transition"), PRESET),
         ("R1", "R2", "R3", "R4", "R7"),
     ),
     "timeline": Entry(
         "the three kicks one after the other: potentials, torque, settling times, and the phase"
         " slip between the wheels",
-        (Option("trials", 25, 1, 10000, "number of rounds of the three kicks, there and back"),),
+        (
+            Option("trials", 25, 1, 10000, "number of rounds of the three kicks, there and back"),
+            PRESET,
+        ),
         ("R11", "R12"),
     ),
     "reliability": Entry(
         "how reliably kicks of 1 to 10 ticks reverse a wheel: position, phase of both signs, and"
         " membrane",
-        (Option("trials", 50, 1, 100000, "number of kicks at each point"),),
+        (Option("trials", 50, 1, 100000, "number of kicks at each point"), PRESET),
         ("R8", "R9", "R10"),
     ),
     "kick-map": Entry(
         "how often a kick reverses a wheel, against the kick's length and the wheel's phase when"
         " it begins",
-        (Option("kicks", 200000, 36, 100000000, "number of kicks; on a robot a few hundred"),),
+        (
+            Option("kicks", 200000, 36, 100000000, "number of kicks; on a robot a few hundred"),
+            PRESET,
+        ),
     ),
     "bifurcation": Entry(
         "torque and speed against k, swept down and up: the jump, the hysteresis, and the unstable"
@@ -111,19 +118,20 @@ ROBOT = {
             Option(
                 "branch", 13, 0, 13, "number of speeds at which k is regulated, in each direction"
             ),
+            PRESET,
         ),
         ("R5", "R6"),
     ),
     "wall": Entry(
         "a robot with k = 2 between two walls, which reverses by itself: on which axles, floors,"
         " fronts and batteries",
-        (Option("bounces", 50, 1, 10000, "number of bounces to count"),),
+        (Option("bounces", 50, 1, 10000, "number of bounces to count"), PRESET),
         ("R13",),
     ),
     "chaos": Entry(
-        "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and where motor"
-        " latency and inertia make it chaotic",
-        (Option("minutes", 10.0, 1.0, 600.0, "length of the series, minutes"),),
+        "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and which older rods"
+        " make it chaotic",
+        (Option("minutes", 10.0, 1.0, 600.0, "length of the series, minutes"), PRESET),
         ("R14",),
     ),
     "starts": Entry(

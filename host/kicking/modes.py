@@ -20,6 +20,7 @@ from host.kicking.outcome import Outcome, kick_and_watch
 from host.kicking.primitives import drive, headings
 from host.logs.log import Log
 from host.logs.motion import directions
+from host.runs.presets import PAPER, PRESETS
 from host.util.installation import deploy_command
 from host.util.whole_files import write_text
 from robot.kicks import PHASE, WHEELS
@@ -42,10 +43,8 @@ class Mode(NamedTuple):
 
 CHAOS, WALL_TURNER = "chaos", "wall-turner"
 MODES = {
-    # The rods' lag is no number of the paper. A program that reads the sensor anew in each formula,
-    # 3.65 ms for a reading, computes F_i from positions that are two readings older than F_tan.
     CHAOS: Mode(
-        {"k": 15.0, "tau_s": 1.0, "rod_lag_s": 0.0075},
+        {"k": 15.0, "tau_s": 1.0, **PRESETS[PAPER].params},
         "both wheels turn to and fro without a rhythm. A real robot needs room on all sides, and a"
         " battery of 7.2 to 7.5 V: far below that its wheels roll steadily",
     ),

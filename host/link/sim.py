@@ -28,7 +28,7 @@ from sim_motor.scene import Scene
 _READ_BYTES = 65536
 _SCENE = tuple(field.name for field in fields(Scene))
 # Fields of a scene that need walls.
-_OF_WALLS = ("across", "stiffness", "bumper")
+_OF_WALLS = ("across", "stiffness")
 _OPTIONS = ("seed", "idle", "motor", "battery", "dither", *_SCENE)
 _THEY_ARE = f"its options are {', '.join(_OPTIONS)}, and the robot's parameters: {', '.join(TABLE)}"
 

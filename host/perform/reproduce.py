@@ -14,6 +14,7 @@ from host.link.names import chosen, own_token
 from host.perform.run import RESULTS, perform
 from host.runs import html_report as report
 from host.runs.claims import Claim
+from host.runs.presets import OPTION, PAPER
 from host.runs.registry import Entry
 from host.theory.studies.registry import TABLE as STUDIES
 from host.util.installation import install_command
@@ -37,11 +38,14 @@ class Reproduction(NamedTuple):
 
     Attributes:
         claims: The claims, in the order of their numbers.
+        at_preset: Those about the robot once more, by their ids, measured in the setting `paper` of
+            what the paper leaves open. Empty for a real robot, which is as it is.
         skipped: Why a claim was not measured, by its id.
         page: The path of the report; None if it could not be written.
     """
 
     claims: list[Claim]
+    at_preset: dict[str, Claim]
     skipped: dict[str, str]
     page: Path | None
 
@@ -103,13 +107,13 @@ def reproduce(
         number for number in claim_ids() if number not in skipped and (not only or number in only)
     ]
     summaries: list[dict[str, Any]] = []
-    claims: dict[str, Claim] = {}
 
-    def run(table: Mapping[str, Entry], uri: str | None) -> None:
+    def run(table: Mapping[str, Entry], uri: str | None, **options: Any) -> dict[str, Claim]:
+        claims: dict[str, Claim] = {}
         for name, entry in table.items():
             if any(number in wanted for number in entry.claims):
                 summary = perform(
-                    name, uri, seed, token=token, out=out, take_over=take_over, say=say
+                    name, uri, seed, token=token, out=out, take_over=take_over, say=say, **options
                 )
                 summaries.append(summary)
                 found = [Claim.from_dict(claim) for claim in summary["claims"]]
@@ -118,15 +122,19 @@ def reproduce(
                     for claim in found
                     if claim.id in entry.claims and claim.id in wanted
                 )
+        return claims
 
-    run(TABLE, uri)
-    run(STUDIES, None)
+    claims = {**run(TABLE, uri), **run(STUDIES, None)}
+    at_preset: dict[str, Claim] = {}
+    if simulated:
+        open_to_choice = {name: entry for name, entry in TABLE.items() if OPTION in entry.options}
+        at_preset = run(open_to_choice, uri, **{OPTION.name: PAPER})
     name = "-".join(["report", *(wanted if only else [])])
     found = [claims[number] for number in wanted]
     page: Path | None = Path(out) / f"{name}.html"
     try:
-        report.write(Path(out) / f"{name}.html", found, summaries, skipped)
+        report.write(Path(out) / f"{name}.html", found, at_preset, summaries, skipped)
     except OSError as error:  # the claims are known all the same
         say(f"the report cannot be written: {error.filename}: {error.strerror}")
         page = None
-    return Reproduction(found, skipped, page)
+    return Reproduction(found, at_preset, skipped, page)

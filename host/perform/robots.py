@@ -72,7 +72,8 @@ def robots(
         return
 
     def simulate(cell: Cell) -> Outcome:
-        with connect(_in_world(uri, experiment.world(cell)), setting.seed_of(cell)) as robot:
+        world = {**setting.preset.scene, **experiment.world(cell)}
+        with connect(_in_world(uri, world), setting.seed_of(cell)) as robot:
             return _trial(experiment, cell, robot, setting, logs), []
 
     yield simulate
@@ -109,7 +110,7 @@ def _trial(
     path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
     # Every trial begins with the paper's parameters; a real robot gets its own back in the end.
-    _set(robot, PAPER)
+    _set(robot, {**PAPER, **setting.preset.params})
     if robot.status()["state"] != "running":
         robot.start()
     info = {**robot.info(), "cell": cell}

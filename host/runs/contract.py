@@ -18,6 +18,8 @@ from host.client.robot import Robot
 from host.logs.log import Log
 from host.runs.answers import Answer
 from host.runs.claims import Claim
+from host.runs.presets import OPTION, ORDINARY, PRESETS, Preset
+from robot.params import Params
 from sim_motor.constants import Constants, load
 
 Cell = dict[str, Any]
@@ -49,6 +51,18 @@ class Setting:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "constants", load(self.motor))
+
+    @property
+    def preset(self) -> Preset:
+        """What differs from the ordinary setting."""
+        return PRESETS[self.options.get(OPTION.name, ORDINARY)]
+
+    def params(self) -> Params:
+        """The robot's parameters in this setting."""
+        params = Params()
+        if self.preset.params:
+            params.apply(params.check(self.preset.params))
+        return params
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
         """The random seed of a cell. It does not depend on other cells or on the machine."""

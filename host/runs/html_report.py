@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import base64
 import errno
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from host.runs.claims import FAILS, HOLDS, UNDECIDED, Claim
+from host.runs.presets import ABOUT
 from host.util.whole_files import write_text
 
 _STYLE = """
@@ -33,6 +34,7 @@ _CLASSES = {HOLDS: "holds", FAILS: "fails", UNDECIDED: "undecided"}
 def write(
     path: Path,
     claims: Sequence[Claim],
+    at_preset: Mapping[str, Claim],
     summaries: Sequence[dict[str, Any]],
     skipped: dict[str, str],
 ) -> Path:
@@ -41,6 +43,7 @@ def write(
     Args:
         path: The file to write.
         claims: The claims that were measured.
+        at_preset: Some of them once more, by their ids, in the setting `paper`.
         summaries: The summaries of experiments and studies, as host.perform.run returns them.
         skipped: Why a claim was not measured, by its id.
 
@@ -77,7 +80,7 @@ def write(
         ),
         " self-organized robots as motor primitives</i>, Front. Neurorobot. 12:40 (2018).",
         " Intervals hold with a confidence of 95&nbsp;%.</p>\n",
-        f"<dl>{body}</dl>\n{_table(claims, skipped)}",
+        f"<dl>{body}</dl>\n{_table(claims, at_preset, skipped)}",
         *(_experiment(summary) for summary in summaries),
         "</body>\n</html>\n",
     ]
@@ -85,26 +88,37 @@ def write(
     return path
 
 
-def _table(claims: Sequence[Claim], skipped: dict[str, str]) -> str:
+def _table(claims: Sequence[Claim], at_preset: Mapping[str, Claim], skipped: dict[str, str]) -> str:
     rows = [
         _row(
-            claim.id,
-            claim.claim,
-            claim.paper,
-            claim.number(),
-            f'<span class="{_CLASSES[claim.verdict]}">{claim.verdict}</span>',
-            claim.note,
+            escape(claim.id),
+            escape(claim.claim),
+            escape(claim.paper),
+            _measured(claim),
+            _measured(at_preset[claim.id]) if claim.id in at_preset else "",
+            escape(claim.note),
         )
         for claim in claims
     ]
-    rows += [_row(number, "", "", "", "not measured", reason) for number, reason in skipped.items()]
-    head = "".join(f"<th>{name}</th>" for name in ("", "claim", "paper", "measured", "", "note"))
-    return f"<table>\n<tr>{head}</tr>\n{''.join(rows)}</table>\n"
+    rows += [
+        _row(escape(number), "", "", "not measured", "", escape(reason))
+        for number, reason in skipped.items()
+    ]
+    names = ("", "claim", "paper", "measured", "in the setting 'paper'", "note")
+    head = "".join(f"<th>{name}</th>" for name in names)
+    about = f"<p>{escape(ABOUT)}</p>\n" if at_preset else ""
+    return f"<table>\n<tr>{head}</tr>\n{''.join(rows)}</table>\n{about}"
 
 
-def _row(number: str, claim: str, paper: str, measured: str, verdict: str, note: str) -> str:
-    """A row of the table. The verdict is HTML, all else is text."""
-    cells = [escape(number), escape(claim), escape(paper), escape(measured), verdict, escape(note)]
+def _measured(claim: Claim) -> str:
+    """The number and the verdict, as HTML."""
+    return (
+        f'{escape(claim.number())} <span class="{_CLASSES[claim.verdict]}">{claim.verdict}</span>'
+    )
+
+
+def _row(*cells: str) -> str:
+    """A row of the table, from HTML."""
     return "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>\n"
 
 

@@ -361,9 +361,10 @@ def test_after_an_experiment_the_robot_stands_still(toy, desk, tmp_path):
 
 def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
     status, out, _ = kickctl("reproduce", "--only", "r8,R10", "--json")
-    claims = json.loads(out)["claims"]
+    claims, at_preset = (json.loads(out)[name] for name in ("claims", "at_preset"))
     assert status == 0
     assert [claim["id"] for claim in claims] == ["R8", "R10"]
+    assert [(claim["id"], claim["holds"]) for claim in at_preset] == [("R8", True), ("R10", True)]
     assert set(claims[0]) == {
         "id",
         "claim",
@@ -376,7 +377,7 @@ def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
         "note",
     }
     page = Path("results/report-R8-R10.html").read_text()
-    assert page.count("<img") == page.count("data:image/png;base64,") == 1
+    assert page.count("<img") == page.count("data:image/png;base64,") == 2
     assert "http" not in page
     for claim in claims:
         assert f"<td>{claim['id']}</td>" in page

@@ -60,7 +60,7 @@ def test_drive_goes_into_chaos_and_says_what_a_real_robot_needs(kickctl):
     result = json.loads(out)
     assert status == 0
     assert result["reached"] is True
-    assert result["params"] == {"k": 15.0, "tau_s": 1.0, "rod_lag_s": 0.0075}
+    assert result["params"] == {"k": 15.0, "tau_s": 1.0, "rod_lag_s": 0.006}
     assert min(result["turns"].values()) >= 3
     assert "7.2 to 7.5 V" in err
     assert json.loads(kickctl("log", "replay", result["log"], "--json")[1])["exact"] is True

@@ -20,7 +20,9 @@ from host.experiments.robot import chaos_pieces as pieces
 from host.experiments.robot.chaos_numbers import (
     Numbers,
     explain,
+    growth,
     in_words,
+    plain,
     reasons,
     series_numbers,
     tally,
@@ -33,6 +35,7 @@ from host.experiments.robot.chaos_rows import (
     Sample,
     lives_rows,
     series_of_wheels,
+    twins_rows,
 )
 from host.experiments.robot.switching import CONDITIONS, OLDER, ORDINARY
 from host.kicking.outcome import require_running
@@ -48,14 +51,21 @@ from robot.safety import RUNNING
 SUSTAINED = 0.95
 CLAIMED_MIN = 10.0
 # The map: how much older the rods are, and voltages of the battery.
-LAGS_S = (0.0, 0.0025, 0.004, 0.005, 0.0075, 0.01, 0.015)
+LAGS_S = (0.0, 0.0025, 0.004, 0.005, 0.006, 0.0075, 0.01, 0.015)
 VOLTAGES_V = (6.5, 7.0, 7.5, 8.0, 9.0)
 
 
 def cells(options: Options, *, batch: bool) -> list[ChaosCell]:
-    """The series; for simulated bricks also the parts that explain it."""
+    """The series; for simulated bricks also the parts that explain it, or the preset's."""
+    claimed = pieces.claimed_in(options)
     if not batch:
-        return [{"part": "series", "condition": ORDINARY}]
+        return [{"part": "series", "condition": claimed}]
+    if claimed != ORDINARY:
+        return [
+            {"part": "series", "condition": claimed},
+            {"part": "lives", "condition": claimed},
+            {"part": "twins", "condition": claimed, "jump": SEEN},
+        ]
     work: list[ChaosCell] = []
     work += [{"part": "series", "condition": name} for name in pieces.SHOWN]
     work += [{"part": "lives", "condition": name} for name in CONDITIONS]
@@ -124,9 +134,10 @@ def trial(cell: ChaosCell, robot: Robot, log: Log, setting: Setting) -> list[Sam
 def report(rows: list[ChaosRow], setting: Setting) -> Findings:
     """R14 for the brick as it is, with what was found under other conditions if that was tried."""
     series = {wheel: series_numbers(own) for wheel, own in series_of_wheels(rows).items()}
-    ordinary = [found for (condition, _), found in series.items() if condition == ORDINARY]
-    own = tally(lives_rows(rows, ORDINARY) or ordinary)
-    rates = [found["exponent"] for found in ordinary]
+    claimed = pieces.claimed_in(setting.options)
+    judged = [found for (condition, _), found in series.items() if condition == claimed]
+    own = tally(lives_rows(rows, claimed) or judged)
+    rates = [found["exponent"] for found in judged]
     chaotic = all(
         rate is not None and rate["interval"] is not None and rate["interval"][0] > of_noise()
         for rate in rates
@@ -141,6 +152,9 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
     numbers: Numbers = {
         "series": {f"{condition}, {side}": found for (condition, side), found in series.items()}
     }
+    parted = twins_rows(rows).get((claimed, SEEN))
+    if parted:
+        notes.append(f"of twins {in_words(plain(growth(parted)))}")
     if lives_rows(rows, ORDINARY):
         explanations = explain(rows)
         numbers = {**numbers, **explanations}

@@ -144,7 +144,7 @@ def series_numbers(series: list[SeriesRow]) -> SeriesNumbers:
     if found is not None:
         rate, embedding = found
         lag_s = embedding.lag * tick_s
-        exponent = {**_plain(rate), "lag_s": lag_s, "dimension": embedding.dimension}
+        exponent = {**plain(rate), "lag_s": lag_s, "dimension": embedding.dimension}
     return {
         "switches": len(switches(phi)),
         "until_s": until_s,
@@ -154,7 +154,8 @@ def series_numbers(series: list[SeriesRow]) -> SeriesNumbers:
     }
 
 
-def _plain(exponent: Exponent) -> Rate:
+def plain(exponent: Exponent) -> Rate:
+    """An exponent as plain data."""
     return {"per_s": exponent.rate, "interval": exponent.interval}
 
 
@@ -188,7 +189,7 @@ def explain(rows: list[ChaosRow]) -> Explanations:
     return {
         "conditions": {name: _condition_numbers(rows, name) for name in CONDITIONS},
         "twins": [
-            {"condition": condition, "jump": jump, **_plain(growth(pairs))}
+            {"condition": condition, "jump": jump, **plain(growth(pairs))}
             for (condition, jump), pairs in twins_rows(rows).items()
         ],
         "map": [

@@ -33,7 +33,6 @@ from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
-from robot.params import Params
 
 # Kicks in one cell: they take some seconds, and memory that any machine has. A million kicks make
 # 28,000 for a length, and 390 for a direction and a phase: where all of these reverse, at least
@@ -130,7 +129,7 @@ def simulate(cell: ChunkCell, setting: Setting) -> list[Counts]:
         cell["ticks"],
         cell["kicks"],
         setting.seed_of(cell),
-        params=Params(),
+        params=setting.params(),
         motor=setting.constants,
         battery_v=setting.battery_v,
     )

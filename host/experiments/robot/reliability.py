@@ -111,6 +111,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Trial]:
             len(motors),
             ticks,
             int(rng.integers(2**32)),
+            params=setting.params(),
             kick=kick,
             motors=motors,
             battery_v=setting.battery_v,

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.experiments.robot import unattended
-from host.kicking.modes import CHAOS, MODES
 from host.logs.motion import directions
 from host.runs.contract import Setting
+from host.runs.presets import PAPER, PRESETS
 from robot.kick_requests import parse
 from robot.kicks import DIRECTION_TICKS, JUMP
 from robot.loop import Loop
@@ -53,8 +53,8 @@ class Condition:
         battery_v: open-circuit voltage of the battery (V).
         latency_s: latency of the motors (s).
         rod_lag_s: how much older the rods' positions are than the angle in F_tan (s).
-        body: whether two wheels stand on one body, on a floor without walls; otherwise each wheel
-            carries half of it by itself.
+        scene: the floor on which two wheels stand on one body; None if each wheel carries half of
+            the body by itself.
     """
 
     max_duty_pct: float = _DEFAULT.max_duty_pct
@@ -63,7 +63,7 @@ class Condition:
     battery_v: float | None = None
     latency_s: float | None = None
     rod_lag_s: float = 0.0
-    body: bool = False
+    scene: Scene | None = None
 
     def constants(self, setting: Setting) -> Constants:
         """The constants of motor and wheel."""
@@ -100,20 +100,26 @@ class Jump(NamedTuple):
 
 ORDINARY = "as it is"
 DELAYED = "latency of 70 ms"
-OLDER = "rods 7.5 ms older"
-OLDER_S = MODES[CHAOS].params["rod_lag_s"]
+OLDER_S = PRESETS[PAPER].params["rod_lag_s"]
+OLDER = f"rods {1000 * OLDER_S:g} ms older"
+ALL_HOLD = f"{OLDER}, on soft axles"
 _AA_V = 9.0  # six cells of 1.5 V
+_FLOOR = Scene()
 CONDITIONS = {
     ORDINARY: Condition(),
-    "on one body": Condition(body=True),
+    "on one body": Condition(scene=_FLOOR),
     "100 %, 9 V": Condition(max_duty_pct=100.0, battery_v=_AA_V),
     DELAYED: Condition(latency_s=0.07),
     f"{OLDER}, wheels alone": Condition(rod_lag_s=OLDER_S),
-    "rods 5 ms older": Condition(rod_lag_s=0.005, body=True),
-    OLDER: Condition(rod_lag_s=OLDER_S, body=True),
-    f"{OLDER}, 7.2 V": Condition(rod_lag_s=OLDER_S, body=True, battery_v=7.2),
-    f"{OLDER}, ticks of 40 ms": Condition(rod_lag_s=OLDER_S, body=True, tick_s=0.04),
-    f"{OLDER}, nxt_unroller": Condition(rod_lag_s=OLDER_S, body=True, motor="nxt_unroller"),
+    "rods 4 ms older": Condition(rod_lag_s=0.004, scene=_FLOOR),
+    OLDER: Condition(rod_lag_s=OLDER_S, scene=_FLOOR),
+    ALL_HOLD: Condition(
+        rod_lag_s=OLDER_S,
+        scene=Scene(**{name: float(value) for name, value in PRESETS[PAPER].scene.items()}),
+    ),
+    f"{OLDER}, 7.2 V": Condition(rod_lag_s=OLDER_S, scene=_FLOOR, battery_v=7.2),
+    f"{OLDER}, ticks of 40 ms": Condition(rod_lag_s=OLDER_S, scene=_FLOOR, tick_s=0.04),
+    f"{OLDER}, nxt_unroller": Condition(rod_lag_s=OLDER_S, scene=_FLOOR, motor="nxt_unroller"),
 }
 
 
@@ -157,12 +163,12 @@ def wheels_run(
             yield _loop_run(some, supply_v, params, ticks, one_seed, jump)
             continue
         kick = None if jump is None else parse(_request(jump), (0, 0), params, jump.tick)
-        if condition.body:
+        if condition.scene is not None:
             course = robots.run(
                 len(some) // 2,
                 ticks,
                 one_seed,
-                Scene(),
+                condition.scene,
                 params=params,
                 kick=kick,
                 motors=[alone(motor) for motor in some],

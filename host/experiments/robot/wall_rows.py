@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal, NotRequired, TypedDict, final
 
+from host.runs import presets
+from host.runs.presets import PRESETS
 from sim_motor.constants import data
 
 ROBOT = {name: float(entry[0]) for name, entry in data()["robot"].items()}
@@ -138,7 +140,13 @@ PAPER: Condition = {
 ON_SMOOTH: Condition = {**PAPER, "grip": SMOOTH}
 # Among the conditions under which the robot always reverses: a long axle, the roughest carpet in
 # the source of `grip_on_carpet`, and a front wider than the body.
-ON_AXLES: Condition = {**PAPER, "grip": 1.83, "bumper": 0.25, "axle": 400.0}
+_SCENE = PRESETS[presets.PAPER].scene
+ON_AXLES: Condition = {
+    **PAPER,
+    "grip": float(_SCENE["grip"]),
+    "bumper": float(_SCENE["bumper"]),
+    "axle": float(_SCENE["axle"]),
+}
 
 
 def condition_of(row: WallRow) -> Condition:

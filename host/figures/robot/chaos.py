@@ -52,7 +52,7 @@ def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
         for place, ((condition, side), series) in enumerate(wheels.items()):
             axes = figure.add_subplot(courses[place])
             title = condition if places else f"{side} wheel"
-            _draw_torque(axes, series, title, _BEGINS_S[condition], last=place == 1)
+            _draw_torque(axes, series, title, _BEGINS_S.get(condition, 0.0), last=place == 1)
         axes = figure.add_subplot(grid[0, 2])
         if places:
             older = [own for (condition, _), own in wheels.items() if condition == OLDER]

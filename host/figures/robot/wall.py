@@ -87,14 +87,15 @@ def draw(rows: list[WallRow], findings: Findings) -> Figure:
     simulated = bool(series_under(rows, PAPER))
     with styled():
         figure = Figure(**(_SLIDE if simulated else SIZE))
-        title = f"A wall reverses the robot ($k$ = 2) in {_words(hits_under(rows, PAPER))} hits"
+        hits = hits_under(rows, PAPER) or hits_under(rows, ON_AXLES)
+        title = f"A wall reverses the robot ($k$ = 2) in {_words(hits)} hits"
         if simulated:
             title += f", and on soft axles in {_words(hits_under(rows, ON_AXLES))}"
         figure.suptitle(title, fontsize=17)
         if simulated:
             _draw_simulated(figure, rows)
         else:
-            _draw_hits(figure.subplots(), hits_under(rows, PAPER))
+            _draw_hits(figure.subplots(), hits)
     return figure
 
 
