@@ -240,6 +240,25 @@ def test_a_guess_stands_beside_prediction_and_outcome(visit, lab, station):
     visitor.reads("#said", "Left wheel reversed, Right wheel reversed.")
 
 
+def test_after_a_guess_the_kicks_say_what_the_simulation_expects(visit, lab, station):
+    station.forecasts = Forecast({"reverses": 31, "continues": 1, "stops": 0}, 32)
+    visitor = visit()
+    visitor.reads("#kick-phase", "4 ticks")
+    assert station.forecasts.asked == []  # a person guesses first
+    visitor.page.check("#guess-0", force=True)
+    for mode in ("membrane", "position", "phase"):
+        visitor.reads(f"#kick-{mode}", "31/32 reverse")
+    assert station.forecasts.asked == ["membrane", "position", "phase"]
+    station.forecasts.said["shares"]["right"] = {"reverses": 2, "continues": 30, "stops": 0}
+    visitor.page.fill("#param-k", "3.5")  # on another robot, they would do something else
+    visitor.page.keyboard.press("Enter")
+    visitor.reads("#kick-phase", "the wheels differ")
+    visitor.page.check("#wheel-2", force=True)
+    visitor.reads("#kick-phase", "30/32 continue")
+    kick(visitor, station, "#kick-phase")
+    visitor.reads("#kick-phase", "4 ticks")
+
+
 def test_the_simulation_is_asked_before_a_kick(visit, lab, station):
     station.forecasts = Forecast({"reverses": 2, "continues": 30, "stops": 0}, 32)
     visitor = visit(lab.view_url)
@@ -254,8 +273,10 @@ class Forecast:
 
     def __init__(self, shares, of):
         self.said = {"shares": {"left": shares, "right": shares}, "of": of}
+        self.asked = []
 
     def ask(self, question, done):
+        self.asked.append(question.kick["mode"])
         done(self.said)
 
 

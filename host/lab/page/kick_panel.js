@@ -1,7 +1,8 @@
 /** Kicks: the guess, the three kicks of the paper, and what became of the last one. */
 
 import { createDesigner } from "./designer.js";
-import { button, choices, element, options, show } from "./dom.js";
+import { button, choices, element, options, setText, show } from "./dom.js";
+import { createExpectation } from "./expectation.js";
 import { texts } from "./texts.js";
 import { createVerdict } from "./verdict.js";
 
@@ -26,9 +27,12 @@ export function createKicks(root, lab) {
             label: texts.guesses[value ?? "none"],
         })),
         null,
+        () => (lab.changed = true),
     );
     guess.classList.add("guess");
-    const wheel = choices("wheel", texts.whichWheel, options(texts.wheelChoices), "both");
+    const wheel = choices("wheel", texts.whichWheel, options(texts.wheelChoices), "both", () => {
+        lab.changed = true;
+    });
     wheel.classList.add("inline");
     const verdict = createVerdict(lab);
 
@@ -50,11 +54,12 @@ export function createKicks(root, lab) {
         }
     };
 
+    const expectation = createExpectation(lab, USUAL);
     const three = USUAL.map((fields) => {
-        const [name, length, what] = texts.theThree[fields.mode];
         const big = button("", () => kick(fields), "kick");
         big.id = `kick-${fields.mode}`;
-        big.append(element("b", {}, name), element("span", {}, length), element("small", {}, what));
+        const [name] = texts.theThree[fields.mode];
+        big.append(element("b", {}, name), element("span"), element("small"));
         return big;
     });
     const resting = element("p", { className: "resting" }, texts.startFirst);
@@ -75,6 +80,14 @@ export function createKicks(root, lab) {
         const runs = robot?.state === "running";
         for (const field of [...three, designer.commands]) field.disabled = !(mayDrive && runs);
         guess.disabled = wheel.disabled = !mayDrive;
+        expectation.renew(mayDrive && runs && guess.value ? wheel.value : null);
+        USUAL.forEach(({ mode }, n) => {
+            const [, length, what] = texts.theThree[mode];
+            const expected = expectation.of(n);
+            const [, beside, below] = three[n].children;
+            setText(beside, expected ? texts.expected(expected, wheel.value) : length);
+            setText(below, expected ? texts.asExpected : what);
+        });
         show(resting, Boolean(robot) && mayDrive && !runs);
         if (robot) {
             designer.update(robot);

@@ -15,6 +15,11 @@ const DONE = { reverses: "reversed", continues: "continued", stops: "stopped" };
 const VERBS_AT_REST = { reverses: "begin to roll", continues: "stay at rest" };
 const DONE_AT_REST = { reverses: "began to roll", continues: "stayed at rest" };
 const atRest = (before, side) => (before?.[side] === "stopped" ? DONE_AT_REST : DONE);
+const likeliest = (shares) =>
+    Object.entries(shares ?? {}).reduce(
+        (best, entry) => (entry[1] > best[1] ? entry : best),
+        ["", -1],
+    );
 const UNITS = { 1: "", "%": " %" };
 
 /**
@@ -113,10 +118,7 @@ export const texts = {
     sides: { left: "Left", right: "Right" },
     verdict: ({ name, shares, outcome, rested }, of) => {
         const [verbs, done] = rested ? [VERBS_AT_REST, DONE_AT_REST] : [VERBS, DONE];
-        const [result, count] = Object.entries(shares ?? {}).reduce(
-            (best, entry) => (entry[1] > best[1] ? entry : best),
-            ["", -1],
-        );
+        const [result, count] = likeliest(shares);
         if (!outcome) return result ? `${name}: ${count} of ${of} will ${verbs[result]}.` : name;
         const did = `${name} ${done[outcome]}`;
         if (!result) return `${did}.`;
@@ -124,6 +126,14 @@ export const texts = {
             ? `${did}, as ${count} of ${of} predicted.`
             : `${did}, but ${count} of ${of} said: ${verbs[result]}.`;
     },
+    expected: ({ shares, of }, wheel) => {
+        const kicked = wheel === "both" ? Object.values(shares) : [shares[wheel]];
+        const results = kicked.map(likeliest);
+        const [[result]] = results;
+        if (results.some(([other]) => other !== result)) return "the wheels differ";
+        return `${Math.min(...results.map(([, count]) => count))}/${of} ${VERBS[result]}`;
+    },
+    asExpected: "is what the simulation expects now",
     noOutcome: (why) => `No outcome: ${why}.`,
     unknown: "–",
     ownGuess: (guess, right) =>
