@@ -34,6 +34,7 @@ def walk(page, station):
     until("r && r.records > 200")
     yield "1-wheels-turn"
     page.check("#guess-0", force=True)
+    page.wait_for_selector("#kick-phase >> text=is what the simulation expects", state="attached")
     yield "2-guess"
     page.click("#kick-phase")
     until("r.kicks.length > 0 && r.kicks.at(-1).mode === 'phase'")

@@ -252,7 +252,7 @@ def test_after_a_guess_the_kicks_say_what_the_simulation_expects(visit, lab, sta
     station.forecasts.said["shares"]["right"] = {"reverses": 2, "continues": 30, "stops": 0}
     visitor.page.fill("#param-k", "3.5")  # on another robot, they would do something else
     visitor.page.keyboard.press("Enter")
-    visitor.reads("#kick-phase", "the wheels differ")
+    visitor.reads("#kick-phase", "they differ")
     visitor.page.check("#wheel-2", force=True)
     visitor.reads("#kick-phase", "30/32 continue")
     kick(visitor, station, "#kick-phase")

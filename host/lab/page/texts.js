@@ -130,7 +130,7 @@ export const texts = {
         const kicked = wheel === "both" ? Object.values(shares) : [shares[wheel]];
         const results = kicked.map(likeliest);
         const [[result]] = results;
-        if (results.some(([other]) => other !== result)) return "the wheels differ";
+        if (results.some(([other]) => other !== result)) return "they differ";
         return `${Math.min(...results.map(([, count]) => count))}/${of} ${VERBS[result]}`;
     },
     asExpected: "is what the simulation expects now",
