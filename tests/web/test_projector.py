@@ -48,6 +48,21 @@ LISTEN = """
     requestAnimationFrame(look);
 }
 """
+# The texts beside drawings that are too small.
+SMALL = """
+() => {
+    const words = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    const seen = [...document.querySelectorAll("input[type=number]")].map((one) => [one.id, one]);
+    while (words.nextNode()) {
+        const { data, parentElement } = words.currentNode;
+        if (data.trim() && !parentElement.closest(".unseen")) seen.push([data, parentElement]);
+    }
+    const height = (element) => parseFloat(getComputedStyle(element).fontSize);
+    return seen
+        .filter(([, element]) => element.checkVisibility() && height(element) < innerHeight / 40)
+        .map(([text]) => text);
+}
+"""
 FRAMES = """
 (count) => new Promise((done) => {
     const next = () => (count-- > 0 ? requestAnimationFrame(next) : done());
@@ -87,6 +102,27 @@ def test_texts_in_drawings_are_large_and_do_not_cover_each_other(projector, stat
     assert set(texts["seen"]) == {"left-wheel", "right-wheel", "strips", "lag-plane", "floor"}
     assert {"M", "ω", "rad/s", "x₁", "forward"} <= set(texts["seen"]["left-wheel"])
     assert {"x", "M", "ω"} <= set(texts["seen"]["strips"])
+
+
+def test_texts_beside_drawings_are_large_too(projector, station):
+    for fold in ("#parameters summary", ".own summary"):
+        projector.page.click(fold)
+    kick(projector, station, ".kick.own")
+    assert projector.page.evaluate(SMALL) == []
+
+
+def test_no_button_moves_when_it_says_what_is_expected(projector, station):
+    shares = {"reverses": 1, "continues": 95, "stops": 0}  # the longest words
+    station.forecasts = Forecast(shares, 96)
+
+    def places():
+        return [one.bounding_box() for one in projector.page.locator(".three .kick").all()]
+
+    before = places()
+    projector.page.check("#guess-0", force=True)
+    for mode in ("membrane", "position", "phase"):
+        projector.reads(f"#kick-{mode}", "95/96 continue")
+    assert places() == before
 
 
 @pytest.mark.parametrize("stopped", [False, True], ids=["runs", "stopped"])

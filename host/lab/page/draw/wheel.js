@@ -84,11 +84,10 @@ export function draw(canvas, state, theme) {
     const sheet = { ctx, colours, theme, line: theme.line, ...layout(canvas, theme) };
     // Half the size of a mark, in radii.
     sheet.mark = Math.max(0.12, (0.36 * theme.text) / sheet.radius);
+    sheet.quiet = { colour: colours.faint, halo: colours.paper };
     const pin = [Math.cos(state.phi_rad), Math.sin(state.phi_rad)];
     dot(sheet, [0, 0], 1.1, colours.ink, colours.ink);
     dot(sheet, [0, 0], 1.04, colours.rim, colours.ink);
-    for (const rod of [0, 1]) scale(sheet, rod);
-    directions(sheet, state);
     if (Number.isFinite(state.phi_rad)) {
         spokes(sheet, state, pin);
         for (const rod of [0, 1]) rodAndSpring(sheet, state, rod, pin);
@@ -96,6 +95,8 @@ export function draw(canvas, state, theme) {
         if (state.kick) ghosts(sheet, [state.seen1, state.seen2], pin);
         force(sheet, state.torque, pin);
     }
+    for (const rod of [0, 1]) scale(sheet, rod);
+    directions(sheet, state);
     readout(sheet, state, width, height);
     if (state.kick) {
         ctx.strokeStyle = colours.kick;
@@ -130,18 +131,18 @@ function dot({ ctx, x, y, radius, line: width }, [right, up], r, colour, edge) {
 }
 
 function scale(sheet, rod) {
-    const { ctx, colours, theme, x, y, radius, line: width } = sheet;
+    const { ctx, colours, theme, x, y, radius, line: width, quiet } = sheet;
     line(sheet, [place(rod, -1, SCALE), place(rod, 1, SCALE)], colours.axis, 0.6 * width);
     for (const value of [-1, 0, 1]) {
         const [right, up] = place(rod, value, SCALE + 0.08);
         line(sheet, [place(rod, value, SCALE), [right, up]], colours.axis, 0.6 * width);
         const [aside, below] = rod ? [0.4, 0] : [0, 0.75];
-        const how = { colour: colours.faint, size: 0.85, align: rod ? "left" : "center" };
+        const how = { ...quiet, size: 0.85, align: rod ? "left" : "center" };
         const [px, py] = [x + right * radius + aside * theme.text, y - up * radius];
         theme.write(ctx, theme.number(value), px, py + below * theme.text, how);
     }
     const [right, up] = place(rod, 1.12, SCALE);
-    const how = { colour: colours.faint, symbol: true, align: rod ? "center" : "left" };
+    const how = { ...quiet, symbol: true, align: rod ? "center" : "left" };
     const above = rod ? 0.5 * theme.text : 0;
     theme.write(ctx, rod ? "x₂" : "x₁", x + right * radius, y - up * radius - above, how);
 }
@@ -226,11 +227,10 @@ function force(sheet, torque, pin) {
 
 /** Outside the rim: which way is forward, and how the wheel turns now. */
 function directions(sheet, { omega_rad_s: omega, labels }) {
-    const { ctx, colours, theme, x, y, radius } = sheet;
+    const { ctx, colours, theme, x, y, radius, quiet } = sheet;
     arc(sheet, 3.4, 4.0, colours.faint, 0.8 * theme.line);
-    const how = { colour: colours.faint };
-    const left = x - 0.45 * radius - theme.measure(ctx, labels?.forward ?? "", how);
-    theme.write(ctx, labels?.forward ?? "", Math.max(2, left), y + 1.42 * radius, how);
+    const left = x - 0.65 * radius - theme.measure(ctx, labels?.forward ?? "", quiet);
+    theme.write(ctx, labels?.forward ?? "", Math.max(2, left), y + 1.42 * radius, quiet);
     const half = Math.max(-LONGEST_ARC, Math.min(LONGEST_ARC, omega * ARC_S)) / 2;
     if (!(Math.abs(half) > 0.02)) return;
     arc(sheet, Math.PI / 2 - half, Math.PI / 2 + half, colours.ink, 1.8 * theme.line);
