@@ -128,6 +128,18 @@ class Wheel(NamedTuple):
             )
         return self
 
+    def with_older_rods(self, lag_s: float) -> Wheel:
+        """A wheel whose rods are older than the angle in F_tan, as robot.controller.lagging_angle.
+
+        That adds -k sin(omega lag) to F_tan, whatever the neurons do. To first order in omega lag
+        this is a friction of k lag. The form ends where omega lag is no longer small: the force is
+        then weaker than the friction by k (omega lag)^3 / 6, 6 % of it at omega lag = 0.6.
+
+        Args:
+            lag_s: How much older the rods are, s, at a constant speed.
+        """
+        return self._replace(friction=self.friction + self.k * lag_s)
+
     def columns(self, count: int, **varied: Array) -> Array:
         """The constants of many wheels, (6, count).
 
