@@ -1,5 +1,8 @@
 /** What the simulation expects of each usual kick, said once a person has guessed. */
 
+// Walls and hands change what a robot does, too: what was expected is asked again after this time.
+const FRESH_MS = 10000;
+
 /**
  * @param {import("./lab.js").Lab} lab
  * @param {object[]} kicks The kicks to ask about, without their wheels.
@@ -8,20 +11,22 @@
  *     kick, null if there is none.
  */
 export function createExpectation(lab, kicks) {
-    let [about, wheel, busy] = ["", null, false];
-    /** By kick: the prediction, null if there is none, undefined while it is open. */
-    let answers = [];
+    let [about, wheel, answers] = ["", null, []];
+    let [next, asked, busy] = [0, 0, false];
 
     // The lab answers one question of a page at a time.
     const ask = async () => {
         if (busy) return;
         busy = true;
-        while (wheel && answers.includes(undefined)) {
-            const [open, n] = [answers, answers.indexOf(undefined)];
+        while (wheel && next < kicks.length) {
+            const then = about;
             const robot = lab.store.robot.name;
-            const kick = { ...kicks[n], wheel };
+            const kick = { ...kicks[next], wheel };
             // A person did not ask for it, and can kick without: nothing is said if it fails.
-            open[n] = await lab.request({ type: "predict", robot, kick }).catch(() => null);
+            const answer = await lab.request({ type: "predict", robot, kick }).catch(() => null);
+            if (then !== about) continue;
+            answers[next] = answer;
+            next += 1;
             lab.changed = true;
         }
         busy = false;
@@ -29,11 +34,13 @@ export function createExpectation(lab, kicks) {
 
     const renew = (wheels) => {
         const { robot } = lab.store;
-        // What was expected holds until somebody kicks, or changes the robot.
-        const now = wheels && [wheels, robot.name, robot.kicks.at(-1)?.id, robot.status.params];
-        const key = JSON.stringify(now);
-        if (key === about) return;
-        [about, wheel, answers] = [key, wheels, kicks.map(() => undefined)];
+        const key = JSON.stringify(
+            wheels && [wheels, robot.name, robot.kicks.at(-1)?.id, robot.status.params],
+        );
+        const now = performance.now();
+        if (key !== about) [about, wheel, answers] = [key, wheels, []];
+        else if (next < kicks.length || now - asked < FRESH_MS) return;
+        [next, asked] = [0, now];
         ask();
     };
     return { renew, of: (n) => answers[n] ?? null };
