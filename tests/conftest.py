@@ -77,13 +77,11 @@ def pytest_configure(config):
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-# What collection makes stays until the end: neither then nor in each full collection of a test does
-# the collector have to look through it.
+# What collection makes stays until the end: the collector need not look through it as it grows.
 @pytest.hookimpl(hookwrapper=True)
 def pytest_collection():
     gc.disable()
     yield
-    getattr(gc, "freeze", gc.collect)()  # Python 3.5 has no freeze
     gc.enable()
 
 
