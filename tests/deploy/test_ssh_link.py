@@ -57,6 +57,11 @@ def test_deploy_then_a_kick_through_the_tunnel_reverses_the_wheels(brick, checko
             assert status == 0, output
             assert "running (started), battery" in output
             assert f"kickctl --brick '{brick.uri()}' kick --mode phase" in output
+            # A busy machine, too, keeps a host from speaking.
+            patient = checkout.kickctl(
+                "--brick", brick.uri(), "params", "set", "link_loss_s=10", "--json"
+            )
+            assert patient[0] == 0, patient[2]
             status, out, err = checkout.kickctl(
                 "--brick", brick.uri(), "kick", "--mode", "phase", "--ticks", "4", "--json"
             )
