@@ -150,4 +150,21 @@ ROBOT = {
     ),
 }
 
-TABLE = {**ROBOT, **BODIES}
+# On the simulated robot only: they need to know where it is, or hundreds of it.
+SIMULATED = {
+    "explore": Entry(
+        "how the simulated robot covers a floor between walls: in chaos, straight on, with kicks at"
+        " random times, beside a random walk",
+        (
+            Option("robots", 20, 2, 1000, "number of robots with each way of moving"),
+            Option("minutes", 10.0, 0.2, 600.0, "how long each drives, minutes"),
+        ),
+    ),
+    "leave-chaos": Entry(
+        "which kicks bring the simulated robot out of chaos, alone or with its own parameters set"
+        " back: to rest, straight on, or to a turn",
+        (Option("robots", 200, 10, 100000, "number of moments at which each kick is tried"),),
+    ),
+}
+
+TABLE = {**ROBOT, **SIMULATED, **BODIES}

@@ -6,7 +6,7 @@ import importlib
 from pathlib import Path
 from typing import NamedTuple, cast
 
-from host.experiments.registry import BODIES, ROBOT
+from host.experiments.registry import BODIES, ROBOT, SIMULATED
 from host.runs.contract import Experiment, Findings, Row
 from host.runs.registry import Entry, entry_of
 from host.runs.runner import Draw
@@ -14,8 +14,10 @@ from host.theory.studies.registry import TABLE as STUDIES
 
 # The kinds by the name that people know: entries, the package of the modules, that of the figures.
 EXPERIMENT, BODY, STUDY = "experiment", "experiment on bodies", "study"
+SIMULATION = "experiment on the simulated robot"
 KINDS = {
     EXPERIMENT: (ROBOT, "host.experiments.robot", "host.figures.robot"),
+    SIMULATION: (SIMULATED, "host.experiments.robot", "host.figures.robot"),
     BODY: (BODIES, "host.experiments.bodies", "host.figures.bodies"),
     STUDY: (STUDIES, "host.theory.studies", "host.figures.theory"),
 }
@@ -39,7 +41,7 @@ class Found(NamedTuple):
 
 def find(name: str) -> Found:
     """The experiment or study of this name. Raises WrongUse if there is none."""
-    entry = entry_of("experiment or study", {**ROBOT, **BODIES, **STUDIES}, name)
+    entry = entry_of("experiment or study", {**ROBOT, **SIMULATED, **BODIES, **STUDIES}, name)
     kind = next(kind for kind, (table, _, _) in KINDS.items() if name in table)
     _, works, figures = KINDS[kind]
     module = "." + name.replace("-", "_")
