@@ -18,6 +18,7 @@ from host.client.robot import Robot
 from host.client.stop import Stopped, stop_robot
 from host.errors import KickctlError, NoLink, NotDone
 from host.lab.station import STOP, Answer, Station, stop_words
+from host.lab.stopper import LAB
 from host.link.addresses import make_link
 from host.logs.tap import Event
 from host.util.own_name import own_name
@@ -198,6 +199,7 @@ class LiveStation(Station):
         self._driven = False
         if self.rule == STOP:
             self._release_wanted = True
+            self.asker = LAB
             self.stop()
         else:
             self._jobs.put(_Job("release", {}, lambda result: None, self._stops))

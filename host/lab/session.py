@@ -97,7 +97,7 @@ class Session:
             message = requests.parse(text)
             request = requests.request_of(message)
             if message["type"] == "stop" and page.number:
-                self._stop(message)  # before anything that could be in its way
+                self._stop(page, message)  # before anything that could be in its way
             elif page.allowance.take(now):
                 self._handle(page, message, request, now)
             else:
@@ -245,11 +245,12 @@ class Session:
             page.send(station.state())
         page.send(self._baton_for(page))
 
-    def _stop(self, message: Message) -> None:
+    def _stop(self, page: Page, message: Message) -> None:
         """Stop one robot, or all: also if the page names one that is not there."""
         name = message.get("robot")
         one = self.stations.get(name) if isinstance(name, str) else None
         for station in self.stations.values() if one is None else [one]:
+            station.asker = page.number
             station.stop()
 
     def _pass(self, kind: str, page: Page, message: Message, now: float) -> None:

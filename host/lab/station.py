@@ -23,6 +23,7 @@ from host.lab.forecasts import Forecasts, Question
 from host.lab.kicks import Kicks, motor_known, stall
 from host.lab.recording import Recording
 from host.lab.ring import Ring
+from host.lab.stopper import of_this_lab, plain
 from host.logs.tap import Event
 from robot import __version__, params
 from robot.record import STATES, STRUCT, Record
@@ -85,6 +86,7 @@ class Station:
         recording: The log that is being written, or None.
         logs: The logs that this lab has recorded, by the names of their files.
         forecasts: Where kicks are predicted; None if nowhere.
+        asker: The page that has asked for a stop, or LAB; None if nobody here has since the start.
         trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
     """
 
@@ -109,6 +111,8 @@ class Station:
         self._heard_at: float | None = None
         self._began_at = self.clock()
         self.trouble = ""
+        self.asker: int | None = None
+        self._stopped_by: int | None = None
         self._known = False
         self._tick = 0
         self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
@@ -161,7 +165,8 @@ class Station:
         hint = message.get("hint", _HINTS.get(state, ""))
         return message | {
             "state": state,
-            "reason": printable(str(status["reason"])),
+            "reason": plain(printable(str(status["reason"]))),
+            "stopped_by": self._stopped_by if state == "stopped" else None,
             "remedy": _REMEDIES.get(state),
             "hint": hint,
             "params": dict(self._follower.params),
@@ -203,6 +208,10 @@ class Station:
         if event["event"] in _STATE_OF and self._status:
             self._status["state"] = _STATE_OF[event["event"]]
             self._status["reason"] = event.get("reason", "")
+        if event["event"] == "stop":
+            self._stopped_by = self.asker if of_this_lab(event.get("reason", "")) else None
+        elif event["event"] in ("start", "restart"):
+            self.asker = self._stopped_by = None
         self._hear({"type": "event", "robot": self.name, "event": event})
         self._wake()
 

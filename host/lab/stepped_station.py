@@ -8,6 +8,7 @@ from typing import Any
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone
 from host.lab.station import STOP, Answer, Station
+from host.lab.stopper import LAB
 from host.link.sim import SimLink
 from robot.commands import execute
 
@@ -72,6 +73,7 @@ class SteppedStation(Station):
     def abandon(self) -> None:
         with self._lock:
             if self._robot.drives and self.rule == STOP:
+                self.asker = LAB
                 self.stop()
             self._robot.release()
 

@@ -13,6 +13,7 @@ from host.lab.desk_robot import DeskRobot, child_options
 from host.lab.live_station import LiveStation
 from host.lab.server import Lab
 from host.lab.station import CONTINUE, STOP
+from host.lab.stopper import LAB
 from robot.record import STRUCT
 from tests.lab.browser import browse, held_up
 from tests.live import Relay, wait_until
@@ -137,6 +138,7 @@ def test_it_drives_and_gives_the_robot_back(station, observer):
     station.abandon()
     wait_until(lambda: state(observer) == "stopped", "the robot stops")
     wait_until(lambda: controller(observer) is None, "the robot is given back")
+    wait_until(lambda: station.state()["stopped_by"] == LAB, "the lab says that it did that")
 
 
 def test_a_robot_that_may_go_on_goes_on(desk, observer):

@@ -111,3 +111,17 @@ def test_the_button_is_in_view_at_every_place_of_the_page(visit, size):
     )
     assert len(reached) > 1
     assert all(reached)
+
+
+def test_it_says_who_has_stopped_the_robot(visit, lab, station):
+    one, two = visit(), visit(lab.view_url)
+    rolls(one, station)
+    two.page.keyboard.press("Escape")
+    two.reads("#now .reason", "You stopped it.")
+    one.reads("#now .reason", "Another page of this lab (2) stopped it.")
+    one.page.get_by_role("button", name="Start", exact=True).first.click()
+    rolls(one, station)
+    with station._lock:  # somebody else's program, of the same person
+        station._robot.stop_at_once()
+        station._robot.pump(0.0)
+    one.reads("#now .reason", "stopped it from the computer")

@@ -22,7 +22,7 @@ export function createNow(lab) {
     };
 
     return () => {
-        const { robots, robot, mayDrive } = lab.store;
+        const { robots, robot, mayDrive, page } = lab.store;
         if (filled !== robots) {
             filled = robots;
             buttons = robots.map(({ name }, index) => button(name, () => select(index)));
@@ -38,7 +38,7 @@ export function createNow(lab) {
         const is = shown(robot);
         root.dataset.state = is;
         setText(state, texts.states[is]);
-        const why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status);
+        const why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status, page);
         setText(reason, why);
         const help = is === "lost" ? null : robot.status.remedy;
         show(remedy, Boolean(help));
@@ -53,7 +53,7 @@ function shown(robot) {
     return robot.lost ? "lost" : robot.state;
 }
 
-function whyOf({ state, reason, hint }) {
-    if (state === "running") return "";
-    return sentences(reason, hint);
+function whyOf(status, page) {
+    if (status.state === "running") return "";
+    return sentences(texts.reason(status, page), status.hint);
 }

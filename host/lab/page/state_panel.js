@@ -23,7 +23,7 @@ export function createState(root, lab) {
     root.append(list, takeOver, identify);
 
     return () => {
-        const { robot, welcome, mayDrive } = lab.store;
+        const { robot, welcome, mayDrive, page } = lab.store;
         identify.disabled = !mayDrive;
         if (!robot) return;
         const { info, status } = robot;
@@ -35,7 +35,7 @@ export function createState(root, lab) {
             punctual: texts.punctual(status),
             driver: status.controller ?? texts.nobody,
             unattended: texts.unattended[welcome.unattended?.[robot.name]] ?? texts.unknown,
-            reason: sentences(status.reason, status.hint),
+            reason: sentences(texts.reason(status, page), status.hint),
             missed: String(robot.missed),
         };
         for (const [name, value] of Object.entries(facts)) setText(values[name], value);
