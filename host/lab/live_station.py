@@ -199,7 +199,7 @@ class LiveStation(Station):
         self._driven = False
         if self.rule == STOP:
             self._release_wanted = True
-            self.asker = LAB
+            self.note_asker(LAB)
             self.stop()
         else:
             self._jobs.put(_Job("release", {}, lambda result: None, self._stops))

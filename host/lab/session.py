@@ -250,7 +250,7 @@ class Session:
         name = message.get("robot")
         one = self.stations.get(name) if isinstance(name, str) else None
         for station in self.stations.values() if one is None else [one]:
-            station.asker = page.number
+            station.note_asker(page.number)
             station.stop()
 
     def _pass(self, kind: str, page: Page, message: Message, now: float) -> None:

@@ -35,6 +35,8 @@ LOST_S = 1.0
 # How many records a page gets of what was before it came.
 HISTORY = 600
 EVENTS_KEPT = 100
+# How soon after a page has asked for it a stop is of that page (s).
+ASKED_S = 7.0
 # A tick that begins later than this counts as late for people (s).
 LATE_S = 0.005
 _STATE_OF = {
@@ -86,7 +88,6 @@ class Station:
         recording: The log that is being written, or None.
         logs: The logs that this lab has recorded, by the names of their files.
         forecasts: Where kicks are predicted; None if nowhere.
-        asker: The page that has asked for a stop, or LAB; None if nobody here has since the start.
         trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
     """
 
@@ -111,7 +112,8 @@ class Station:
         self._heard_at: float | None = None
         self._began_at = self.clock()
         self.trouble = ""
-        self.asker: int | None = None
+        self._asker: int | None = None
+        self._asked_at = 0.0
         self._stopped_by: int | None = None
         self._known = False
         self._tick = 0
@@ -209,9 +211,9 @@ class Station:
             self._status["state"] = _STATE_OF[event["event"]]
             self._status["reason"] = event.get("reason", "")
         if event["event"] == "stop":
-            self._stopped_by = self.asker if of_this_lab(event.get("reason", "")) else None
-        elif event["event"] in ("start", "restart"):
-            self.asker = self._stopped_by = None
+            # Another program of this person may stop the robot, too, long after a page has.
+            ours = self.clock() - self._asked_at < ASKED_S and of_this_lab(event["reason"])
+            self._stopped_by = self._asker if ours else None
         self._hear({"type": "event", "robot": self.name, "event": event})
         self._wake()
 
@@ -271,6 +273,10 @@ class Station:
 
         if self.forecasts is not None and question is not None:
             self.forecasts.ask(question, done)
+
+    def note_asker(self, page: int) -> None:
+        """A page, or LAB, is about to stop the robot."""
+        self._asker, self._asked_at = page, self.clock()
 
     def stop(self) -> None:
         """Stop the motors. It returns at once and waits for nothing."""

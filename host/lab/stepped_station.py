@@ -73,7 +73,7 @@ class SteppedStation(Station):
     def abandon(self) -> None:
         with self._lock:
             if self._robot.drives and self.rule == STOP:
-                self.asker = LAB
+                self.note_asker(LAB)
                 self.stop()
             self._robot.release()
 

@@ -2,6 +2,8 @@
 
 import pytest
 
+from host.lab.station import ASKED_S
+
 FOCUS = {
     "nowhere": lambda page: page.click("h1"),
     "a number": lambda page: page.click("#param-k"),
@@ -121,6 +123,7 @@ def test_it_says_who_has_stopped_the_robot(visit, lab, station):
     one.reads("#now .reason", "Another page of this lab (2) stopped it.")
     one.page.get_by_role("button", name="Start", exact=True).first.click()
     rolls(one, station)
+    station.step(ASKED_S)
     with station._lock:  # somebody else's program, of the same person
         station._robot.stop_at_once()
         station._robot.pump(0.0)
