@@ -6,7 +6,7 @@ import socket
 import subprocess
 import sys
 import tempfile
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import pytest
 
@@ -75,6 +75,39 @@ def test_a_lab_that_is_killed_lets_no_robot_drive_on(desk, observer):
             observer.wait(20.0, until=lambda: observer.status()["state"] == "stopped")
             observer.wait(0.1)
     assert "link_loss" in [event["event"] for event in log.events]
+
+
+def test_of_two_robots_one_is_kicked_and_both_stop(desk):
+    options = [*child_options("sim://?seed=2&idle=1"), "--token", desk.token]
+    with DeskRobot(options) as other, ExitStack() as stack:
+        names = [desk.uri, other.uri]
+        info = stack.enter_context(lab("--brick", ",".join(names), "--token", desk.token))[1]
+        watched = [stack.enter_context(connect(name, observe=True)) for name in names]
+        logs = [stack.enter_context(robot.recording()) for robot in watched]
+
+        async def scenario(browser):
+            tab = await browser.open(info["drive"])
+            assert [one["name"] for one in (await tab.latest("welcome"))["robots"]] == names
+            for name in names:
+                reply = await tab.ask("do", robot=name, command="start", arguments={})
+                assert "result" in reply, reply
+            kick = {"mode": "membrane", "ticks": 1}
+            reply = await tab.ask("do", robot=other.uri, command="kick", arguments=kick)
+            assert "result" in reply, reply
+            await tab.send("stop", robot=None)
+            await tab.until(lambda tab: stopped(tab) == set(names))
+
+        browse(scenario)
+        for robot, log, kicked in zip(watched, logs, (False, True), strict=True):
+            assert robot.status()["state"] == "stopped"
+            robot.wait(0.1)
+            assert ("kick" in [event["event"] for event in log.events]) == kicked
+
+
+def stopped(tab):
+    """The robots that have stopped after a page's stop, as a page hears it."""
+    states = {one["robot"]: one for one in tab.got if one["type"] == "state"}
+    return {name for name, one in states.items() if one.get("stopped_by")}
 
 
 def test_an_interrupt_stops_what_it_drives_and_is_no_error(desk, observer):

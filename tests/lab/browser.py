@@ -59,7 +59,9 @@ class Tab:
             return self.got[-1]
         if message.type == aiohttp.WSMsgType.BINARY:
             kind, robot, count, missed = HEADER.unpack_from(message.data)
-            assert (kind, robot) == (1, 0)
+            assert kind == 1
+            if robot:  # another than the first
+                return {"type": "records"}
             size = (len(message.data) - HEADER.size) // count
             for at in range(HEADER.size, len(message.data), size):
                 self.records.append(STRUCT.unpack_from(message.data, at))
