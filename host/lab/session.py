@@ -158,8 +158,10 @@ class Session:
             if likeliest is not None:
                 score.predicted += 1
                 score.simulation += _came_true(likeliest, outcome)
+        told = {**outcome, "guess": guess, "right": right}
+        self.stations[outcome["robot"]].verdicts.append(told)
         for page in self.pages.values():
-            page.send({**outcome, "guess": guess, "right": right, "score": asdict(page.score)})
+            page.send({**told, "score": asdict(page.score)})
 
     def broadcast(self, message: Message) -> None:
         """Send a message to all pages."""

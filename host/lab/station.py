@@ -35,6 +35,7 @@ LOST_S = 1.0
 # How many records a page gets of what was before it came.
 HISTORY = 600
 EVENTS_KEPT = 100
+VERDICTS_KEPT = 40
 # How soon after a page has asked for it a stop is of that page (s).
 ASKED_S = 7.0
 # A tick that begins later than this counts as late for people (s).
@@ -88,6 +89,7 @@ class Station:
         recording: The log that is being written, or None.
         logs: The logs that this lab has recorded, by the names of their files.
         forecasts: Where kicks are predicted; None if nowhere.
+        verdicts: The latest predictions and outcomes, for pages that join later.
         trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
     """
 
@@ -118,6 +120,7 @@ class Station:
         self._known = False
         self._tick = 0
         self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
+        self.verdicts: deque[dict[str, Any]] = deque(maxlen=VERDICTS_KEPT)
         self._kicks = Kicks()
 
     # What pages are told.
@@ -142,6 +145,7 @@ class Station:
             "walls": self._walls_m,
             "hand": self.hand_possible,
             "events": [*self._events, self._follower.snapshot(self._tick)],
+            "verdicts": list(self.verdicts),
             "history": self.ring.end - self.ring.latest(HISTORY),
         }
 
@@ -202,6 +206,7 @@ class Station:
         self._follower.take_event(event)
         if event["event"] == "restart":
             self._events.clear()
+            self.verdicts.clear()
         self._events.append(event)
         self._kicks.take_event(event)
         if event["event"] == "snapshot" and not self._known:
@@ -269,7 +274,9 @@ class Station:
         def done(result: dict[str, Any] | KickctlError) -> None:
             if not isinstance(result, KickctlError):
                 message = {"type": "prediction", "robot": self.name, "kick_id": kick_id}
-                self._hear(message | result)
+                told = message | result
+                self.verdicts.append(told)
+                self._hear(told)
 
         if self.forecasts is not None and question is not None:
             self.forecasts.ask(question, done)

@@ -238,6 +238,9 @@ def test_a_guess_stands_beside_prediction_and_outcome(visit, lab, station):
     visitor.reads(".verdict", "Guess: reverse. Correct.")
     visitor.reads(".verdict", "Correct so far: you 1 of 1. The simulation 1 of 1.")
     visitor.reads("#said", "Left wheel reversed, Right wheel reversed.")
+    later = visit(lab.view_url)
+    later.reads(".verdict", "Left reversed, as 31 of 32 predicted.")
+    later.reads(".verdict", "Guess: reverse. Correct.")
 
 
 def test_after_a_guess_the_kicks_say_what_the_simulation_expects(visit, lab, station):

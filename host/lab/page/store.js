@@ -32,6 +32,11 @@ export class RobotView {
         /** How often the robot has been heard of: a record or a state. */
         this.heard = 0;
         for (const event of info.events ?? []) this.takeEvent(event);
+        for (const verdict of info.verdicts ?? []) {
+            // A kick whose event is too old to be told must not become the latest one.
+            const kick = this.kicks.find(({ id }) => id === verdict.kick_id);
+            if (kick) kick[verdict.type] = verdict;
+        }
     }
 
     /** @returns {boolean} Whether the robot itself does not answer. */
