@@ -38,9 +38,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             _draw_area(areas, paths, way, colour)
         areas.set_xlabel("time (min)")
         areas.set_ylabel("cells visited (%)")
-        areas.set_ylim(0, 102)
+        areas.set_ylim(0, 112)
         areas.set_xlim(left=0)
-        areas.legend(loc="lower right", bbox_to_anchor=(1.0, 0.62))
         figure.suptitle(
             f"A floor of {FLOOR_M:g} x {FLOOR_M:g} m in cells of {CELL_M:g} m: the trail of one"
             f" robot in {_TRAIL_S / 60:g} min, and the mean of {len(paths)} with its 95 % interval"
@@ -54,7 +53,7 @@ def _draw_trail(axes: Axes, path: Array, way: str, colour: str) -> None:
     axes.add_patch(Rectangle((-half, -half), FLOOR_M, FLOOR_M, fill=False, lw=2))
     axes.plot(*trail.T, color=colour, lw=1)
     axes.plot(*trail[0], "o", color="black", ms=6)
-    axes.set_title(way)
+    axes.set_title(way, color=colour)
     axes.set_aspect("equal")
     axes.set_axis_off()
 
@@ -64,5 +63,14 @@ def _draw_area(axes: Axes, paths: Array, way: str, colour: str) -> None:
     minutes = STEP_S / 60 * np.arange(shares.shape[1])
     mean = shares.mean(axis=0)
     margin = 1.96 * shares.std(axis=0, ddof=1) / np.sqrt(len(shares)) if len(shares) > 1 else 0.0
-    axes.plot(minutes, mean, color=colour, label=way)
+    axes.plot(minutes, mean, color=colour)
+    axes.annotate(
+        way,
+        (minutes[-1], mean[-1]),
+        (0, 3),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        color=colour,
+    )
     axes.fill_between(minutes, mean - margin, mean + margin, color=colour, alpha=0.25, lw=0)
