@@ -165,6 +165,11 @@ SIMULATED = {
         " back: to rest, straight on, or to a turn",
         (Option("robots", 200, 10, 100000, "number of moments at which each kick is tried"),),
     ),
+    "exponents": Entry(
+        "the largest Lyapunov exponent over k and tau: of the simulated robot, of one with older"
+        " rods, and of the model",
+        (Option("pairs", 32, 4, 10000, "number of pairs of robots at each point"),),
+    ),
 }
 
 TABLE = {**ROBOT, **SIMULATED, **BODIES}
