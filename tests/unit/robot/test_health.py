@@ -34,7 +34,7 @@ def robot(ticks=True):
 
     def answer():
         while not loop.done:
-            server.serve(0.01)
+            server.serve(0.2)  # one turn may take that long on a busy machine
 
     thread = threading.Thread(target=(lambda: loop.run(server.serve)) if ticks else answer)
     thread.start()
