@@ -7,6 +7,7 @@ import asyncio
 import json
 import os
 import shutil
+import socket
 import statistics
 import subprocess
 import sys
@@ -62,6 +63,8 @@ def lab_page(minutes: float = HEAP_MINUTES) -> None:
             _frames(page)
             _kicks(page, watcher, log)
             _stops(page, watcher, log)
+            with _blocked(address["drive"], uri):
+                _stops(page, watcher, log, " beside a stuck request and predictions")
         _work(process.pid, address["view"])
         _heap(page, minutes)
         browser.close()
@@ -120,7 +123,7 @@ def _kicks(page, watcher, log):
     )
 
 
-def _stops(page, watcher, log):
+def _stops(page, watcher, log, beside=""):
     zero_s, delays = clock_zero(watcher) + _ahead(page), []
     for _ in range(STOPS):
         _wait(watcher, lambda: log.records[-1].state == RUNNING)
@@ -130,11 +133,50 @@ def _stops(page, watcher, log):
         page.get_by_role("button", name="Start", exact=True).first.click()
     most = 1000 * max(delays)
     _say(
-        f"lab page: from Esc to duty cycle 0 median {1000 * statistics.median(delays):.1f} ms, at"
-        f" most {most:.1f} ms ({STOPS} stops)",
+        f"lab page: from Esc to duty cycle 0{beside} median"
+        f" {1000 * statistics.median(delays):.1f} ms, at most {most:.1f} ms ({STOPS} stops)",
         most <= 1000 * TICK_S + 20.0,
         f"one tick + 20 ms = {1000 * TICK_S + 20:.0f} ms",
     )
+
+
+@contextmanager
+def _blocked(url, uri):
+    """Another page that asks for predictions all the time, and a client stuck in a request."""
+    parts, end = urlsplit(url), threading.Event()
+    robot = urlsplit(uri)
+    kick = {"mode": "phase", "ticks": 4, "wheel": "both"}
+    asked = {"type": "predict", "request": 1, "robot": "simulated", "kick": kick}
+    answers = []
+
+    async def ask():
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(
+                f"ws://{parts.netloc}/messages", headers={"Origin": f"http://{parts.netloc}"}
+            ) as other,
+        ):
+            key = parts.fragment.partition("=")[2]
+            await other.send_json({"type": "join", "key": key, "resume": None})
+            await other.send_json(asked)
+            while not end.is_set():
+                with suppress(TimeoutError):
+                    message = await other.receive(timeout=1.0)
+                    if isinstance(message.data, str) and '"reply"' in message.data:
+                        answers.append(json.loads(message.data))
+                        await other.send_json(asked)
+
+    with socket.create_connection((robot.hostname, robot.port)) as stuck:
+        stuck.sendall(b'{"do": "status"')  # the rest never comes
+        thread = threading.Thread(target=lambda: asyncio.run(ask()))
+        thread.start()
+        try:
+            yield
+        finally:
+            end.set()
+            thread.join()
+    if not any("result" in answer for answer in answers):
+        raise AssertionError(f"no prediction was under way: {answers[:1]}")
 
 
 def _work(pid, url):
