@@ -47,15 +47,29 @@ def run(options: argparse.Namespace) -> int:
             robot.start()
         require_running(robot)
         if options.primitive in MODES:
-            say(f"{options.primitive}: {PARAMETERS[options.primitive].advice}.")
+            mode = PARAMETERS[options.primitive]
+            say(f"{options.primitive}: {mode.advice}.")
+            if robot.link.virtual:
+                say(f"A simulated robot does it best as --brick '{mode.address}'.")
         with recorded(robot, f"drive-{options.primitive}") as recording:
             if options.primitive in MODES:
                 result = enter(robot, recording.log, options.primitive, motor)
             else:
                 back = leave(robot)
-                result = {**drive(robot, recording.log, options.primitive, motor), "restored": back}
-                if back:
-                    say(f"The robot has its own parameters back: {in_words(back)}.")
+                driven = drive(robot, recording.log, options.primitive, motor)
+                result = {**driven, "restored": back.params}
+                if back.params and back.known:
+                    say(f"The robot has its own parameters back: {in_words(back.params)}.")
+                elif back.params:
+                    say(
+                        "What the robot had before chaos is not known here. It has the defaults:"
+                        f" {in_words(back.params)}."
+                    )
+        if not result.get("kept", True):
+            say(
+                "This computer cannot keep the robot's own parameters. Note them for later:"
+                f" {in_words(result['own'])}."
+            )
         result.update(brick=robot.link.uri, seed=robot.hello["seed"])
     how = f"{len(result['kicks'])} kick{'' if len(result['kicks']) == 1 else 's'}"
     if options.primitive in MODES:

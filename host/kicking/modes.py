@@ -11,13 +11,15 @@ import os
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import urlencode
 
 import numpy as np
 
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone
-from host.kicking.outcome import Outcome, kick_and_watch
+from host.kicking.outcome import Outcome, kick_and_watch, require_running
 from host.kicking.primitives import drive, headings
+from host.link.addresses import SIM
 from host.logs.log import Log
 from host.logs.motion import directions
 from host.runs.presets import PAPER, PRESETS
@@ -35,10 +37,12 @@ class Mode(NamedTuple):
     Attributes:
         params: What the paper's robot needs for it, by name. All others stay.
         advice: What a real robot needs, and what to watch.
+        address: A simulated robot with which it works at its best.
     """
 
     params: dict[str, float]
     advice: str
+    address: str
 
 
 CHAOS, WALL_TURNER = "chaos", "wall-turner"
@@ -47,12 +51,14 @@ MODES = {
         {"k": 15.0, "tau_s": 1.0, **PRESETS[PAPER].params},
         "both wheels turn to and fro without a rhythm. A real robot needs room on all sides, and a"
         " battery of 7.2 to 7.5 V: far below that its wheels roll steadily",
+        "sim://?grip=1.7",
     ),
     WALL_TURNER: Mode(
         {"k": 2.0},
         "at a wall the wheels turn round by themselves. A real robot needs a carpet, on which the"
         " tyres do not spin, long axles from motors to wheels, which spring back, and a battery of"
         " 7.2 to 7.5 V",
+        SIM + "?" + urlencode({"walls": "2", **PRESETS[PAPER].scene}),
     ),
 }
 # How long the robot is watched in chaos, and how often each wheel must change its direction to
@@ -63,16 +69,16 @@ MOST_KICKS = 4
 _KEPT = 50
 
 
-def mode_of(params: dict[str, Any]) -> str:
-    """The mode that these parameters make; empty for none."""
-    return next(
-        (
-            name
-            for name, mode in MODES.items()
-            if all(params.get(key) == value for key, value in mode.params.items())
-        ),
-        "",
-    )
+class Way(NamedTuple):
+    """The way back from a mode.
+
+    Attributes:
+        params: What was set, by name; empty if the robot was in no mode.
+        known: Whether this machine knew what the robot had before; else these are the defaults.
+    """
+
+    params: dict[str, Any]
+    known: bool
 
 
 def enter(robot: Robot, log: Log, name: str, motor: Constants | None = None) -> dict[str, Any]:
@@ -85,9 +91,9 @@ def enter(robot: Robot, log: Log, name: str, motor: Constants | None = None) -> 
         motor: As in `host.kicking.primitives.drive`.
 
     Returns:
-        {primitive, reached, before, after, kicks, k, k_before, params, own}: as
-        `host.kicking.primitives.drive` does, with the mode's parameters and those of the robot that
-        stood in their place.
+        {primitive, reached, before, after, kicks, k, k_before, params, own, kept}: as
+        `host.kicking.primitives.drive` does, with the mode's parameters, those of the robot that
+        stood in their place, and whether a file keeps these.
 
     Raises:
         KickctlError: The robot does not run, or cannot be reached. If it can, it has its own
@@ -100,12 +106,21 @@ def enter(robot: Robot, log: Log, name: str, motor: Constants | None = None) -> 
             f"the robot's program has no parameter {', '.join(missing)}",
             f"bring this release to it: {deploy_command()}",
         )
-    own = _before(robot, in_force) or {key: in_force[key] for key in wanted}
-    _keep(robot, own)
+    back = _way_back(robot, in_force).params
+    own = {**{key: in_force[key] for key in wanted}, **back}
+    kept = _keep(robot, name, own)
     before = headings(robot, log)
     try:
         robot.set(**{**own, **wanted})
         found = _into_chaos(robot, log) if name == CHAOS else drive(robot, log, "forward", motor)
+        require_running(robot)
+        in_the_end = robot.status()["params"]
+        if any(in_the_end[key] != value for key, value in wanted.items()):
+            raise NotDone(
+                "the robot lost the parameters meanwhile: its program has restarted, or somebody"
+                " else has set them",
+                "try again",
+            )
     except BaseException:
         with suppress(KickctlError):
             leave(robot)
@@ -118,30 +133,35 @@ def enter(robot: Robot, log: Log, name: str, motor: Constants | None = None) -> 
         "k_before": float(in_force["k"]),
         "params": wanted,
         "own": own,
+        "kept": kept,
     }
 
 
-def leave(robot: Robot) -> dict[str, Any]:
-    """Give a robot in a mode its own parameters back.
+def leave(robot: Robot) -> Way:
+    """Give a robot in a mode its own parameters back, but for those that were set since.
 
     Returns:
-        What was set; empty if the robot was in no mode. Where nobody knows what it had before,
-        these are the defaults.
+        The way back.
     """
-    back = _before(robot, robot.status()["params"])
-    if back:
-        robot.set(**back)
-        _forget(robot)
-    return back
+    way = _way_back(robot, robot.status()["params"])
+    if way.params:
+        robot.set(**way.params)
+    _forget(robot)
+    return way
 
 
-def _before(robot: Robot, in_force: dict[str, Any]) -> dict[str, Any]:
-    """The parameters from before the mode in which a robot is; empty if it is in none."""
-    mode = mode_of(in_force)
-    own = _own(robot) if mode else {}
-    if mode == CHAOS and not own:
-        return {key: TABLE[key].default for key in MODES[mode].params}
-    return own  # who set k = 2 by hand wants it
+def _way_back(robot: Robot, in_force: dict[str, Any]) -> Way:
+    """What brings a robot with these parameters out of the mode in which it is."""
+    mode, own = _kept(robot)
+    if mode:
+        set_then = MODES[mode].params
+        return Way(
+            {key: own[key] for key in own if in_force.get(key) == set_then.get(key)}, known=True
+        )
+    chaos = MODES[CHAOS].params
+    if all(in_force.get(key) == value for key, value in chaos.items()):
+        return Way({key: TABLE[key].default for key in chaos}, known=False)
+    return Way({}, known=False)  # who set k = 2 by hand wants it
 
 
 def _into_chaos(robot: Robot, log: Log) -> dict[str, Any]:
@@ -158,7 +178,7 @@ def _into_chaos(robot: Robot, log: Log) -> dict[str, Any]:
         kicks.append(kick_and_watch(robot, log, PHASE, wheel=side))
     return {
         "reached": min(turns.values()) >= LEAST_TURNS,
-        "after": {side: f"{count} turns in {CHAOS_S:g} s" for side, count in turns.items()},
+        "after": {side: f"reversed {count} times" for side, count in turns.items()},
         "kicks": [outcome.as_dict() for outcome in kicks],
         "turns": turns,
     }
@@ -178,25 +198,31 @@ def _place(robot: Robot) -> Path | None:
     return Path(folder) / "own-parameters" / f"{boot}.json" if folder and boot.isalnum() else None
 
 
-def _own(robot: Robot) -> dict[str, Any]:
-    """The own parameters of a robot in a mode; empty if this machine does not know them."""
+def _kept(robot: Robot) -> tuple[str, dict[str, Any]]:
+    """The mode in which this machine left a robot, and its own parameters; empty for none."""
     place = _place(robot)
     try:
         kept = json.loads(place.read_text(encoding="utf-8")) if place else {}
-    except (OSError, ValueError):
-        return {}
-    return kept if isinstance(kept, dict) and set(kept) <= set(TABLE) else {}
+        mode, own = kept["mode"], kept["own"]
+        known = mode in MODES and set(own) <= set(TABLE)
+    except (OSError, ValueError, KeyError, TypeError):
+        return "", {}
+    return (mode, dict(own)) if known else ("", {})
 
 
-def _keep(robot: Robot, own: dict[str, Any]) -> None:
+def _keep(robot: Robot, mode: str, own: dict[str, Any]) -> bool:
+    """Keep the own parameters of a robot that goes into a mode. Returns whether that worked."""
     place = _place(robot)
     if place is None:
-        return
-    with suppress(OSError):
+        return False
+    try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        write_text(place, json.dumps(own, allow_nan=False))
+        write_text(place, json.dumps({"mode": mode, "own": own}, allow_nan=False))
         for old in sorted(place.parent.glob("*.json"), key=os.path.getmtime)[:-_KEPT]:
             old.unlink()
+    except OSError:
+        return False
+    return True
 
 
 def _forget(robot: Robot) -> None:

@@ -15,6 +15,7 @@ from host.client.robot import Robot
 from host.client.stop import Stopped
 from host.client.watching import Watcher
 from host.errors import KickctlError, NotDone, WrongUse, printable
+from host.kicking.modes import leave
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
 from host.kicking.robot_motor import MEASURE
@@ -338,6 +339,7 @@ class Station:
             robot.start()
         require_running(robot)
         with robot.recording() as log:
+            leave(robot)  # in chaos no kick leads there
             return drive(robot, log, primitive, planned=False)
 
     def _record(self, robot: Watcher, on: bool) -> dict[str, Any]:
