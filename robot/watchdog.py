@@ -261,7 +261,7 @@ def _be_watchdog(link, stop_motors, alarm):
         words = "watchdog: {}; {}\n".format(
             reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped"
         )
-        # Motors that do not obey are told every AGAIN_S, and need no line for each time.
+        # Motors that do not obey get a stop every AGAIN_S, but no line for each.
         if reason and not (failed and said == [words]):
             said[:] = [words]
             alarm()

@@ -272,6 +272,15 @@ def _travel(phis: Array, tick: int) -> float:
 
 
 @jit
+def signed(kick: KickNumbers, tick: int, phis: Array) -> KickNumbers:
+    """The kick in its first tick, with the sign that reverses this wheel if it has none."""
+    action, begin, ticks, pulse, smooth, value = kick
+    if tick == begin and isnan(value):
+        value = _reversing_shift(_direction(_travel(phis, tick - 1)))
+    return action, begin, ticks, pulse, smooth, value
+
+
+@jit
 def _run_wheel(
     phis: Array,
     start: Array,
@@ -294,7 +303,6 @@ def _run_wheel(
     empty.
     """
     tick_s = params[-1]
-    action, begin, ticks, pulse, smooth, value = kick
     latency_s, counts, dither = hardware
     state = (start[0], start[1], start[2], start[3], start[4], start[5])
     substep = 0
@@ -308,8 +316,7 @@ def _run_wheel(
         position = encoder(substep, state[ANGLE], state[LAST_ANGLE], counts, dither, dither_seed)
         phi = position * pi / 180
         phis[tick] = phi
-        if tick == begin and isnan(value):
-            value = _reversing_shift(_direction(_travel(phis, tick - 1)))
+        kick = signed(kick, tick, phis)
         x1, x2, force, torque, next_duty = control(
             tick,
             phi,
@@ -317,7 +324,7 @@ def _run_wheel(
             time_step(times, tick, tick_s),
             x1,
             x2,
-            (action, begin, ticks, pulse, smooth, value),
+            kick,
             params,
         )
         turn = substep_from(now + latency_s)

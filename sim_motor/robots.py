@@ -13,7 +13,6 @@ from math import isnan, nan, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from robot import kicks
 from robot.kicks import DIRECTION_TICKS, NO_KICK, WHEELS, Kick
 from robot.params import Params
 from sim_motor.batch import (
@@ -24,9 +23,10 @@ from sim_motor.batch import (
     param_numbers,
     random_start,
     random_times,
+    signed,
     time_step,
 )
-from sim_motor.compiled import compiled, jit, parallel_jit, prange
+from sim_motor.compiled import jit, parallel_jit, prange
 from sim_motor.compiled_motor import encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
 from sim_motor.motor import ANGLE, LAST_ANGLE
@@ -40,8 +40,6 @@ from sim_motor.world import (
     no_stretches,
     numbers,
 )
-
-_direction, _reversing_shift = compiled(kicks.direction), compiled(kicks.reversing_shift)
 
 
 @dataclass(frozen=True)
@@ -183,16 +181,6 @@ def _params_at(row: Array, tick_s: float) -> ParamNumbers:
 
 
 @jit
-def _signed(kick: KickNumbers, tick: int, phis: Array) -> KickNumbers:
-    """The kick in its first tick, with the sign that reverses this wheel if it has none."""
-    action, begin, ticks, pulse, smooth, value = kick
-    if tick == begin and isnan(value):
-        travel = phis[tick - 1] - phis[tick - 1 - DIRECTION_TICKS]
-        value = _reversing_shift(_direction(travel))
-    return action, begin, ticks, pulse, smooth, value
-
-
-@jit
 def _run_robot(
     states: tuple[Array, Array],
     x: Array,
@@ -249,7 +237,7 @@ def _run_robot(
             )
             phi = position * pi / 180
             phis[tick] = phi
-            kick = _signed(right_kick if side else left_kick, tick, phis)
+            kick = signed(right_kick if side else left_kick, tick, phis)
             if side:
                 right_kick = kick
             else:

@@ -13,6 +13,7 @@ from typing import TypedDict
 import numpy as np
 
 from host.errors import WrongUse
+from host.experiments.robot.explore import params_with
 from host.experiments.robot.switching import OLDER, OLDER_S
 from host.runs.contract import Findings, Options, Setting
 from host.theory.analysis.series_exponents import from_twins
@@ -21,7 +22,6 @@ from host.theory.studies.lyapunov_pieces import from_both_starts
 from host.theory.studies.lyapunov_rows import ANY
 from robot.kick_requests import parse
 from robot.kicks import JUMP
-from robot.params import Params
 from sim_motor.batch import CHANNELS
 from sim_motor.robots import run
 from sim_motor.scene import Scene
@@ -83,8 +83,7 @@ def simulate(cell: Cell, setting: Setting) -> list[Rate]:
 
 
 def _of_robot(k: float, cell: Cell, lag_s: float, setting: Setting) -> Rate:
-    params = Params()
-    params.apply(params.check({"k": k, "tau_s": cell["tau_s"], "rod_lag_s": lag_s}))
+    params = params_with(k=k, tau_s=cell["tau_s"], rod_lag_s=lag_s)
     tick, after = round(JUMP_S / params.tick_s), round(GROWTH_S / params.tick_s)
     request = {"id": "jump", "mode": JUMP, "variable": "x1", "delta": JUMP_SIZE}
     rng = np.random.default_rng(setting.seed_of(cell))

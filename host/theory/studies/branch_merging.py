@@ -26,7 +26,7 @@ from host.theory.studies.branch_tables import (
 _PASSAGES: dict[CyclePart, int] = {"FB": 2, "LLM": 4, "dry": 4}
 # A merging is extrapolated from this many last cycles of a branch that ends close to it (relative).
 _LAST, _CLOSE = 25, 1e-2
-# A line for the period is fitted to so many of them.
+# A line for the period is fitted to this number of them.
 _CLOSEST = 8
 # Two values of a merging that differ by less (relative) are the same.
 _SAME = 1e-6

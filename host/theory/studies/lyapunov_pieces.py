@@ -44,7 +44,7 @@ FINENESS = 0.6
 # Wheels of the spectrum, how long their vectors turn into place, and the length of a block, s: much
 # longer than a chaotic wheel remembers.
 WHEELS, ALIGN_S, BLOCK_S = 32, 20.0, 100.0
-# The series, in so many stretches one after the other.
+# The series, as this number of stretches one after the other.
 SERIES_S, STRETCHES = 300.0, 10
 # Rotations are followed from this part of the greatest k on; wheels show what comes after the last
 # stable one at this multiple of its k.

@@ -1,4 +1,4 @@
-"""The experiment `leave-chaos`: how ends are told apart, and that chaos comes back after kicks."""
+"""The experiment `leave-chaos`: how it names an end, and that chaos comes back after kicks."""
 
 import numpy as np
 import pytest
