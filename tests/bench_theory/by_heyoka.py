@@ -38,7 +38,7 @@ def equations():
     wheel = list(
         zip(
             state,
-            symbolic_rates(*state, *Wheel()._replace(tau_s=heyoka.par[0], k=heyoka.par[1])),
+            symbolic_rates(*state, *Wheel()._replace(tau=heyoka.par[0], k=heyoka.par[1])),
             strict=True,
         )
     )

@@ -45,7 +45,7 @@ def random_points(count: int, seed: int) -> Array:
     """Parameters (6, count), fastest wheels last: neighbours need about the same steps."""
     chance = np.random.default_rng(seed)
     tau_s, k = chance.uniform(*TAU_S, count), chance.uniform(*K, count)
-    parameters = np.array([Wheel(tau_s=tau_s[i], k=k[i]) for i in range(count)]).T
+    parameters = np.array([Wheel(tau=tau_s[i], k=k[i]) for i in range(count)]).T
     return np.ascontiguousarray(parameters[:, np.argsort(rate_per_s(parameters), kind="stable")])
 
 

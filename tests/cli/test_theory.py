@@ -58,7 +58,7 @@ def test_the_command_gives_the_hopf_point(kickctl):
     assert found["k_estimate"] == 0.25
     assert found["l1"] < 0
     assert found["accuracy"]["closed_form_against_eigenvalues"] < 1e-10
-    assert found["omega_hopf"] == pytest.approx(hopf(Wheel(tau_s=1.0)).omega)
+    assert found["omega_hopf"] == pytest.approx(hopf(Wheel(tau=1.0)).omega)
 
 
 def test_the_answer_is_a_table_and_json_has_the_same(kickctl):

@@ -110,7 +110,7 @@ def _of_robot(k: float, cell: Cell, lag_s: float, setting: Setting) -> Rate:
 
 
 def _of_model(tau_s: float, seed: int) -> list[Rate]:
-    columns = Wheel(tau_s=tau_s).columns(len(KS), k=np.array(KS))
+    columns = Wheel(tau=tau_s).columns(len(KS), k=np.array(KS))
     found = from_both_starts(columns, MODEL_WHEELS, np.random.default_rng(seed))
     return [
         {

@@ -55,7 +55,7 @@ def draw(rows: list[FixpointsRow], findings: Findings) -> Figure:
 def _draw_force(axes: Axes, one: list[OneWheelRow]) -> None:
     """In units of the spring constant, which does not move the zeros."""
     angles = np.linspace(-0.2, 2 * np.pi + 0.2, 1000)
-    unit = Wheel(k=1.0, inertia=1.0, friction=0.0)
+    unit = Wheel(k=1.0, I=1.0, f=0.0)
     axes.plot(angles, numpy_rates(*resting(angles), *unit)[OMEGA], color="black")
     axes.axhline(0.0, color="dimgrey", linewidth=1.2)
     for _, odd, colour, marker in _KINDS:

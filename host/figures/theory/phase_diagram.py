@@ -41,7 +41,7 @@ def draw(rows: list[PhaseDiagramRow], findings: Findings) -> Figure:
     diagram = points(rows)
     numbers: Numbers = findings.numbers
     constants = numbers["constants"]
-    wheel = Wheel(a=constants["a"], friction=constants["f"], inertia=constants["I"])
+    wheel = Wheel(a=constants["a"], f=constants["f"], I=constants["I"])
     with styled():
         figure = Figure(**{**SIZE, "figsize": (12.5, 6.4)})
         panels = figure.subplots(1, 2, sharey=True)
@@ -113,7 +113,7 @@ def _draw_lines(axes: Axes, wheel: Wheel) -> None:
     )
     for line, colour, label in lines:
         axes.plot(
-            [line(wheel._replace(tau_s=float(tau))) for tau in taus],
+            [line(wheel._replace(tau=float(tau))) for tau in taus],
             taus,
             "--",
             color=colour,

@@ -22,8 +22,6 @@ from host.theory.analysis.merging import course, mergings
 from host.theory.model.turning import constant_velocity, turning
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 
-# The fields of Wheel by the paper's letters.
-FIELDS = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
 # Amplitude of phi (rad) of the cycle with which a branch of forth-and-back cycles begins.
 SMALLEST = 5e-3
 # Rotations are looked for this far (relative) beyond a merging.
@@ -183,7 +181,7 @@ def turning_state(wheel: Wheel) -> Array:
 
     That of the paper's formula, or 1/tau where it has none.
     """
-    omega = constant_velocity(wheel) or 1.0 / wheel.tau_s
+    omega = constant_velocity(wheel) or 1.0 / wheel.tau
     return turning(np.zeros(1), np.array([omega]), wheel)[:, 0]
 
 

@@ -177,7 +177,7 @@ class Shooting:
         """
         wheel = self.wheel_at(unknowns)
         exact = np.linalg.det(self.family.back) * np.exp(
-            -(2.0 / wheel.tau_s + wheel.friction / wheel.inertia) * unknowns[3]
+            -(2.0 / wheel.tau + wheel.f / wheel.I) * unknowns[3]
         )
         return float(abs(np.linalg.det(self.map_derivative(unknowns)) - exact))
 
@@ -218,6 +218,6 @@ def settle_in_rotation(wheel: Wheel, state: Array) -> tuple[Array, float]:
             break
         at, now_s = path[-1], now_s + _CHUNK * step_s
     raise NotDone(
-        f"a wheel with k = {wheel.k:g}, tau = {wheel.tau_s:g} s does not go on rolling",
+        f"a wheel with k = {wheel.k:g}, tau = {wheel.tau:g} s does not go on rolling",
         "begin with another k",
     )

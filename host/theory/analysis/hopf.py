@@ -53,7 +53,7 @@ def hopf(wheel: Wheel) -> Hopf:
         WrongUse: There is none: without friction every resting wheel is unstable, and with a = 0
             the rods do not pull.
     """
-    if wheel.checked().friction == 0.0 or wheel.a == 0.0:
+    if wheel.checked().f == 0.0 or wheel.a == 0.0:
         why = (
             "without friction every k makes a resting wheel swing"
             if wheel.a
@@ -66,9 +66,7 @@ def hopf(wheel: Wheel) -> Hopf:
     # omega^2 = (f - k S tau) / (I tau), without the difference, which nearly vanishes for small
     # tau.
     omega = sqrt(
-        k
-        * (wheel.a / 2 - float(target_position(1.0, wheel.a)))
-        / (wheel.inertia + wheel.friction * wheel.tau_s)
+        k * (wheel.a / 2 - float(target_position(1.0, wheel.a))) / (wheel.I + wheel.f * wheel.tau)
     )
     return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega))
 
@@ -78,7 +76,7 @@ def critical_k(wheel: Wheel) -> float:
 
     0 without friction; infinite with a = 0.
     """
-    tau_s, inertia, friction = wheel.tau_s, wheel.inertia, wheel.friction
+    tau_s, inertia, friction = wheel.tau, wheel.I, wheel.f
     pull = tau_s * (target_position(1.0, wheel.a) * friction * tau_s + inertia * wheel.a / 2)
     return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
 
@@ -125,14 +123,14 @@ def bautin_tau_s(wheel: Wheel, low: float, high: float) -> float | None:
     """
 
     def born_stable(tau_s: float) -> bool:
-        return hopf(wheel._replace(tau_s=tau_s)).l1 < 0.0
+        return hopf(wheel._replace(tau=tau_s)).l1 < 0.0
 
     return None if born_stable(low) == born_stable(high) else last_alike(born_stable, low, high)
 
 
 def estimate(wheel: Wheel) -> float:
     """The paper's critical k = 2 f / (a tau), infinite with a = 0. Eq. k_critical."""
-    return 2 * wheel.friction / (wheel.a * wheel.tau_s) if wheel.a else inf
+    return 2 * wheel.f / (wheel.a * wheel.tau) if wheel.a else inf
 
 
 def adaptive_friction(phi: float, wheel: Wheel) -> float:
@@ -143,12 +141,8 @@ def adaptive_friction(phi: float, wheel: Wheel) -> float:
     """
     slopes = [1.0 - target_position(x, wheel.a) ** 2 for x in (cos(phi), sin(phi))]
     return float(
-        wheel.k
-        * wheel.a
-        * wheel.tau_s
-        / 2
-        * (slopes[0] * sin(phi) ** 2 + slopes[1] * cos(phi) ** 2)
-        - wheel.friction
+        wheel.k * wheel.a * wheel.tau / 2 * (slopes[0] * sin(phi) ** 2 + slopes[1] * cos(phi) ** 2)
+        - wheel.f
     )
 
 

@@ -216,7 +216,7 @@ def merging_line(wheel: Wheel, taus_s: Any) -> list[tuple[float, Merging]]:
     found = []
     for tau_s in map(float, taus_s):
         with suppress(NotDone, WrongUse):
-            found.append((tau_s, merging(wheel._replace(tau_s=tau_s))))
+            found.append((tau_s, merging(wheel._replace(tau=tau_s))))
     return found
 
 
@@ -237,7 +237,7 @@ def neutral_tau_s(wheel: Wheel, low: float, high: float) -> float | None:
     """
 
     def quantity(tau_s: float) -> float:
-        return merging(wheel._replace(tau_s=tau_s)).saddle_quantity
+        return merging(wheel._replace(tau=tau_s)).saddle_quantity
 
     if (quantity(low) < 0.0) == (quantity(high) < 0.0):
         return None

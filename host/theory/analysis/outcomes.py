@@ -120,7 +120,7 @@ def mirror(states: Array) -> Array:
 
 def free_speed(wheel: Wheel) -> float:
     """The speed (rad/s) that the springs could give a wheel, sqrt(k (1 + a/2) / I)."""
-    return sqrt(wheel.k * (1 + wheel.a / 2) / wheel.inertia)
+    return sqrt(wheel.k * (1 + wheel.a / 2) / wheel.I)
 
 
 def rolling_states(model: Model, wheel: Wheel, phases: int) -> Array | None:

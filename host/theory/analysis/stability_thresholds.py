@@ -73,9 +73,9 @@ def critical_k(wheel: Wheel, clock: Clock) -> float | None:
     def growth(k: float) -> float:
         return abs(leading(wheel._replace(k=k), clock)) - 1.0
 
-    if sampled.overshoots(wheel.a, wheel.tau_s, clock):
+    if sampled.overshoots(wheel.a, wheel.tau, clock):
         return None
-    stiffness = wheel.friction / wheel.tau_s + wheel.inertia / wheel.tau_s**2
+    stiffness = wheel.f / wheel.tau + wheel.I / wheel.tau**2
     below = 0.0
     for k in map(float, stiffness * _SPAN):
         if growth(k) > 1e-13:
@@ -105,7 +105,7 @@ def rolling_ends(
         WrongUse: The wheel cannot be followed.
     """
     fast = model.states_of(resting(np.zeros(1)))
-    fast[OMEGA] = 2 * sqrt(high * (1 + wheel.a / 2) / wheel.inertia)
+    fast[OMEGA] = 2 * sqrt(high * (1 + wheel.a / 2) / wheel.I)
     return _narrowed(
         model,
         fast,

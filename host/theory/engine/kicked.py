@@ -109,7 +109,7 @@ def memory_s(wheel: Wheel) -> float:
 
     It is infinite without friction.
     """
-    return wheel.tau_s + (wheel.inertia / wheel.friction if wheel.friction else inf)
+    return wheel.tau + (wheel.I / wheel.f if wheel.f else inf)
 
 
 def inverted(states: Array) -> Array:

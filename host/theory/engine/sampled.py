@@ -297,7 +297,7 @@ def as_robot(
         (phi, omega) at the begin of each tick, (2, ticks).
     """
     neurons, params = robot.wheel.Wheel(WHEELS[0]), Params()
-    params.a, params.tau_s, params.k = wheel.a, wheel.tau_s, wheel.k
+    params.a, params.tau_s, params.k = wheel.a, wheel.tau, wheel.k
     neurons.x1, neurons.x2, phi, omega, neurons.force = state
     seen = []
     for number in range(ticks):
@@ -308,7 +308,7 @@ def as_robot(
             (clock.latency_s, held),
             (clock.tick_s - clock.latency_s, neurons.force),
         ):
-            ahead, pushed, kept, gained = coast(seconds, wheel.inertia, wheel.friction)
+            ahead, pushed, kept, gained = coast(seconds, wheel.I, wheel.f)
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
     return np.array(seen).T
 
@@ -325,7 +325,7 @@ def jacobian(state: Sequence[float], wheel: Wheel, clock: Clock) -> Array:
     They are computed by steps in the imaginary direction.
     """
     coasts = [
-        coast(seconds, wheel.inertia, wheel.friction)
+        coast(seconds, wheel.I, wheel.f)
         for seconds in (clock.latency_s, clock.tick_s - clock.latency_s)
     ]
     columns = []
@@ -333,7 +333,7 @@ def jacobian(state: Sequence[float], wheel: Wheel, clock: Clock) -> Array:
         aside = [complex(value) for value in state]
         aside[index] += 1j * _COMPLEX_STEP
         last = _complex_tick(
-            *aside, *PLAIN, wheel.a, wheel.tau_s, wheel.k, clock.tick_s, clock.fresh, *coasts
+            *aside, *PLAIN, wheel.a, wheel.tau, wheel.k, clock.tick_s, clock.fresh, *coasts
         )
         columns.append(np.imag(last) / _COMPLEX_STEP)
     return np.array(columns).T

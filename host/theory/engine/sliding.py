@@ -16,7 +16,7 @@ from host.theory.engine import runge_kutta
 from host.theory.engine.elementary import vectorised
 from host.theory.model.wheel import OMEGA, Array, Wheel
 
-INERTIA, DRY = Wheel._fields.index("inertia"), Wheel._fields.index("dry_friction")
+INERTIA, DRY = Wheel._fields.index("I"), Wheel._fields.index("dry_friction")
 # The moment of inertia of a wheel that sticks: no force moves it.
 _HELD = 1e300
 # A moment is located by as many bisections. A wheel that changes its way more often in a step

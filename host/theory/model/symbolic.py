@@ -61,7 +61,8 @@ def _kept(name: str, write: Callable[[], str]) -> Floats:
 
     It uses `math` only, so that numba compiles it.
     """
-    key = (name, function_digest(rates, {}), fingerprint(__file__), version("sympy"))
+    sources = function_digest(rates, {}), fingerprint(__file__), version("sympy")
+    key = (name, Wheel._fields, *sources)
     file = f"{name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
     content = load("derivatives", file)
     if content is None:

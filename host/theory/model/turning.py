@@ -43,7 +43,7 @@ def turning(phi: Array, omega: Array, wheel: Wheel) -> Array:
     Returns:
         (4, wheels).
     """
-    return np.array([*potentials(phi, omega, wheel.tau_s), phi, omega])
+    return np.array([*potentials(phi, omega, wheel.tau), phi, omega])
 
 
 def constant_velocity(wheel: Wheel) -> float | None:
@@ -51,8 +51,8 @@ def constant_velocity(wheel: Wheel) -> float | None:
 
     None where the wheel has none.
     """
-    drive, brake = wheel.a * wheel.k * wheel.tau_s, 2 * wheel.friction
-    return sqrt((drive - brake) / brake) / wheel.tau_s if drive > brake > 0.0 else None
+    drive, brake = wheel.a * wheel.k * wheel.tau, 2 * wheel.f
+    return sqrt((drive - brake) / brake) / wheel.tau if drive > brake > 0.0 else None
 
 
 def rolling_states(parameters: Array) -> Array:

@@ -97,29 +97,36 @@ def acceleration(force: Any, omega: Any, inertia: Any, friction: Any, dry_fricti
 
 
 class Wheel(NamedTuple):
-    """The constants of a wheel, in the order in which `rates` takes them.
+    """The constants of a wheel by the paper's letters, in the order in which `rates` takes them.
 
     The defaults are the paper's, where it gives any. Dry friction opposes motion in either
     direction and holds a wheel at rest (host.theory.engine.sliding). What follows cycles takes the
     smooth equations of a wheel that rolls forward.
+
+    >>> Wheel(k=8, tau=0.25)
+    Wheel(a=4.0, tau=0.25, k=8, I=0.05, f=0.5, dry_friction=0.0)
+
+    Attributes:
+        a: gain of the neurons, without unit.
+        tau: time constant of the membrane potentials, s.
+        k: spring constant of the rods, without unit.
+        I: moment of inertia, s^2 (its torque has no unit).
+        f: friction, s (its torque has no unit).
+        dry_friction: torque of dry friction, without unit.
     """
 
     a: float = 4.0
-    tau_s: float = 0.25
+    tau: float = 0.25
     k: float = 1.85
-    inertia: float = 0.05
-    friction: float = 0.5
+    I: float = 0.05  # noqa: E741
+    f: float = 0.5
     dry_friction: float = 0.0
 
     def checked(self) -> Wheel:
         """The same wheel. Raises WrongUse if no wheel can have these constants."""
         for name, value in self._asdict().items():
-            if (
-                not isfinite(value)
-                or value < 0.0
-                or (value == 0.0 and name in ("tau_s", "inertia"))
-            ):
-                least = "above 0" if name in ("tau_s", "inertia") else "0 or more"
+            if not isfinite(value) or value < 0.0 or (value == 0.0 and name in ("tau", "I")):
+                least = "above 0" if name in ("tau", "I") else "0 or more"
                 raise WrongUse(f"{name} cannot be {value!r}", f"give a finite number, {least}")
         if self.a > STEEPEST:
             raise WrongUse(
@@ -138,7 +145,7 @@ class Wheel(NamedTuple):
         Args:
             lag_s: How much older the rods are, s, at a constant speed.
         """
-        return self._replace(friction=self.friction + self.k * lag_s)
+        return self._replace(f=self.f + self.k * lag_s)
 
     def columns(self, count: int, **varied: Array) -> Array:
         """The constants of many wheels, (6, count).
@@ -159,9 +166,9 @@ def wheel_of(options: Mapping[str, Any]) -> Wheel:
     Raises:
         WrongUse: No wheel can have them.
     """
-    named = {"a": "a", "tau": "tau_s", "k": "k", "I": "inertia", "f": "friction"}
+    given = {letter: options.get(letter) for letter in Wheel._fields}
     return Wheel(
-        **{named[letter]: options[letter] for letter in named if options.get(letter) is not None}
+        **{letter: value for letter, value in given.items() if value is not None}
     ).checked()
 
 

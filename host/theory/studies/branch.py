@@ -17,7 +17,6 @@ import numpy as np
 from host.errors import NotDone
 from host.runs.contract import Setting
 from host.theory.analysis.branches import (
-    FIELDS,
     hopf_values,
     rotation,
     rotations,
@@ -76,7 +75,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BranchCell]:
 
 def span(options: dict[str, Any]) -> tuple[str, float, float]:
     """The field of Wheel that is followed, its least value and its greatest value."""
-    field = FIELDS[options["along"]]
+    field = options["along"]
     high = options["to"] or (20.0 if field == "k" else 12.0 * getattr(wheel_of(options), field))
     return field, _SPAN * high, high
 
@@ -179,7 +178,7 @@ def _line(wheel: Wheel) -> list[LinePoint | NeutralPoint]:
             "k_hopf": hopf(found.wheel).k,
             "saddle_quantity": found.saddle_quantity,
         }
-        for tau_s, found in merging_line(wheel, wheel.tau_s * np.geomspace(0.1, 10.0, _TAUS))
+        for tau_s, found in merging_line(wheel, wheel.tau * np.geomspace(0.1, 10.0, _TAUS))
     ]
     neutral: list[NeutralPoint] = [
         {"kind": "neutral", "tau": neutral_tau_s(wheel, one["tau"], next_one["tau"])}
@@ -203,8 +202,8 @@ def _turning(wheel: Wheel) -> list[Turned]:
     else:
         angles, rolled = _whole_turn(Shooting(wheel, ROTATION).path(own)[:-1, :, 0])
         omega = pi / 2 / float(own[3])
-    exact = np.array(potentials(angles, omega, wheel.tau_s))
-    numeric = driven(angles, omega, wheel.tau_s)
+    exact = np.array(potentials(angles, omega, wheel.tau))
+    numeric = driven(angles, omega, wheel.tau)
     return [
         {
             "kind": "turning",

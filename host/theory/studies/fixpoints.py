@@ -110,8 +110,8 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     odd_unstable = all(row["kind"] == "saddle" for row in one if row["n"] % 2)
     even = [row["stable"] for row in one if row["n"] % 2 == 0]
     stable_pairs = sum(row["stable"] for row in two)
-    drive = wheel.a * wheel.k * wheel.tau_s / 2
-    ratio = f"{drive / wheel.friction:.2f}" if wheel.friction else "infinite"
+    drive = wheel.a * wheel.k * wheel.tau / 2
+    ratio = f"{drive / wheel.f:.2f}" if wheel.f else "infinite"
     foreign = setting.elsewhere(**PAPER, k=PAPER_K)
     answers = []
     for first, degrees in ((one[0], "0°, 90°, 180°, 270°"), (one[1], "45°, 135°, 225°, 315°")):

@@ -55,15 +55,15 @@ def simulate(cell: HopfCell, setting: Setting) -> list[Bifurcation] | list[Check
     if cell["part"] == "point":
         return [_checked_bifurcation(wheel)]
     if cell["part"] == "limit":
-        return [_bifurcation(wheel._replace(tau_s=LIMIT * wheel.inertia / wheel.friction))]
-    taus_s = wheel.tau_s * np.geomspace(0.01, 100.0, LINE)
-    return [_bifurcation(wheel._replace(tau_s=tau_s)) for tau_s in taus_s.tolist()]
+        return [_bifurcation(wheel._replace(tau=LIMIT * wheel.I / wheel.f))]
+    taus_s = wheel.tau * np.geomspace(0.01, 100.0, LINE)
+    return [_bifurcation(wheel._replace(tau=tau_s)) for tau_s in taus_s.tolist()]
 
 
 def _bifurcation(wheel: Wheel) -> Bifurcation:
     found = hopf(wheel)
     return {
-        "tau": wheel.tau_s,
+        "tau": wheel.tau,
         "k_hopf": found.k,
         "omega_hopf": found.omega,
         "l1": found.l1,
@@ -99,7 +99,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
     wheel = wheel_of(setting.options)
     point, through, small = point_of(rows), line_of(rows), limit_of(rows)
     ratio = point["k_estimate"] / point["k_hopf"]
-    slow = wheel.friction * wheel.tau_s / wheel.inertia
+    slow = wheel.f * wheel.tau / wheel.I
     found = [
         bautin_tau_s(wheel, row["tau"], after["tau"])
         for row, after in pairwise(through)
@@ -129,7 +129,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
         None,
         abs(small["k_estimate"] / small["k_hopf"] - 1) < 2 * LIMIT,
         f"the ratio of this estimate, {point['k_estimate']:.4f}, to the exact k,"
-        f" {point['k_hopf']:.4f}, at tau = {wheel.tau_s:g} s. The estimate is made for f tau << I:"
+        f" {point['k_hopf']:.4f}, at tau = {wheel.tau:g} s. The estimate is made for f tau << I:"
         f" here f tau / I = {slow:.2g}, and at {LIMIT:g} the ratio is"
         f" {small['k_estimate'] / small['k_hopf']:.3f}. Limit cycles are born"
         f" {'' if point['l1'] < 0 else 'un'}stable (l1 = {point['l1']:.3g})",

@@ -63,7 +63,7 @@ def midpoints(most: float, points: int) -> Array:
 
 def require_slow(wheel: Wheel) -> None:
     """Raise WrongUse for a wheel that never settles, or is too fast to be followed for minutes."""
-    if wheel.friction == 0.0:
+    if wheel.f == 0.0:
         raise WrongUse(
             "without friction a wheel can roll faster and faster, and never settles",
             "give f above 0",
@@ -85,7 +85,7 @@ def _settle_s(tau_s: float) -> float:
 def spectrum_in_blocks(wheel: Wheel, seconds: float, rng: np.random.Generator) -> list[Block]:
     """The spectrum of WHEELS wheels, each followed for some seconds."""
     parameters = wheel.columns(WHEELS)
-    settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau_s))
+    settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau))
     before = watch(settled, parameters, WATCH_S)
     moving, regular = before.kinds() != REST, before.apart < AGREE
     blocks = max(1, round(seconds / BLOCK_S))
@@ -122,7 +122,7 @@ def spectrum_in_blocks(wheel: Wheel, seconds: float, rng: np.random.Generator) -
 def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
     """One wheel, sampled every SAMPLE_S; a chaotic one if any is."""
     parameters = wheel.columns(WHEELS)
-    settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau_s))
+    settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau))
     seen = watch(settled, parameters, WATCH_S)
     start = seen.states[:, int(seen.kinds().argmax())]
     stretches = [start[None]]
@@ -131,7 +131,7 @@ def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
     path = np.concatenate(stretches).T
     _, _, phi, omega = path
     times = SAMPLE_S * np.arange(len(phi))
-    force = wheel.inertia * numpy_rates(*path, *wheel)[3] + wheel.friction * omega
+    force = wheel.I * numpy_rates(*path, *wheel)[3] + wheel.f * omega
     columns = (times.tolist(), phi.tolist(), omega.tolist(), force.tolist())
     return [
         {"t_s": time_s, "phi_rad": angle, "omega": speed, "force": own}
@@ -141,7 +141,7 @@ def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
 
 def _attractors(parameters: Array, starts: Array, fineness: float = FINENESS) -> list[Attractor]:
     """The attractor of each wheel, after it has settled."""
-    slowest = float(parameters[Wheel._fields.index("tau_s")].max())
+    slowest = float(parameters[Wheel._fields.index("tau")].max())
     settled = settle(starts, parameters, _settle_s(slowest), fineness)
     seen = watch(settled, parameters, WATCH_S, fineness)
     moving = seen.kinds() != REST
@@ -161,7 +161,7 @@ def from_both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -
     rolling_ones = rolling_states(columns) + 1e-3 * rng.normal(size=(4, count))
     both = np.tile(columns, (1, 2))
     found = _attractors(both, np.hstack([anywhere, rolling_ones]))
-    taus, ks = (both[Wheel._fields.index(name)].tolist() for name in ("tau_s", "k"))
+    taus, ks = (both[Wheel._fields.index(name)].tolist() for name in ("tau", "k"))
     starts: list[StartKind] = [ANY] * count + [ROLLS] * count
     return [
         {"tau": tau, "k": k, "start": start, **own}
@@ -185,7 +185,7 @@ def rolling(wheel: Wheel, most_k: float, rng: np.random.Generator) -> list[Rolli
     x1, x2, omega, quarter_s, k = found.point.unknowns.tolist()
     above = wheel._replace(k=BEYOND_END * k).columns(WHEELS)
     starts = np.array([x1, x2, 0.0, omega])[:, None] * (1 + 0.05 * rng.normal(size=(4, WHEELS)))
-    settled = settle(starts, above, 2 * _settle_s(wheel.tau_s), FINENESS)
+    settled = settle(starts, above, 2 * _settle_s(wheel.tau), FINENESS)
     kinds = watch(settled, above, WATCH_S, FINENESS).kinds()
     return [
         {
@@ -217,7 +217,7 @@ def lives_near_chaos(
 def step_check(wheel: Wheel, ks: Array, taus_s: Array, rng: np.random.Generator) -> list[StepCheck]:
     """Random points of the plane with these axes, with ordinary steps and with half of these."""
     own_ks, own_taus = rng.choice(ks, CHECKED), rng.choice(taus_s, CHECKED)
-    parameters = wheel.columns(CHECKED, k=own_ks, tau_s=own_taus)
+    parameters = wheel.columns(CHECKED, k=own_ks, tau=own_taus)
     starts = random_starts(CHECKED, rng)
     plain = _attractors(parameters, starts)
     finer = _attractors(parameters, starts, 2 * FINENESS)

@@ -34,7 +34,7 @@ _STARTS: dict[StartKind, str] = {ANY: "random states", ROLLS: "rolling"}
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[PlaneCell]:
     """Bands of tau, and a check. Raises WrongUse if wheels are too fast for long."""
     least_tau = pieces.midpoints(options["tau_to"], POINTS)[0]
-    pieces.require_slow(wheel_of(options)._replace(k=options["k_to"], tau_s=float(least_tau)))
+    pieces.require_slow(wheel_of(options)._replace(k=options["k_to"], tau=float(least_tau)))
     found: list[PlaneCell] = [{"part": "plane", "first": first} for first in range(0, POINTS, BAND)]
     return [*found, {"part": "check"}]
 
@@ -48,7 +48,7 @@ def simulate(cell: PlaneCell, setting: Setting) -> list[GridPoint] | list[StepCh
         return pieces.step_check(wheel, ks, taus, rng)
     own = taus[cell["first"] : cell["first"] + BAND]
     parameters = wheel.columns(
-        len(ks) * len(own), k=np.tile(ks, len(own)), tau_s=np.repeat(own, len(ks))
+        len(ks) * len(own), k=np.tile(ks, len(own)), tau=np.repeat(own, len(ks))
     )
     return pieces.from_both_starts(parameters, 1, rng)
 

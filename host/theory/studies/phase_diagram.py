@@ -124,7 +124,7 @@ def _part(whole: Averages, first: int, end: int) -> Averages:
 def _hopf_line(options: dict[str, Any], taus: Array) -> list[float]:
     """The k above which rest is unstable at each tau."""
     wheel = wheel_of(options)
-    return [critical_k(wheel._replace(tau_s=tau)) for tau in taus.tolist()]
+    return [critical_k(wheel._replace(tau=tau)) for tau in taus.tolist()]
 
 
 def _points(way: Way, k: float, taus: Array, line: list[float], found: Averages) -> list[Point]:
@@ -176,7 +176,7 @@ def _step_checks(options: dict[str, Any], seed: int) -> list[StepCheck]:
 
 
 def _parameters(options: dict[str, Any], taus: Array, ks: Array) -> Array:
-    return wheel_of(options).columns(len(taus), tau_s=taus, k=ks)
+    return wheel_of(options).columns(len(taus), tau=taus, k=ks)
 
 
 def _at_rest(parameters: Array) -> Array:

@@ -102,7 +102,7 @@ def _misjudged(rows: list[PointRow], wheel: Wheel) -> dict[str, float]:
     """The share of points at which a wheel rests above the line or moves below it."""
     by_hopf, by_estimate = 0, 0
     for row in rows:
-        there = wheel._replace(tau_s=row["tau"])
+        there = wheel._replace(tau=row["tau"])
         rests = row["phase"] == "S"
         by_hopf += (row["k"] < critical_k(there)) != rests
         by_estimate += (row["k"] < estimate(there)) != rests
@@ -134,7 +134,7 @@ def _accuracy(sample: list[StepCheckRow], wheel: Wheel) -> Accuracy:
 
 
 def _phase_of(row: StepCheckRow, wheel: Wheel) -> str:
-    k_hopf = critical_k(wheel._replace(tau_s=row["tau"]))
+    k_hopf = critical_k(wheel._replace(tau=row["tau"]))
     return phase(row["omega_mean"], row["omega_std"], row["k"], k_hopf)
 
 

@@ -196,7 +196,7 @@ def _growth(wheel: Wheel, clock: Clock | None) -> list[Growth]:
 
 
 def _short(wheel: Wheel, order: Order) -> list[ShortTick]:
-    clocks = [Clock(wheel.tau_s * share, 0.0, order == NEW) for share in SHORT]
+    clocks = [Clock(wheel.tau * share, 0.0, order == NEW) for share in SHORT]
     return [{"tick_s": clock.tick_s, "k_c": critical_k(wheel, clock)} for clock in clocks]
 
 

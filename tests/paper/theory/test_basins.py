@@ -187,14 +187,14 @@ def test_the_wrong_sign_is_sure_for_the_sampled_wheel_only(rolling):
 
 def test_a_kick_that_altered_the_projection_too_would_never_reverse(rolling):
     """If rods pulled where neurons see the wheel, it would be one that is half a turn ahead."""
-    ahead, pushed, kept, gained = sampled.coast(TICK_S, WHEEL.inertia, WHEEL.friction)
+    ahead, pushed, kept, gained = sampled.coast(TICK_S, WHEEL.I, WHEEL.f)
     kicked = rolling[1].copy()
     for number in range(PHASES):
         x1, x2, phi, omega, _ = kicked[:, number].tolist()
         for _ in range(5):
             minus = [-position for position in actual_positions(phi)]
             x1, x2, force, _ = step_wheel(
-                x1, x2, *minus, *minus, *minus, TICK_S, WHEEL.a, WHEEL.tau_s, WHEEL.k, 2
+                x1, x2, *minus, *minus, *minus, TICK_S, WHEEL.a, WHEEL.tau, WHEEL.k, 2
             )
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
         kicked[:, number] = x1, x2, phi, omega, 0.0
@@ -278,7 +278,7 @@ def test_wheels_that_hardly_settle_or_are_stiff_are_refused(changed):
 def test_a_tau_too_short_for_the_tick_is_refused():
     with pytest.raises(WrongUse, match="run away"):
         basins.simulate_starts(
-            Sampled(), WHEEL._replace(tau_s=0.01), np.array([0.5]), np.array([3.0])
+            Sampled(), WHEEL._replace(tau=0.01), np.array([0.5]), np.array([3.0])
         )
 
 

@@ -92,8 +92,8 @@ def test_the_merging_lies_between_the_papers_portraits_and_does_not_depend_on_ho
 
 
 def test_slower_wheels_and_stronger_forces_merge_at_the_same_place_in_their_own_units(k_merge):
-    slower = merging(PAPER._replace(tau_s=3 * 0.25, inertia=9 * 0.05, friction=3 * 0.5))
-    stronger = merging(PAPER._replace(inertia=7 * 0.05, friction=7 * 0.5))
+    slower = merging(PAPER._replace(tau=3 * 0.25, I=9 * 0.05, f=3 * 0.5))
+    stronger = merging(PAPER._replace(I=7 * 0.05, f=7 * 0.5))
     assert slower.k == pytest.approx(k_merge, rel=1e-12)
     assert 3 * slower.saddle_quantity == pytest.approx(merging(PAPER).saddle_quantity, rel=1e-9)
     assert stronger.k == pytest.approx(7 * k_merge, rel=1e-12)
@@ -106,32 +106,32 @@ def test_the_saddles_eigenvalues_add_up_to_the_divergence_and_one_is_that_of_the
 
 
 def test_along_friction_wheels_roll_below_the_merging_and_it_is_the_same_one(k_merge):
-    (found,) = mergings(PAPER._replace(k=k_merge), 0.3, 0.9, "friction", points=4)
-    assert found.wheel.friction == pytest.approx(0.5, rel=1e-12)
+    (found,) = mergings(PAPER._replace(k=k_merge), 0.3, 0.9, "f", points=4)
+    assert found.wheel.f == pytest.approx(0.5, rel=1e-12)
     assert not found.passes_above
 
 
 def test_the_saddle_quantity_changes_its_sign_between_the_time_constants_without_and_with_folds():
     tau_s = neutral_tau_s(PAPER, 0.4, 0.43)
-    assert abs(merging(PAPER._replace(tau_s=tau_s)).saddle_quantity) < 1e-8
+    assert abs(merging(PAPER._replace(tau=tau_s)).saddle_quantity) < 1e-8
     assert neutral_tau_s(PAPER, 0.25, 0.3) is None
-    assert merging(PAPER).saddle_quantity < 0.0 < merging(PAPER._replace(tau_s=1.0)).saddle_quantity
+    assert merging(PAPER).saddle_quantity < 0.0 < merging(PAPER._replace(tau=1.0)).saddle_quantity
 
 
 def test_too_little_k_does_not_pass_and_wheels_without_friction_or_springs_are_refused():
     assert not passes(PAPER._replace(k=1e-6))
-    for nothing in ({"friction": 0.0}, {"a": 0.0}):
+    for nothing in ({"f": 0.0}, {"a": 0.0}):
         with pytest.raises(WrongUse):
             passes(PAPER._replace(**nothing))
     with pytest.raises(WrongUse, match="steps"):
-        merging(PAPER._replace(inertia=1e-9))
+        merging(PAPER._replace(I=1e-9))
 
 
 # Cycles and their multipliers
 
 
 @pytest.mark.parametrize("family", [FORTH_AND_BACK, ROTATION], ids=lambda family: family.name)
-@pytest.mark.parametrize("along", ["k", "tau_s"])
+@pytest.mark.parametrize("along", ["k", "tau"])
 def test_shooting_knows_its_derivatives(family, along):
     shooting = Shooting(PAPER._replace(k=2.0), family, along)
     unknowns = np.array([0.6, -0.4, 2.0, 0.7, getattr(shooting.wheel, along)])
@@ -213,7 +213,7 @@ def test_both_branches_end_at_the_merging_from_their_own_side_without_bifurcatio
 
 
 def test_at_tau_of_a_second_there_are_folds_on_both_sides_and_a_neimark_sacker_point():
-    wheel = PAPER._replace(tau_s=1.0)
+    wheel = PAPER._replace(tau=1.0)
     (swing,), (roll,) = swings(wheel, "k", 0.1, 6.0), rotations(wheel, "k", 0.3, 6.0)
     assert (types(swing), types(roll)) == ([FOLD], [FOLD, NEIMARK_SACKER])
     # AUTO-07p's value.
@@ -320,11 +320,11 @@ def test_a_wheel_that_is_turned_has_the_papers_potentials_in_either_direction():
 
 def test_the_constant_velocity_formula_balances_the_papers_force_and_begins_at_its_k_c():
     wheel = PAPER._replace(k=8.0)
-    lag = constant_velocity(wheel) * wheel.tau_s
-    assert wheel.a * wheel.k * wheel.tau_s / 2 / (1 + lag**2) == pytest.approx(wheel.friction)
+    lag = constant_velocity(wheel) * wheel.tau
+    assert wheel.a * wheel.k * wheel.tau / 2 / (1 + lag**2) == pytest.approx(wheel.f)
     assert constant_velocity(PAPER._replace(k=1.0)) is None
     assert constant_velocity(PAPER._replace(k=1.0 + 1e-9)) < 1e-3
-    assert constant_velocity(PAPER._replace(friction=0.0)) is None
+    assert constant_velocity(PAPER._replace(f=0.0)) is None
 
 
 def test_rotations_approach_the_formula_as_k_grows():

@@ -18,27 +18,27 @@ from host.theory.model.wheel import OMEGA, PHI, Wheel, resting
 from tests.paper.theory import independent
 
 MIRROR = np.array([1.0, -1.0, -1.0, -1.0])[:, None]
-SWINGING = Wheel(k=8.0, tau_s=1.0, dry_friction=0.3)
+SWINGING = Wheel(k=8.0, tau=1.0, dry_friction=0.3)
 
 
 def by_scipy(start, wheel, seconds):
     """A wheel's course in pieces between its stops, and how often it stopped."""
     y, now, stops = np.array(start), 0.0, 0
     while now < seconds:
-        at_rest = independent.rates([*y[:3], 0.0], wheel)[3] * wheel.inertia
+        at_rest = independent.rates([*y[:3], 0.0], wheel)[3] * wheel.I
         way = np.sign(y[3]) or (
             np.sign(at_rest) if abs(at_rest) > wheel.dry_friction - 1e-9 else 0.0
         )
 
         def rates(_, y, way=way):
             found = independent.rates(y, wheel)
-            found[3] = (found[3] - way * wheel.dry_friction / wheel.inertia) if way else 0.0
+            found[3] = (found[3] - way * wheel.dry_friction / wheel.I) if way else 0.0
             return found
 
         def changes(t, y, way=way):
             if way:
                 return y[3] * way if t > 1e-9 else 1.0
-            return wheel.dry_friction - abs(independent.rates(y, wheel)[3] * wheel.inertia)
+            return wheel.dry_friction - abs(independent.rates(y, wheel)[3] * wheel.I)
 
         changes.terminal, changes.direction = True, -1
         run = solve_ivp(
@@ -78,7 +78,7 @@ def test_a_wheel_that_stops_and_goes_on_moves_as_scipy_moves_it(start):
 def test_a_wheel_rests_wherever_its_friction_holds_it():
     wheel = Wheel(k=1.0, dry_friction=0.08)
     starts = resting(np.linspace(-np.pi, np.pi, 41))
-    torque = np.array([independent.rates(y, wheel)[3] * wheel.inertia for y in starts.T])
+    torque = np.array([independent.rates(y, wheel)[3] * wheel.I for y in starts.T])
     held = np.abs(torque) <= wheel.dry_friction
     assert held.any()
     assert not held.all()

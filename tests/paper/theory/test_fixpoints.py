@@ -20,10 +20,10 @@ from robot.controller import target_position
 WHEELS = st.builds(
     Wheel,
     a=st.floats(0.5, 12.0),
-    tau_s=st.floats(0.01, 3.0),
+    tau=st.floats(0.01, 3.0),
     k=st.floats(0.05, 20.0),
-    inertia=st.floats(0.005, 1.0),
-    friction=st.floats(0.02, 3.0),
+    I=st.floats(0.005, 1.0),
+    f=st.floats(0.02, 3.0),
     dry_friction=st.just(0.0),
 )
 
@@ -31,7 +31,7 @@ WHEELS = st.builds(
 @given(WHEELS)
 def test_all_eight_are_at_rest_and_there_are_no_others(wheel):
     for phi in ANGLES:
-        assert np.abs(rates(*resting(np.array([phi]))[:, 0], *wheel)).max() < 1e-12 / wheel.inertia
+        assert np.abs(rates(*resting(np.array([phi]))[:, 0], *wheel)).max() < 1e-12 / wheel.I
     angles = (np.arange(4000) + 0.5) * 2 * pi / 4000
     force = numpy_rates(*resting(angles), *wheel)[OMEGA]
     assert np.count_nonzero(np.sign(force) != np.sign(np.roll(force, 1))) == 8
@@ -99,7 +99,7 @@ def test_the_closed_form_is_where_eigenvalues_cross_the_axis(wheel):
 def test_the_papers_estimate_is_the_limit_of_little_friction_or_fast_neurons():
     ratios = [
         estimate(wheel) / hopf(wheel).k
-        for wheel in (Wheel(tau_s=tau_s) for tau_s in (1e-4, 1e-3, 1e-2, 0.25))
+        for wheel in (Wheel(tau=tau_s) for tau_s in (1e-4, 1e-3, 1e-2, 0.25))
     ]
     assert ratios == sorted(ratios, reverse=True)
     assert ratios[0] == pytest.approx(1.0, abs=1e-3)
@@ -130,9 +130,9 @@ def test_a_cycle_just_above_is_as_large_as_the_lyapunov_coefficient_says():
 
 
 def test_slow_neurons_bear_unstable_cycles_so_that_a_wheel_jumps_away():
-    below, above = hopf(Wheel(tau_s=1.0)), hopf(Wheel(tau_s=3.0))
+    below, above = hopf(Wheel(tau=1.0)), hopf(Wheel(tau=3.0))
     assert below.l1 < 0.0 < above.l1
-    swing = limit_cycle(Wheel(tau_s=3.0, k=1.005 * above.k))
+    swing = limit_cycle(Wheel(tau=3.0, k=1.005 * above.k))
     assert phase_of_cycle(swing) != "FB" or np.ptp(swing[:, PHI]) > 1.0
 
 
@@ -142,7 +142,7 @@ def test_a_wheel_that_nothing_pulls_has_no_fixpoints_of_its_own(change, letter):
         fixpoints(Wheel()._replace(**change))
 
 
-@pytest.mark.parametrize("change", [{"friction": 0.0}, {"a": 0.0}])
+@pytest.mark.parametrize("change", [{"f": 0.0}, {"a": 0.0}])
 def test_where_there_is_no_hopf_bifurcation_one_is_told_so(change):
     with pytest.raises(WrongUse, match="no Hopf"):
         hopf(Wheel()._replace(**change))
@@ -151,11 +151,11 @@ def test_where_there_is_no_hopf_bifurcation_one_is_told_so(change):
 @pytest.mark.parametrize(
     "change",
     [
-        {"tau_s": 0.0},
-        {"inertia": -1.0},
+        {"tau": 0.0},
+        {"I": -1.0},
         {"k": float("nan")},
         {"a": 1e4},
-        {"friction": float("inf")},
+        {"f": float("inf")},
     ],
 )
 def test_constants_of_no_wheel_are_refused_by_name(change):

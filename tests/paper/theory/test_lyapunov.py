@@ -32,7 +32,7 @@ RESTING, SWINGING, ROLLING, CHAOTIC = (
     Wheel(k=1.4),
     Wheel(k=1.65),
     Wheel(k=8.0),
-    Wheel(k=15.0, tau_s=1.0),
+    Wheel(k=15.0, tau=1.0),
 )
 OPTIONS = {"a": 4.0, "tau": 1.0, "k": 15.0, "f": 0.5, "I": 0.05, "seconds": 250.0}
 LINE = {"a": 4.0, "tau": 1.0, "f": 0.5, "I": 0.05, "k_to": 20.0}
@@ -84,9 +84,7 @@ def test_along_a_cycle_one_exponent_is_0_and_the_others_are_negative():
 
 def test_the_sum_of_the_exponents_is_the_divergence_at_every_moment(chaotic):
     states, parameters = chaotic
-    assert divergence(CHAOTIC) == pytest.approx(
-        -2 / CHAOTIC.tau_s - CHAOTIC.friction / CHAOTIC.inertia, abs=1e-12
-    )
+    assert divergence(CHAOTIC) == pytest.approx(-2 / CHAOTIC.tau - CHAOTIC.f / CHAOTIC.I, abs=1e-12)
     sums = growth(states, parameters, 10.0, 4).rates.sum(axis=1)
     assert np.abs(sums - divergence(CHAOTIC)).max() < 1e-6
 
@@ -157,7 +155,7 @@ def test_smooth_averages_are_the_plain_ones_of_long_times():
 
 
 def test_lives_are_those_of_switching_only():
-    wheel = Wheel(k=4.4, tau_s=1.0)
+    wheel = Wheel(k=4.4, tau=1.0)
     begin = np.hstack([random_starts(31, _chance()), rolling_states(wheel.columns(1))])
     found = lives(begin, wheel.columns(32), 1000.0, 0.6)
     assert found.ended.all()
@@ -192,7 +190,7 @@ def test_a_crisis_is_found_where_lives_have_no_bound():
 @pytest.mark.parametrize("tau", [1.0, 0.6])
 def test_rolling_loses_its_stability_where_scipy_finds_a_multiplier_on_the_circle(tau):
     (found,) = lyapunov_line.simulate({"part": "rolling"}, Setting(1, {**LINE, "tau": tau}))
-    wheel = Wheel(k=found["k"], tau_s=tau)
+    wheel = Wheel(k=found["k"], tau=tau)
     begin = independent.turning(wheel)
     state, quarter_s = independent.rotation(wheel, begin)
     pair = independent.multipliers(state, quarter_s, wheel)[:2]
@@ -292,7 +290,7 @@ def test_a_colour_is_chaos_where_the_exponent_is_positive_and_cycles_have_the_ex
     """Rolling one way for ever may be chaotic; wheels near the merging have long periods."""
     points = [(0.48, 1.0), (3.0, 1.0), (8.0, 0.25), (1.6, 0.25), (1.85, 0.25), (12.0, 0.6)]
     ks, taus = np.array(points).T
-    parameters = Wheel().columns(6, k=ks, tau_s=taus)
+    parameters = Wheel().columns(6, k=ks, tau=taus)
     rows = pieces.from_both_starts(parameters, 2, _chance())
     for row in rows:
         assert (row["kind"] == "chaotic") == (row["exponent"] > 0.05)

@@ -70,7 +70,7 @@ def test_far_from_the_line_a_wheel_rests_exactly_below_it(diagram):
     for row in rows:
         if row["panel"] == "accuracy":
             continue
-        line = critical_k(Wheel(tau_s=row["tau"]))
+        line = critical_k(Wheel(tau=row["tau"]))
         if row["way"] == "up" and not 0.8 < row["k"] / line < 1.2:
             rests = abs(row["omega_mean"]) < STILL and row["omega_std"] < STILL
             assert rests == (row["k"] < line), row
@@ -79,7 +79,7 @@ def test_far_from_the_line_a_wheel_rests_exactly_below_it(diagram):
 def test_locomotion_that_is_fast_has_the_constant_velocity(diagram):
     rows, _ = diagram
     row = at(rows, "plane", "up", 0.2, 9.0)
-    expected = constant_velocity(Wheel(tau_s=row["tau"], k=row["k"]))
+    expected = constant_velocity(Wheel(tau=row["tau"], k=row["k"]))
     assert abs(row["omega_mean"]) == pytest.approx(expected, rel=0.1)
 
 
@@ -140,6 +140,6 @@ def test_the_state_of_a_turning_wheel_is_that_of_its_equations():
     )
     for row, seen in ((0, np.cos(0.7 * omega)), (1, np.sin(0.7 * omega))):
         assert (after[row] - before[row]) / (2 * step) == pytest.approx(
-            (seen - now[row]) / wheel.tau_s, abs=1e-8
+            (seen - now[row]) / wheel.tau, abs=1e-8
         )
     assert rolling_states(wheel.columns(1))[OMEGA] == [constant_velocity(wheel)]

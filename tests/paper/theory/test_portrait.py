@@ -20,7 +20,7 @@ def test_portraits_show_what_the_paper_shows(k, kind):
 
 
 def test_chaos_is_no_cycle():
-    assert phase_of_cycle(limit_cycle(Wheel(k=15.0, tau_s=1.0))) == "C"
+    assert phase_of_cycle(limit_cycle(Wheel(k=15.0, tau=1.0))) == "C"
 
 
 def test_a_limit_cycle_closes_and_attracts():

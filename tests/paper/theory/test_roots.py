@@ -21,7 +21,7 @@ from robot.kicks import POSITION
 from tests.paper.theory import independent
 from tests.paper.theory.table import rows_of
 
-SLOW = Wheel(tau_s=1.2)
+SLOW = Wheel(tau=1.2)
 
 
 def k_of_cycle(amplitude, wheel, harmonics=16):
@@ -42,7 +42,7 @@ def k_of_cycle(amplitude, wheel, harmonics=16):
         return np.fft.irfft(spectrum, count)
 
     def lagged(values, frequency):
-        waves = np.fft.rfft(values) / (1 + 1j * np.arange(count // 2 + 1) * frequency * wheel.tau_s)
+        waves = np.fft.rfft(values) / (1 + 1j * np.arange(count // 2 + 1) * frequency * wheel.tau)
         return np.fft.irfft(waves, count)
 
     def residual(unknowns):
@@ -71,7 +71,7 @@ def independent_hopf(wheel):
 
 def curvature(tau_s):
     """d2k/dA2 of the cycles at their birth: 0 where l1 is 0."""
-    wheel = Wheel(tau_s=tau_s)
+    wheel = Wheel(tau=tau_s)
     at_birth = independent_hopf(wheel)[0]
     near, far = ((k_of_cycle(size, wheel) - at_birth) / size**2 for size in (0.05, 0.1))
     return (4 * near - far) / 3
@@ -141,7 +141,7 @@ def reverses(state, length_s, wheel):
     def kicked(_, y):
         seen = np.array([np.cos(y[2]), np.sin(y[2])])
         rate = independent.rates(y, wheel)
-        rate[:2] = (-seen - y[:2]) / wheel.tau_s
+        rate[:2] = (-seen - y[:2]) / wheel.tau
         return rate
 
     after = solve_ivp(kicked, (0.0, length_s), state, "DOP853", rtol=1e-10, atol=1e-11).y[:, -1]

@@ -34,7 +34,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(memory):
 
 def test_the_exponent_along_the_flow_is_0_within_its_error():
     """Of chaotic wheels it is known: 24 runs of 8 wheels each."""
-    wheel, runs, own = Wheel(k=15.0, tau_s=1.0), 24, 8
+    wheel, runs, own = Wheel(k=15.0, tau=1.0), 24, 8
     parameters = wheel.columns(runs * own)
     begin = settle(random_starts(runs * own, np.random.default_rng(4)), parameters, 100.0)
     every = np.ones(runs * own, dtype=bool)
@@ -48,7 +48,7 @@ def test_the_exponent_along_the_flow_is_0_within_its_error():
 
 
 def point_of(k, tau_s, seconds):
-    wheel = Wheel(k=k, tau_s=tau_s)
+    wheel = Wheel(k=k, tau=tau_s)
     found = pieces.spectrum_in_blocks(wheel, seconds, np.random.default_rng(1))
     return spectrum([{"batch": 0, **row} for row in found], wheel)
 
@@ -68,7 +68,7 @@ def test_two_positive_exponents_are_called_hyperchaotic(point):
 
 def test_the_first_two_exponents_are_those_that_scipy_finds(point):
     """The area that two vectors span grows with their sum, in whatever directions they are."""
-    wheel = Wheel(k=12.0, tau_s=0.6)
+    wheel = Wheel(k=12.0, tau=0.6)
     rng = np.random.default_rng(8)
     rates = []
     for _ in range(3):

@@ -49,16 +49,14 @@ def by_hand(wheel, clock):
 
     X1 decouples at phi = 0.
     """
-    part, slope = clock.tick_s / wheel.tau_s, float(target_position(1.0, wheel.a))
-    keep = np.exp(-wheel.friction * clock.tick_s / wheel.inertia)
-    ahead = wheel.inertia / wheel.friction * (1 - keep)
+    part, slope = clock.tick_s / wheel.tau, float(target_position(1.0, wheel.a))
+    keep = np.exp(-wheel.f * clock.tick_s / wheel.I)
+    ahead = wheel.I / wheel.f * (1 - keep)
     stepped = np.array([1 - part, part, 0.0])
     acting = stepped if clock.fresh else np.array([1.0, 0.0, 0.0])
     force = wheel.k * slope * np.array([0.0, 1.0, 0.0]) - wheel.k * wheel.a / 2 * acting
-    moved = np.array([0.0, 1.0, ahead]) + (clock.tick_s - ahead) / wheel.friction * force
-    return np.array(
-        [stepped, moved, np.array([0.0, 0.0, keep]) + (1 - keep) / wheel.friction * force]
-    )
+    moved = np.array([0.0, 1.0, ahead]) + (clock.tick_s - ahead) / wheel.f * force
+    return np.array([stepped, moved, np.array([0.0, 0.0, keep]) + (1 - keep) / wheel.f * force])
 
 
 @pytest.mark.parametrize("seconds", [1e-6, 0.003, 0.0099, 0.0101, 0.2, 30.0])
@@ -144,7 +142,7 @@ def test_the_jacobian_is_that_of_the_map(clock, number):
 
 @pytest.mark.parametrize("clock", [NEW, OLD, Clock(0.1), Clock(0.001, 0.0, fresh=False)])
 def test_multipliers_at_rest_are_those_worked_out_on_paper(clock):
-    expected = [0.0, 1 - clock.tick_s / WHEEL.tau_s, *np.linalg.eigvals(by_hand(WHEEL, clock))]
+    expected = [0.0, 1 - clock.tick_s / WHEEL.tau, *np.linalg.eigvals(by_hand(WHEEL, clock))]
     assert np.sort_complex(thresholds.multipliers(WHEEL, clock)) == pytest.approx(
         np.sort_complex(np.array(expected)), abs=1e-9
     )
@@ -173,7 +171,7 @@ def test_a_small_swing_fades_below_that_k_and_grows_above(clock):
 
 @pytest.mark.parametrize("tau_s", [0.05, 0.25, 1.0])
 def test_without_a_tick_k_c_is_the_hopf_bifurcations_to_first_order(tau_s):
-    wheel = WHEEL._replace(tau_s=tau_s)
+    wheel = WHEEL._replace(tau=tau_s)
     for fresh in (True, False):
         near, nearer = (
             thresholds.critical_k(wheel, Clock(tau_s * share, 0.0, fresh)) / hopf(wheel).k - 1
@@ -213,7 +211,7 @@ def test_a_new_force_that_acts_a_whole_tick_late_is_an_old_one_but_for_where_it_
 
 def test_where_there_is_no_k_c_none_is_returned():
     assert thresholds.critical_k(WHEEL, Clock(0.6)) is None  # the neurons overshoot: 0.6 s > 2 tau
-    assert thresholds.critical_k(WHEEL._replace(friction=0.0), NEW) == 0.0  # nothing brakes
+    assert thresholds.critical_k(WHEEL._replace(f=0.0), NEW) == 0.0  # nothing brakes
     assert thresholds.critical_k(WHEEL._replace(a=0.0), NEW) is None  # the rods do not pull
 
 
@@ -258,7 +256,7 @@ def test_a_clock_that_cannot_go_is_refused(clock):
 
 def test_neurons_that_run_away_are_refused():
     with pytest.raises(WrongUse, match="run away"):
-        sampled.advance(random_states(2), WHEEL._replace(tau_s=1e-3).columns(2), NEW, 2000)
+        sampled.advance(random_states(2), WHEEL._replace(tau=1e-3).columns(2), NEW, 2000)
     with pytest.raises(WrongUse, match="ticks"):
         sampled.ticks_in(1e9, NEW)
 

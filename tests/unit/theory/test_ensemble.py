@@ -20,7 +20,7 @@ from host.theory.engine.ensemble import FINE, LANES, advance, averages, rate_per
 from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
 
 # At rest, forth and back, rolling slowly and fast, and with a short memory.
-WHEELS = [Wheel(k=1.4), Wheel(k=1.65), Wheel(k=1.85), Wheel(k=14.0), Wheel(tau_s=0.03, k=12.0)]
+WHEELS = [Wheel(k=1.4), Wheel(k=1.65), Wheel(k=1.85), Wheel(k=14.0), Wheel(tau=0.03, k=12.0)]
 START = np.array([1.0, 0.0, 0.3, 1.0])
 
 
@@ -67,7 +67,7 @@ def test_sin_and_cos_at_the_octants_edges(name, quarters):
         assert abs(got - exact) <= 2 * math.ulp(exact) + 1e-20
 
 
-@pytest.mark.parametrize("wheel", [Wheel(k=14.0), Wheel(tau_s=0.03, k=12.0)])
+@pytest.mark.parametrize("wheel", [Wheel(k=14.0), Wheel(tau=0.03, k=12.0)])
 def test_halving_the_step_gains_eight_binary_digits(wheel):
     after = partial(advance, starts(1), columns([wheel]), 20.0)
     exact = after(4.0)
@@ -126,13 +126,13 @@ def test_adams_weights_integrate_polynomials_exactly(power):
 @pytest.mark.parametrize(
     "wheel",
     [
-        Wheel(tau_s=1e-3, k=20.0),
-        Wheel(tau_s=1e-3, k=0.0),
-        Wheel(tau_s=1.5, k=1000.0, friction=30.0),
-        Wheel(inertia=1e-4, k=0.5),
-        Wheel(a=100.0, tau_s=0.01, k=0.2),
+        Wheel(tau=1e-3, k=20.0),
+        Wheel(tau=1e-3, k=0.0),
+        Wheel(tau=1.5, k=1000.0, f=30.0),
+        Wheel(I=1e-4, k=0.5),
+        Wheel(a=100.0, tau=0.01, k=0.2),
         Wheel(a=0.0, k=20.0),
-        Wheel(friction=50.0, k=5.0),
+        Wheel(f=50.0, k=5.0),
     ],
 )
 def test_the_longest_steps_of_adams_are_stable(wheel):
@@ -150,7 +150,7 @@ def test_the_longest_steps_of_adams_are_stable(wheel):
 
 def test_a_wheel_without_springs_runs_down_as_the_formula_says():
     """omega = omega_0 exp(-t/T), T = I/f: mean and variance over a time are elementary."""
-    wheel = Wheel(k=0.0, inertia=0.5, friction=0.25)
+    wheel = Wheel(k=0.0, I=0.5, f=0.25)
     seconds, decay_s, first = 3.0, 2.0, 7.0
     found = averages(starts(1, (0.0, 0.0, 0.0, first)), columns([wheel]), 0.0, seconds)
     mean = first * decay_s / seconds * (1 - math.exp(-seconds / decay_s))
@@ -164,9 +164,7 @@ def test_a_wheel_that_nothing_acts_on_keeps_its_speed_for_long():
 
     Not even that of rounding, which the difference of two squares would have.
     """
-    found = averages(
-        starts(1, (0.0, 0.0, 0.0, 30.0)), columns([Wheel(k=0.0, friction=0.0)]), 100.0, 100.0
-    )
+    found = averages(starts(1, (0.0, 0.0, 0.0, 30.0)), columns([Wheel(k=0.0, f=0.0)]), 100.0, 100.0)
     assert found.omega_mean[0] == pytest.approx(30.0, rel=1e-14)
     assert found.omega_std[0] == 0.0
     assert found.states[PHI, 0] == pytest.approx(6000.0, rel=1e-14)
@@ -208,7 +206,7 @@ def random_wheels(count):
     """Parameters (6, count) from all over the phase diagram."""
     chance = np.random.default_rng(5)
     return columns(
-        [Wheel(tau_s=chance.uniform(0.02, 1.5), k=chance.uniform(0, 20)) for _ in range(count)]
+        [Wheel(tau=chance.uniform(0.02, 1.5), k=chance.uniform(0, 20)) for _ in range(count)]
     )
 
 
@@ -241,7 +239,7 @@ def test_the_default_steps_give_nine_digits_all_over_the_phase_diagram():
     """
     parameters = columns(
         [
-            Wheel(tau_s=tau_s, k=k)
+            Wheel(tau=tau_s, k=k)
             for tau_s in (0.03, 0.1, 0.25, 0.5)
             for k in (0.5, 2.0, 5.0, 10.0, 20.0)
             if k * tau_s < 4
@@ -256,7 +254,7 @@ def test_the_default_steps_give_nine_digits_all_over_the_phase_diagram():
 
 
 def test_a_wheel_without_friction_is_followed_though_it_gets_ever_faster():
-    parameters = columns([Wheel(k=5.0, friction=0.0)])
+    parameters = columns([Wheel(k=5.0, f=0.0)])
     coarse, fine = (averages(starts(1), parameters, 0.0, 30.0, fineness) for fineness in (1.0, 2.0))
     assert abs(coarse.states[OMEGA, 0]) > 20.0
     assert coarse.omega_mean[0] == pytest.approx(fine.omega_mean[0], abs=1e-7)
@@ -266,11 +264,11 @@ def test_no_wheels_are_no_trouble():
     assert advance(np.empty((4, 0)), np.empty((6, 0)), 1.0).shape == (4, 0)
 
 
-@pytest.mark.parametrize("wheel", [Wheel(tau_s=1e-7), Wheel(inertia=1e-9), Wheel(k=math.nan)])
+@pytest.mark.parametrize("wheel", [Wheel(tau=1e-7), Wheel(I=1e-9), Wheel(k=math.nan)])
 def test_a_stiff_wheel_is_refused_by_name(wheel):
     parameters = columns([Wheel(), wheel])
     with pytest.raises(
-        WrongUse, match=rf"tau = {wheel.tau_s:g}, k = {wheel.k:g}, I = {wheel.inertia:g}"
+        WrongUse, match=rf"tau = {wheel.tau:g}, k = {wheel.k:g}, I = {wheel.I:g}"
     ) as refusal:
         averages(starts(2), parameters, 10.0, 10.0)
     assert "larger tau" in refusal.value.hint

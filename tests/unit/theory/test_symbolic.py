@@ -42,7 +42,7 @@ def test_a_second_process_has_the_same_bits_without_sympy(folder):
 
 
 def test_the_jacobian_is_that_of_differences(folder):
-    for wheel in (Wheel(), Wheel(k=8.0, tau_s=0.1)):
+    for wheel in (Wheel(), Wheel(k=8.0, tau=0.1)):
         own, check = jacobian_at(STATE, wheel), jacobian_by_differences(STATE, wheel)
         assert np.allclose(own, check, rtol=1e-6, atol=1e-6)
 

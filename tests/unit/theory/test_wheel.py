@@ -14,8 +14,8 @@ def test_older_rods_are_a_friction_to_first_order():
     for x1, x2, phi, omega in ((0.3, -0.7, 0.4, 12.0), (0.9, 0.1, 2.0, -5.0)):
         actual, older = actual_positions(phi), actual_positions(phi - omega * lag_s)
         force = step_wheel(x1, x2, *actual, *older, 0.0, 0.0, 0.0, wheel.a, 1.0, wheel.k, 2)[2]
-        exact = (force - wheel.friction * omega) / wheel.inertia
+        exact = (force - wheel.f * omega) / wheel.I
         error = rates(x1, x2, phi, omega, *lagging)[3] - exact
-        cubic = -wheel.k * (omega * lag_s) ** 3 / 6 / wheel.inertia
+        cubic = -wheel.k * (omega * lag_s) ** 3 / 6 / wheel.I
         assert error == pytest.approx(cubic, rel=1e-2)
     assert wheel.with_older_rods(0.0) == wheel
