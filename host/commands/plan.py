@@ -20,11 +20,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to", choices=("forward", "backward"), required=True, help="the direction"
     )
+    parser.add_argument(
+        "--search",
+        choices=("shortest", "least-effort"),
+        help="search for the smallest pulse of any parameter that does it, and compare it with the"
+        " paper's kicks (10 to 60 s)",
+    )
     add_motor(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Watch the wheels, and say the plan for each."""
+    """Watch the wheels, and say the plan for each; or search for the smallest kick."""
+    if options.search:
+        return _search(options)
     from host.errors import NotDone
     from host.kicking.outcome import require_running, wait_settled
     from host.kicking.robot_motor import motor_of
@@ -49,6 +57,25 @@ def run(options: argparse.Namespace) -> int:
     else:
         for side, found in wheels.items():
             print(_sentence(side, options.to, found, origin["params"]["k"]))
+    return 0
+
+
+def _search(options: argparse.Namespace) -> int:
+    from host.commands._plan_search import search_kicks, sentences
+    from host.kicking.robot_motor import motor_of
+    from robot.params import TABLE, Params
+
+    with robot_of(options, observe=True) as robot:
+        motor = motor_of(robot, options.motor)
+        values = robot.status()["params"]
+        origin = {"params": values, "brick": robot.link.uri, "seed": robot.hello["seed"]}
+    params = Params()
+    params.apply(params.check({name: values[name] for name in TABLE if name in values}))
+    result = search_kicks(options.search, options.to, params, motor)
+    if options.json:
+        show({"to": options.to, **result, **origin})
+    else:
+        print("\n".join(sentences(result, options.to, params)))
     return 0
 
 

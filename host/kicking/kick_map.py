@@ -7,7 +7,7 @@ begins.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import degrees, radians
 from typing import Any, TypedDict
 
@@ -16,7 +16,7 @@ import numpy as np
 from robot.kick_requests import parse
 from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION
 from robot.params import Params
-from sim_motor.batch import run
+from sim_motor.batch import Result, run
 from sim_motor.constants import Constants, load
 
 
@@ -100,6 +100,60 @@ def lengths(tick_s: float) -> list[int]:
     return sorted({max(1, round(number * _LENGTH_STEP_S / tick_s)) for number in LENGTHS})
 
 
+def settle_ticks(params: Params) -> int:
+    """How many ticks a wheel takes from rest into its cycle."""
+    return _ticks(_SETTLE_S, params)
+
+
+def watch_ticks(params: Params) -> int:
+    """How many ticks a wheel takes back into a cycle after a kick."""
+    return _ticks(_WATCH_S, params)
+
+
+def _ticks(least_s: float, params: Params) -> int:
+    ticks: int = round(min(_PATIENCE_S, least_s + _MEMORY_TAU * params.tau_s) / params.tick_s)
+    return ticks
+
+
+def kick_specimens(
+    kick: Mapping[str, Any],
+    wheels: int,
+    seed: int,
+    *,
+    params: Params,
+    motor: Constants | None = None,
+    battery_v: float | None = None,
+) -> Result:
+    """Kick simulated wheels that have settled, each at a phase by chance.
+
+    Args:
+        kick: The kick, as robot.kick_requests.parse takes it, without its id.
+        wheels: How many wheels.
+        seed: The random seed.
+        params: The robot's parameters.
+        motor: The wheels have specimens of this motor, within its published spread; by default of
+            the published one.
+        battery_v: The battery's voltage, V; None for the motor's nominal one.
+    """
+    rng = np.random.default_rng(seed)
+    specimens = min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN)
+    motors = (motor or load()).specimens(specimens, rng)
+    own = parse({"id": "map", **kick}, (0, 0), params, settle_ticks(params))
+    whole = own.begin + own.ticks + watch_ticks(params)
+    times = None if params.tick_s >= _LEAST_LATE_TICK_S else np.arange(whole) * params.tick_s
+    chance = int(rng.integers(2**32))
+    return run(
+        wheels,
+        whole,
+        chance,
+        params=params,
+        kick=own,
+        motors=motors,
+        battery_v=battery_v,
+        times=times,
+    )
+
+
 def tally(
     mode: str,
     sign: int,
@@ -127,26 +181,13 @@ def tally(
     Returns:
         A row for each direction and bin of phases in which a wheel met the kick.
     """
-    rng = np.random.default_rng(seed)
-    specimens = min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN)
-    motors = (motor or load()).specimens(specimens, rng)
-    settle, watch = (
-        round(min(_PATIENCE_S, time_s + _MEMORY_TAU * params.tau_s) / params.tick_s)
-        for time_s in (_SETTLE_S, _WATCH_S)
-    )
-    kick = parse({"id": "map", **request(mode, ticks, shift_of(sign))}, (0, 0), params, settle)
-    whole = settle + ticks + watch
-    times = None if params.tick_s >= _LEAST_LATE_TICK_S else np.arange(whole) * params.tick_s
-    chance = int(rng.integers(2**32))
-    result = run(
+    result = kick_specimens(
+        request(mode, ticks, shift_of(sign)),
         wheels,
-        whole,
-        chance,
+        seed,
         params=params,
-        kick=kick,
-        motors=motors,
+        motor=motor,
         battery_v=battery_v,
-        times=times,
     )
     met = [
         (before, phase_bin(phi))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from host.client.robot import connect
+from host.commands._plan_search import sentences
 from host.kicking import planning
 from host.kicking.outcome import kick_and_watch, wait_settled
 from host.kicking.planning import Plan
@@ -189,3 +190,36 @@ def test_what_cannot_be_planned_is_told_in_words(kickctl, arguments, status, wor
     code, out, err = kickctl("plan", *arguments)
     assert (code, out) == (status, "")
     assert words in err
+
+
+# kickctl plan --search.
+
+
+def test_a_search_ranks_pulses_beside_the_papers_kicks_with_margins_and_odds(kickctl, monkeypatch):
+    monkeypatch.setattr("host.kicking.search.AMPLITUDES", (("beta", (1.0,)),))
+    monkeypatch.setattr("host.kicking.search_margins.STEPS", (0.9,))
+    status, out, _ = kickctl("plan", "--to", "backward", "--search", "shortest", "--json")
+    result = json.loads(out)
+    assert (status, result["search"], result["period_rad"]) == (0, "shortest", pi / 2)
+    (best,) = result["found"]
+    assert best["kick"] == {"mode": "pulse", "param": "beta", "value": 1.0, "ticks": 3}
+    assert best["window_rad"] == [0.0, pi / 2]
+    membrane, position, phase = result["paper"]
+    assert [row["kick"]["mode"] for row in result["paper"]] == [MEMBRANE, POSITION, PHASE]
+    # The paper's inverted positions are this pulse, so all about them is the same.
+    assert {**position, "kick": None} == {**best, "kick": None}
+    assert position["at_any_phase"]["reversed"] >= 0.99 * position["at_any_phase"]["tried"]
+    assert (membrane["effort_s"], phase["effort_s"]) == (None, pytest.approx(0.09))
+    # With a tenth of the battery's voltage no wheel rolls, so nothing is reversed.
+    assert best["may_be_off"]["battery_v"][0] == 0.0
+    words = "\n".join(sentences(result, "backward", Params()))
+    assert "pulse of beta to 1, 3 ticks (90 ms), effort 0.09 s" in words
+    assert "kickctl kick --mode pulse --param beta --value 1 --ticks 3\n" in words
+
+
+def test_where_no_wheel_rolls_there_is_nothing_to_search(kickctl):
+    status, out, err = kickctl(
+        "plan", "--to", "backward", "--search", "least-effort", "--set", "k=0.1", "--seed", "1"
+    )
+    assert (status, out) == (1, "")
+    assert "no simulated wheel rolls steadily" in err
