@@ -57,6 +57,14 @@ def sized(options: argparse.Namespace, name: str, entry: Entry) -> dict[str, Any
     minutes = None if option == "minutes" else options.minutes
     flag = "--minutes"
     given = options_given(options, entry)
+    if swept := [key for key, value in given.items() if isinstance(value, list)]:
+        if options.quick or minutes is not None:
+            raise WrongUse(
+                f"{flag if minutes is not None else '--quick'} sizes one run, and --{swept[0]} has"
+                " several values",
+                f"leave it out, and say how large each run is with --{option}",
+            )
+        return {}
     if options.quick:
         minutes, flag = quick_minutes(name, entry, given), "--quick"
     if minutes is None:

@@ -46,10 +46,12 @@ def find(name: str) -> Found:
     _, works, figures = KINDS[kind]
     module = "." + name.replace("-", "_")
     work = cast("Experiment", importlib.import_module(works + module))
-    return Found(kind, entry, work, _drawing(figures + module))
+    return Found(kind, entry, work, drawing(figures + module))
 
 
-def _drawing(module: str) -> Draw:
+def drawing(module: str) -> Draw:
+    """The function that draws the figure of a module, and writes it."""
+
     def draw(rows: list[Row], findings: Findings, stem: Path) -> list[Path]:
         from host.figures.style import save
 

@@ -14,12 +14,14 @@ from host.errors import WrongUse
 from host.experiments.efforts import EFFORTS, in_words
 from host.link.addresses import SIM, make_link, sim_options
 from host.link.names import chosen, own_token
-from host.perform.catalogue import BODY, STUDY, find
+from host.perform.catalogue import BODY, STUDY, drawing, find
 from host.perform.robots import robots
+from host.perform.sweep import FAILURES, Sweep, forgiving
 from host.runs.cluster import require_scheduler
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.runs.runner import do_cells, finish, open_study, simulate
+from host.runs.sweep import axes, in_all, points
 from host.util.arguments import need_function, need_path, need_seed, need_text
 from host.util.extras import need
 from host.util.provenance import commit, sources
@@ -58,7 +60,8 @@ def perform(
         say: Called with messages for people.
         ask: Called before a real robot begins, with about how long it will be busy, s. It raises a
             KickctlError if that is too long.
-        arguments: The run's own options.
+        arguments: The run's own options. A list of numbers for one or two of them makes a sweep:
+            one run at all of these points.
 
     Returns:
         The summary, which is also in summary.json in the run's folder.
@@ -74,6 +77,9 @@ def perform(
         need_text("scheduler", scheduler, "the address of a Dask scheduler, as text")
     need_function("say", say, "a function that takes a text")
     options = complete_options(name, found.entry, arguments)
+    swept = axes(found.entry, options)
+    sweep = Sweep(name, swept) if swept else None
+    experiment = sweep or found.work
     settings: dict[str, Any] = {
         "experiment": name,
         "options": options,
@@ -94,20 +100,17 @@ def perform(
             # By value: your own motor of this name may have other constants tomorrow.
             settings["motor"] = asdict(setting.constants)
     settings["seed"] = setting.seed
-    batch = simulated is not None and found.work.simulate is not None
-    if scheduler and not batch:
-        raise WrongUse(
-            "--scheduler is for simulations, and this experiment runs on a robot",
-            "leave it out",
-        )
+    batch = simulated is not None and experiment.simulate is not None
     if scheduler:
-        require_scheduler(scheduler)  # before the run has a folder
-    cells = found.work.cells(options, batch=batch)
+        _require_cluster(scheduler, batch=batch)
+    cells = experiment.cells(options, batch=batch)
+    if swept:
+        say(f"{name}: {len(points(swept))} points, {in_all(swept)}")
     with open_study(out, settings, cells, say) as study:
-        if batch and found.work.simulate is not None:
+        if batch and experiment.simulate is not None:
             simulate(
                 name,
-                found.work.simulate,
+                experiment.simulate,
                 cells,
                 setting,
                 study,
@@ -116,17 +119,33 @@ def perform(
             )
         elif uri is not None and (missing := sum(cell not in study for cell in cells)):
             if simulated is None and name in EFFORTS:
-                busy_s = EFFORTS[name].seconds(options) * missing / len(cells)
+                whole_s = sum(EFFORTS[name].seconds({**options, **at}) for at in points(swept))
+                busy_s = whole_s * missing / len(cells)
                 say(f"{name}: about {in_words(busy_s)} on this robot")
                 ask(busy_s)
             logs = study.folder / "logs"
-            with robots(found.work, uri, setting, token, logs, say, take_over=take_over) as work:
-                do_cells(name, cells, study, work)
+            # On a real robot somebody may have stepped in: a cell that fails ends a sweep, too.
+            failures = () if simulated is None else FAILURES
+            with robots(experiment, uri, setting, token, logs, say, take_over=take_over) as work:
+                do_cells(name, cells, study, work if sweep is None else forgiving(work, failures))
         rows = study.rows(cells)
         # The commit says where results come from. It is no part of their key: it also changes with
         # files that compute nothing.
         about = {**settings, "commit": commit()}
-        return finish(name, rows, found.work.report(rows, setting), found.draw, study, about)
+        if sweep is None:
+            return finish(name, rows, found.work.report(rows, setting), found.draw, study, about)
+        rows = sweep.table(rows, setting)
+        draw = drawing("host.figures.sweep")
+        return finish("sweep", rows, sweep.report(rows, setting), draw, study, about)
+
+
+def _require_cluster(scheduler: str, *, batch: bool) -> None:
+    """Raise WrongUse, before the run has a folder, if no cluster can compute it."""
+    if not batch:
+        raise WrongUse(
+            "--scheduler is for simulations, and this experiment runs on a robot", "leave it out"
+        )
+    require_scheduler(scheduler)
 
 
 def _simulated(name: str, kind: str, uri: str) -> dict[str, str] | None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -25,6 +26,8 @@ from sim_motor.constants import Constants, load
 Cell = dict[str, Any]
 Row = dict[str, Any]
 Options = dict[str, Any]
+# Where a cell of a sweep says at which options it is.
+POINT = "at"
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,14 @@ class Setting:
     def preset(self) -> Preset:
         """What differs from the ordinary setting."""
         return PRESETS[self.options.get(OPTION.name, ORDINARY)]
+
+    def at(self, cell: Mapping[str, Any]) -> Setting:
+        """The setting of a cell. In a sweep it has the options of the cell's point."""
+        if POINT not in cell:
+            return self
+        setting = copy(self)  # with these constants: another computer's may differ
+        object.__setattr__(setting, "options", {**self.options, **cell[POINT]})
+        return setting
 
     def params(self) -> Params:
         """The robot's parameters in this setting."""

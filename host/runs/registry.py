@@ -6,19 +6,29 @@ This imports little, so that `kickctl --help` answers at once.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from numbers import Real
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.util.arguments import shown
-from host.util.numbers import Number
+from host.util.numbers import Values
+
+# What people read about sweeps below the options.
+SWEEPS = (
+    "Several values of one number or of two make a sweep, with one table and one figure for all:"
+    " --k 1,2,4 or --k 0.5:5:10 (start:stop:count, with both ends)."
+)
+# The units in help texts: ", s" at the end, or before brackets or another part of the sentence.
+_UNIT = re.compile(r", (rad/s|rad|s\^2|s|minutes)(?=$|[ ;,])")
 
 
 class Option(NamedTuple):
     """An option of a run: a number from `least` to `most`, or a word, one of `choices`.
 
     The default has the number's type. None is the default of a float that may be left out.
+    A list of numbers stands for a sweep: the run is done at each of them.
     """
 
     name: str
@@ -27,6 +37,12 @@ class Option(NamedTuple):
     most: float
     doc: str
     choices: tuple[str, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """The unit of a number, as its help text says it; empty for one without."""
+        found = _UNIT.search(self.doc)
+        return found[1] if found else ""
 
 
 class Entry(NamedTuple):
@@ -65,11 +81,19 @@ def _type(option: Option) -> type:
     return float if option.default is None else type(option.default)
 
 
-def _number(option: Option) -> Number:
-    return Number("", option.least, option.most, whole=isinstance(option.default, int))
+def _values(option: Option) -> Values:
+    return Values("", option.least, option.most, whole=isinstance(option.default, int))
 
 
 def _value(option: Option, value: Any) -> Any:
+    if isinstance(value, Iterable) and not isinstance(value, str) and not option.choices:
+        values = [_value(option, one) for one in value]
+        if not values or len(set(values)) < len(values):
+            raise WrongUse(
+                f"{option.name} cannot be {shown(value)}",
+                "a sweep takes one value or more, and each of them once",
+            )
+        return values
     if value is None and option.default is None:
         return None
     if option.choices:
@@ -94,11 +118,13 @@ def _value(option: Option, value: Any) -> Any:
 
 def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
     """Add a flag for each option of an entry, and the flags that all runs have."""
+    if any(not option.choices for option in entry.options):
+        parser.epilog = SWEEPS
     for option in entry.options:
         own: dict[str, Any] = (
             {"choices": option.choices}
             if option.choices
-            else {"type": _number(option), "metavar": "N"}
+            else {"type": _values(option), "metavar": "N"}
         )
         words = option.doc + ("" if option.default is None else f" (default {option.default})")
         parser.add_argument(

@@ -5,9 +5,12 @@ from __future__ import annotations
 import argparse
 import re
 from math import inf
+from typing import Any
 
 # Numbers that Python knows, and that nobody can use here.
 UNUSABLE = ("nan", "inf", "-inf")
+# More values of one option are a mistake.
+MOST_VALUES = 10_000
 _WHOLE = re.compile(r"[+-]?[0-9]{1,40}")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
@@ -61,6 +64,52 @@ class Number:
         elif self.least > -inf:
             number += f", {self.least:.10g} or more"
         return f"give {number}"
+
+
+class Values(Number):
+    """What an option takes that can be swept: a number, or several of them.
+
+    Several are separated by commas, and start:stop:count stands for evenly spaced ones, with both
+    ends: 0.1,0.25,0.5 or 0.1:1:10.
+    """
+
+    def __call__(self, text: str) -> Any:
+        """The number as a float or int, or several as a list of them.
+
+        Raises argparse.ArgumentTypeError.
+        """
+        parts = text.split(",")
+        if len(parts) == 1 and ":" not in text:
+            return super().__call__(text)
+        values: list[float] = []
+        for part in parts:
+            values += self._range(part) if ":" in part else [super().__call__(part)]
+        return values
+
+    def _range(self, text: str) -> list[float]:
+        """Evenly spaced numbers, as start:stop:count gives them."""
+        parts = text.split(":")
+        if len(parts) != len(("start", "stop", "count")):
+            raise argparse.ArgumentTypeError(
+                f"cannot be '{_short(text)}'; write start:stop:count, as in 0.1:1:10"
+            )
+        start, stop = (super(Values, self).__call__(part) for part in parts[:2])
+        count = parse_number(parts[2])
+        if not isinstance(count, int) or not 2 <= count <= MOST_VALUES:
+            raise argparse.ArgumentTypeError(
+                f"cannot be '{_short(text)}': its third part counts the values, from 2 to"
+                f" {MOST_VALUES}; write start:stop:count, as in 0.1:1:10"
+            )
+        # Twelve digits, so that 0.3 is no 0.30000000000000004.
+        values = [float(f"{start + (stop - start) * n / (count - 1):.12g}") for n in range(count)]
+        if not self.whole:
+            return values
+        if any(value != int(value) for value in values):
+            raise argparse.ArgumentTypeError(
+                f"cannot be '{_short(text)}', which is not in whole steps; {self.advice()}, or"
+                " choose another count"
+            )
+        return [int(value) for value in values]
 
 
 def _short(text: str) -> str:

@@ -116,9 +116,12 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     answers = []
     for first, degrees in ((one[0], "0°, 90°, 180°, 270°"), (one[1], "45°, 135°, 225°, 315°")):
         answers.append(Answer(f"at {degrees}", first["kind"]))
-        for real, imaginary in eigenvalues(first):
-            angle = f" and {abs(imaginary):.6g} rad/s" if imaginary else ""
-            answers.append(Answer("  eigenvalue", f"{real:.9g}/s{angle}"))
+        for number, (real, imaginary) in enumerate(eigenvalues(first), 1):
+            answers.append(Answer(f"  eigenvalue {number}, real part", real, None, "/s"))
+            if imaginary:
+                answers.append(
+                    Answer(f"  eigenvalue {number}, imaginary part", imaginary, None, "rad/s")
+                )
     return Findings(
         [
             Claim(

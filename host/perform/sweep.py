@@ -1,0 +1,145 @@
+"""An experiment or study at each point of a sweep, as one run: its cells are those of all points.
+
+A point computes the same numbers as a run of its own with the same options and seed. If it fails,
+the table says why, and the sweep goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from host.client.robot import Robot
+from host.errors import KickctlError, NotDone, RobotFault, WrongUse
+from host.logs.log import Log
+from host.perform.catalogue import find
+from host.runs.answers import Answer
+from host.runs.contract import POINT, Cell, Findings, Options, Row, Setting
+from host.runs.runner import Outcome, Work
+from host.runs.sweep import (
+    Axis,
+    Numbers,
+    Point,
+    Quantity,
+    extremes,
+    failure,
+    place,
+    points,
+    quantities,
+)
+
+# How a point may fail: it makes no sense, the robot does not do it, or its numbers overflow.
+FAILURES = (WrongUse, NotDone, RobotFault, ArithmeticError, ValueError)
+# The keys of a cell beside POINT, of a row of a cell, and of a point that has none.
+_CELL, _ROW, _FAILED = "cell", "row", "failed"
+
+
+class Sweep:
+    """The experiment `name` at each point of a sweep. It is an Experiment.
+
+    Args:
+        name: The experiment's name.
+        swept: The options that have several values.
+    """
+
+    def __init__(self, name: str, swept: list[Axis]) -> None:
+        self._name, self._work = name, find(name).work
+        self._swept = swept
+        self.simulate: Callable[[Cell, Setting], list[Row]] | None = (
+            None if self._work.simulate is None else partial(_simulate, name)
+        )
+
+    def cells(self, options: Options, *, batch: bool) -> list[Cell]:
+        """The cells of all points. Raises WrongUse, of the first point, if no point has any."""
+        found: list[Cell] = []
+        refusals: list[KickctlError] = []
+        for point in points(self._swept):
+            try:
+                own = self._work.cells({**options, **point}, batch=batch)
+                found += [{POINT: point, _CELL: cell} for cell in own]
+            except WrongUse as error:
+                refusals.append(error)
+                found.append({POINT: point, _FAILED: _reason(error)})
+        if len(refusals) == len(found):
+            raise refusals[0]
+        return found
+
+    def world(self, cell: Cell) -> dict[str, str]:
+        """What surrounds the robot in this cell."""
+        return self._work.world(cell[_CELL])
+
+    def trial(self, cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
+        """Do one cell on a robot."""
+        rows = self._work.trial(cell[_CELL], robot, log, setting.at(cell))
+        return [{_ROW: row} for row in rows]
+
+    def table(self, rows: list[Row], setting: Setting) -> list[Row]:
+        """A row for each point and quantity. A point that failed has one row, which says why."""
+        by_point: dict[tuple[float, ...], list[Row]] = {}
+        for row in rows:
+            by_point.setdefault(tuple(row[POINT].values()), []).append(row)
+        return [
+            {**point, **quantity}
+            for point in points(self._swept)
+            for quantity in self._quantities(point, by_point[tuple(point.values())], setting)
+        ]
+
+    def _quantities(self, point: Point, rows: list[Row], setting: Setting) -> list[Quantity]:
+        for row in rows:
+            if _FAILED in row:
+                return [failure(row[_FAILED])]
+        try:
+            own = [{**row[_CELL], **row[_ROW]} for row in rows]
+            return quantities(self._work.report(own, setting.at({POINT: point})), point)
+        except FAILURES as error:
+            return [failure(_reason(error))]
+
+    def report(self, rows: list[Row], setting: Setting) -> Findings:
+        """The findings from the table: its rows, and where each quantity is extreme. No claims."""
+        answers = extremes(rows, self._swept)
+        failed = [row for row in rows if row["failed"]]
+        if failed:
+            first = f"at {place(failed[0], self._swept)}: {failed[0]['failed']}"
+            answers.append(Answer("points that failed", f"{len(failed)}, the first {first}"))
+        names = [axis["name"] for axis in self._swept]
+        numbers: Numbers = {
+            "of": self._name,
+            "swept": self._swept,
+            "constants": {
+                name: value for name, value in setting.options.items() if name not in names
+            },
+            "rows": rows,
+        }
+        return Findings([], numbers, answers=answers)
+
+
+def _simulate(name: str, cell: Cell, setting: Setting) -> list[Row]:
+    """Compute one cell of the experiment at its point."""
+
+    def compute(cell: Cell) -> Outcome:
+        simulate = find(name).work.simulate
+        assert simulate is not None
+        return [{_ROW: row} for row in simulate(cell[_CELL], setting.at(cell))], []
+
+    return forgiving(compute)(cell)[0]
+
+
+def forgiving(work: Work, failures: tuple[type[Exception], ...] = FAILURES) -> Work:
+    """The same work, for which a cell that fails in one of these ways is a row that says why."""
+
+    def attempt(cell: Cell) -> Outcome:
+        if _FAILED in cell:
+            return [{}], []  # its row has the cell's reason
+        try:
+            return work(cell)
+        except failures as error:
+            return [{_FAILED: _reason(error)}], []
+
+    return attempt
+
+
+def _reason(error: Exception) -> str:
+    """Why a point failed, in words."""
+    if isinstance(error, KickctlError):
+        return "; ".join(filter(None, (error.message, error.hint)))
+    return f"{type(error).__name__}: {error}"
