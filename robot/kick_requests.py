@@ -9,6 +9,7 @@ from robot.kicks import (
     JUMP,
     MAX_JUMP,
     MAX_TICKS,
+    MAX_WAVEFORM,
     MODES,
     PHASE,
     POSITION,
@@ -18,6 +19,7 @@ from robot.kicks import (
     PULSED,
     RECTANGULAR,
     SMOOTH,
+    WAVEFORM,
     WHEELS,
     Kick,
     reversing_shift,
@@ -35,8 +37,20 @@ FIELDS = (
     "value",
     "variable",
     "delta",
+    "waveform",
 )
-_OWN_FIELDS = {PHASE: ("shift",), PULSE: ("param", "value"), JUMP: ("variable", "delta")}
+# The fields that only some modes have.
+_OWNERS = {
+    "shift": (PHASE,),
+    "param": (PULSE, WAVEFORM),
+    "value": (PULSE,),
+    "variable": (JUMP,),
+    "delta": (JUMP,),
+    "waveform": (WAVEFORM,),
+}
+_POTENTIALS = ("x1", "x2")
+# What a waveform may change.
+CHANGED = tuple(sorted(PULSED)) + _POTENTIALS
 
 
 def parse(request, directions, params, begin):
@@ -44,7 +58,7 @@ def parse(request, directions, params, begin):
 
     Args:
         request: A dict with id, mode and, as the mode needs them, wheel, ticks, shape, shift (rad),
-            param and value, variable and delta.
+            param and value, variable and delta, waveform.
         directions: The present direction of the left and the right wheel, from which a phase kick
             takes its sign if the request gives no shift.
         params: The robot's Params.
@@ -66,19 +80,8 @@ def parse(request, directions, params, begin):
         )
     mode = _choice(request, "mode", MODES, None)
     wheel = _choice(request, "wheel", WHEELS + ("both",), "both")
-    smooth = _choice(request, "shape", (RECTANGULAR, SMOOTH), RECTANGULAR) == SMOOTH
-    ticks = request.get("ticks", DEFAULT_TICKS[mode])
-    if isinstance(ticks, bool) or not isinstance(ticks, int) or not 1 <= ticks <= MAX_TICKS:
-        raise Refused(
-            "range",
-            "ticks cannot be {!r}".format(ticks),
-            "give a whole number from 1 to {}".format(MAX_TICKS),
-        )
+    ticks, smooth = _parse_length(request, mode)
     kick = Kick(identity, mode, WHEELS if wheel == "both" else (wheel,), ticks, smooth, begin=begin)
-    if mode in FROZEN_MODES and (ticks != 1 or smooth):
-        raise Refused(
-            "usage", "a {} kick is one jump in one tick".format(mode), "leave out ticks and shape"
-        )
     _reject_foreign(request, mode)
     if mode == POSITION:
         kick.pulse, kick.values = PULSE_BETA, (1.0, 1.0)
@@ -91,20 +94,46 @@ def parse(request, directions, params, begin):
     elif mode == PULSE:
         kick.pulse, kick.values = _parse_pulse(request, params)
     elif mode == JUMP:
-        kick.variable = _choice(request, "variable", ("x1", "x2"), None)
+        kick.variable = _choice(request, "variable", _POTENTIALS, None)
         kick.delta = _number(request, "delta", MAX_JUMP)
+    elif mode == WAVEFORM:
+        name = _choice(request, "param", CHANGED, None)
+        kick.waveform = _parse_waveform(request, name, params)
+        kick.ticks = len(kick.waveform)
+        kick.pulse = PULSED.get(name, kick.pulse)
+        kick.variable = name if name in _POTENTIALS else None
     return kick
 
 
+def _parse_length(request, mode):
+    """How many ticks a kick lasts, and whether its shape is smooth."""
+    smooth = _choice(request, "shape", (RECTANGULAR, SMOOTH), RECTANGULAR) == SMOOTH
+    ticks = request.get("ticks", DEFAULT_TICKS.get(mode, 1))
+    if isinstance(ticks, bool) or not isinstance(ticks, int) or not 1 <= ticks <= MAX_TICKS:
+        raise Refused(
+            "range",
+            "ticks cannot be {!r}".format(ticks),
+            "give a whole number from 1 to {}".format(MAX_TICKS),
+        )
+    if mode in FROZEN_MODES and (ticks != 1 or smooth):
+        raise Refused(
+            "usage", "a {} kick is one jump in one tick".format(mode), "leave out ticks and shape"
+        )
+    if mode == WAVEFORM and ("ticks" in request or smooth):
+        raise Refused(
+            "usage", "a waveform says its own length and shape", "leave out ticks and shape"
+        )
+    return ticks, smooth
+
+
 def _reject_foreign(request, mode):
-    for owner in sorted(_OWN_FIELDS):
-        for name in _OWN_FIELDS[owner]:
-            if owner != mode and request.get(name) is not None:
-                raise Refused(
-                    "usage",
-                    "{} does not belong to a {} kick".format(name, mode),
-                    "it belongs to mode " + owner,
-                )
+    for name in sorted(_OWNERS):
+        if mode not in _OWNERS[name] and request.get(name) is not None:
+            raise Refused(
+                "usage",
+                "{} does not belong to a {} kick".format(name, mode),
+                "it belongs to mode " + " or ".join(_OWNERS[name]),
+            )
 
 
 def _parse_pulse(request, params):
@@ -115,13 +144,42 @@ def _parse_pulse(request, params):
             "value is missing",
             "give the value that {} takes at the pulse's height".format(name),
         )
-    if name in TABLE:
-        value = check_value(name, request.get("value"))
-        if name == "tau_s":
-            check_step(params.tick_s, value)
-    else:
-        value = _number(request, "value", 2 * pi if name == "shift_rad" else 1.0)
+    value = _check_changed(request, name, params)
     return PULSED[name], (value, value)
+
+
+def _check_changed(request, name, params):
+    """The value in a request of what a kick changes; x1 and x2 change by it."""
+    if name not in TABLE:
+        limits = {"shift_rad": 2 * pi, "beta": 1.0}
+        return _number(request, "value", limits.get(name, MAX_JUMP))
+    value = check_value(name, request["value"])
+    if name == "tau_s":
+        check_step(params.tick_s, value)
+    return value
+
+
+def _parse_waveform(request, name, params):
+    values = request.get("waveform")
+    if not isinstance(values, (list, tuple)) or not 0 < len(values) <= MAX_WAVEFORM:
+        raise Refused(
+            "range" if isinstance(values, (list, tuple)) else "usage",
+            "a waveform has one value for each tick, 1 to {} of them".format(MAX_WAVEFORM),
+            "give a list of numbers",
+        )
+    checked = []
+    for value in values:
+        try:
+            checked.append(_check_changed({"value": value}, name, params))
+        except Refused as refusal:
+            raise Refused(
+                refusal.code,
+                "value {} of the waveform of {}: {}".format(
+                    len(checked) + 1, name, refusal.message
+                ),
+                refusal.hint,
+            ) from refusal
+    return tuple(checked)
 
 
 def _number(request, name, limit):

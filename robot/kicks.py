@@ -9,7 +9,8 @@ functions use nothing but `math` and scalars, so that numba compiles them unchan
 from math import cos, pi, sin
 
 MEMBRANE, POSITION, PHASE, PULSE, JUMP = "membrane", "position", "phase", "pulse", "jump"
-MODES = (MEMBRANE, POSITION, PHASE, PULSE, JUMP)
+WAVEFORM = "waveform"
+MODES = (MEMBRANE, POSITION, PHASE, PULSE, JUMP, WAVEFORM)
 FROZEN_MODES = (MEMBRANE, JUMP)
 WHEELS = ("left", "right")
 RECTANGULAR, SMOOTH = "rectangular", "smooth"
@@ -26,11 +27,13 @@ PULSED = {
     "shift_rad": PULSE_SHIFT,
 }
 # No kick, in the numbers of Kick.numbers.
-NO_KICK = (NO_ACTION, 0, 0, NO_PULSE, False, 0.0)
+NO_KICK = (NO_ACTION, 0, 0, NO_PULSE, False, 0.0, ())
 
 DEFAULT_SHIFT_RAD = 3 * pi / 4
 DEFAULT_TICKS = {MEMBRANE: 1, POSITION: 3, PHASE: 4, PULSE: 4, JUMP: 1}
 MAX_TICKS = 10000
+# With this many values a request and an event fit into a frame.
+MAX_WAVEFORM = 100
 MAX_JUMP = 2.0
 X_LIMIT = 10.0
 
@@ -173,11 +176,13 @@ def apply_kick(kick, tick, x1, x2, a, tau_s, k):
         `seen_positions`. In a tick in which the kick does not act, all is as before and these are
         0.
     """
-    action, begin, ticks, pulse, smooth, value = kick
+    action, begin, ticks, pulse, smooth, value, waveform = kick
     beta = 0.0
     shift_rad = 0.0
     age = tick - begin
     if 0 <= age < ticks:
+        if len(waveform):
+            value = waveform[age]
         if action == QUENCH:
             weight = pulse_weight(age, ticks, smooth)
             a, tau_s, k, beta, shift_rad = apply_pulse(pulse, value, weight, a, tau_s, k)
@@ -201,9 +206,11 @@ class Kick(object):
         smooth: Whether a pulse is sin^2 shaped, else it is rectangular.
         pulse: The number of the parameter that is pulsed, or NO_PULSE.
         values: That parameter at the pulse's height, on the left and the right wheel.
-        variable: "x1" or "x2" if the kick is a jump, else None.
+        variable: "x1" or "x2" if the kick moves a membrane potential, else None.
         delta: How far that jumps, 1.
         begin: The number of its first tick.
+        waveform: One value for each tick: of the pulsed parameter, or how far the potential jumps
+            then. Empty for other modes.
     """
 
     __slots__ = (
@@ -217,6 +224,7 @@ class Kick(object):
         "variable",
         "delta",
         "begin",
+        "waveform",
     )
 
     def __init__(
@@ -231,6 +239,7 @@ class Kick(object):
         variable=None,
         delta=0.0,
         begin=0,
+        waveform=(),
     ):
         self.id = id
         self.mode = mode
@@ -242,6 +251,7 @@ class Kick(object):
         self.variable = variable
         self.delta = delta
         self.begin = begin
+        self.waveform = tuple(waveform)
 
     def acts_at(self, tick):
         """Whether the kick acts in this tick."""
@@ -254,8 +264,8 @@ class Kick(object):
             index: 0 for a left wheel, 1 for a right one.
 
         Returns:
-            (action, begin, ticks, pulse, smooth, value). The value is a pulse's height or how far a
-            potential jumps.
+            (action, begin, ticks, pulse, smooth, value, waveform). The value is a pulse's height or
+            how far a potential jumps. Values of a waveform stand in its place, one a tick.
         """
         if self.pulse:
             action, value = QUENCH, self.values[index]
@@ -263,8 +273,12 @@ class Kick(object):
             action, value = INVERT, 0.0
         else:
             action, value = (JUMP_X1 if self.variable == "x1" else JUMP_X2), self.delta
-        return action, self.begin, self.ticks, self.pulse, self.smooth, value
+        return action, self.begin, self.ticks, self.pulse, self.smooth, value, self.waveform
 
     def as_dict(self):
-        """The kick as plain data, from which `Kick(**data)` is the same kick."""
-        return {name: getattr(self, name) for name in self.__slots__}
+        """The kick as plain data, from which `Kick(**data)` is the same kick.
+
+        Hosts of older releases know no waveform, so a kick without one does not name it.
+        """
+        names = self.__slots__ if self.waveform else self.__slots__[:-1]
+        return {name: getattr(self, name) for name in names}

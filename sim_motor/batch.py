@@ -33,7 +33,8 @@ _clamp_step = compiled(clamp_step)
 
 CHANNELS = ("phi_rad", "x1", "x2", "force", "torque", "duty_pct")
 ParamNumbers = tuple[float, float, float, int, float, float, float, float]
-KickNumbers = tuple[int, int, int, int, bool, float]
+KickNumbers = tuple[int, int, int, int, bool, float, Array]
+VALUE = 5  # where a kick's value stands in its numbers
 PHASE_SHIFT = nan  # as a kick's value: the shift that reverses this wheel
 
 
@@ -121,6 +122,13 @@ def param_numbers(params: Params) -> ParamNumbers:
     )
 
 
+def kick_numbers(kick: Kick | None, index: int = 0) -> KickNumbers:
+    """The numbers of a kick, or of none, for compiled code; its value is that of this wheel."""
+    numbers = NO_KICK if kick is None else kick.numbers(index)
+    action, begin, ticks, pulse, smooth, value, waveform = numbers
+    return action, begin, ticks, pulse, smooth, value, np.array(waveform, dtype=float)
+
+
 def run(
     wheels: int,
     ticks: int,
@@ -184,7 +192,8 @@ def run(
             f"a duty acts {latency_s} s after it is written, which is past the next tick: use"
             " longer ticks"
         )
-    at_once = start.duties is not None and kick is not None and not isnan(kick.numbers(0)[-1])
+    numbers = kick_numbers(kick)
+    at_once = start.duties is not None and not isnan(numbers[VALUE])
     earliest = 0 if at_once else DIRECTION_TICKS + 1
     if kick is not None and not earliest <= kick.begin < ticks - DIRECTION_TICKS:
         raise ValueError(
@@ -205,7 +214,7 @@ def run(
         duties,
         times,
         param_numbers(params),
-        NO_KICK if kick is None else kick.numbers(0),
+        numbers,
         tables(motors),
         np.stack([motor.scalars() for motor in motors]),
         np.ascontiguousarray(volts),
@@ -240,7 +249,7 @@ def control(
         dt_s: Its time step, s.
         x1: First membrane potential, 1.
         x2: Second membrane potential, 1.
-        kick: As Kick.numbers returns it.
+        kick: As `kick_numbers` returns it.
         params: As `param_numbers` returns them.
 
     Returns:
@@ -274,10 +283,10 @@ def _travel(phis: Array, tick: int) -> float:
 @jit
 def signed(kick: KickNumbers, tick: int, phis: Array) -> KickNumbers:
     """The kick in its first tick, with the sign that reverses this wheel if it has none."""
-    action, begin, ticks, pulse, smooth, value = kick
+    action, begin, ticks, pulse, smooth, value, waveform = kick
     if tick == begin and isnan(value):
         value = _reversing_shift(_direction(_travel(phis, tick - 1)))
-    return action, begin, ticks, pulse, smooth, value
+    return action, begin, ticks, pulse, smooth, value, waveform
 
 
 @jit

@@ -13,13 +13,15 @@ from math import isnan, nan, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from robot.kicks import DIRECTION_TICKS, NO_KICK, WHEELS, Kick
+from robot.kicks import DIRECTION_TICKS, WHEELS, Kick
 from robot.params import Params
 from sim_motor.batch import (
     CHANNELS,
+    VALUE,
     KickNumbers,
     ParamNumbers,
     control,
+    kick_numbers,
     param_numbers,
     random_start,
     random_times,
@@ -142,12 +144,12 @@ def run(
             " use longer ticks"
         )
     left_kick, right_kick = (
-        kick.numbers(side) if kick is not None and name in kick.wheels else NO_KICK
+        kick_numbers(kick if kick is not None and name in kick.wheels else None, side)
         for side, name in enumerate(WHEELS)
     )
     if (
         kick is not None
-        and (isnan(left_kick[-1]) or isnan(right_kick[-1]))
+        and (isnan(left_kick[VALUE]) or isnan(right_kick[VALUE]))
         and kick.begin <= DIRECTION_TICKS
     ):
         raise ValueError(f"in tick {kick.begin} the wheels have no direction yet: kick later")

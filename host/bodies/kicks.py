@@ -12,7 +12,7 @@ from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
 from robot.errors import Refused
 from robot.kick_requests import parse
-from robot.kicks import FROZEN_MODES, Kick
+from robot.kicks import FROZEN_MODES, WAVEFORM, Kick
 from robot.params import Params
 
 if TYPE_CHECKING:
@@ -105,6 +105,11 @@ def parse_kick(text: str, wheels: Sequence[str]) -> ScheduledKick:
         raise WrongUse(
             f"there is no wheel '{wheel}'",
             f"write wheel={ALL}, left, right, car0, or one of {', '.join(wheels)}",
+        )
+    if fields.get("mode") == WAVEFORM:
+        raise WrongUse(
+            "a waveform is made for a robot's ticks, and a body has none",
+            "write mode=pulse with shape=rectangular or shape=smooth",
         )
     default_s = None if fields.get("mode") in FROZEN_MODES else KICK_S
     scheduled = ScheduledKick(time_s, chosen, fields.pop("seconds", default_s), fields)

@@ -205,9 +205,9 @@ class Robot(Watcher):
         """Kick the robot, and do not wait for what comes of it.
 
         Args:
-            mode: 'membrane', 'position', 'phase', 'pulse' or 'jump'.
+            mode: 'membrane', 'position', 'phase', 'pulse', 'jump' or 'waveform'.
             details: What `kickctl kick` takes: ticks, wheel, shift (rad), shape, param, value,
-                variable, delta.
+                variable, delta; and waveform, a list of one value for each tick.
 
         Returns:
             The tick in which the kick began.

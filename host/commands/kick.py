@@ -5,21 +5,23 @@ from pathlib import Path
 from typing import Any
 
 from host.commands._options import add_take_over
+from host.commands._outputs import path_argument
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
 from host.util.numbers import Number
 from robot.errors import Refused
-from robot.kick_requests import parse
+from robot.kick_requests import CHANGED, parse
 from robot.kicks import (
     DEFAULT_TICKS,
     MAX_JUMP,
     MAX_TICKS,
+    MAX_WAVEFORM,
     MODES,
-    PULSED,
     RECTANGULAR,
     SMOOTH,
+    WAVEFORM,
     WHEELS,
 )
 from robot.params import Params
@@ -30,7 +32,9 @@ HELP = "kick the robot, and say whether it reversed"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The kick, and whether to wait until the wheels have settled."""
     lengths = ", ".join(f"{mode} {ticks}" for mode, ticks in DEFAULT_TICKS.items())
-    parser.add_argument("--mode", choices=MODES, required=True, help="which kick")
+    parser.add_argument(
+        "--mode", choices=MODES, help="which kick; with --waveform it may be left out"
+    )
     parser.add_argument(
         "--ticks",
         type=Number("control periods", 1, MAX_TICKS, whole=True),
@@ -53,7 +57,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--shape", choices=(RECTANGULAR, SMOOTH), help="shape of a pulse (default rectangular)"
     )
     parser.add_argument(
-        "--param", choices=sorted(PULSED), help="pulse: the parameter that it changes"
+        "--param",
+        choices=CHANGED,
+        help="pulse, waveform: the parameter that it changes; a waveform may also add to x1 or x2",
+    )
+    parser.add_argument(
+        "--waveform",
+        type=path_argument,
+        metavar="FILE",
+        help=(
+            f"waveform: a text or CSV file with 1 to {MAX_WAVEFORM} values, one for each of as many"
+            " control periods, in the unit of the parameter; its first line may name that, as in"
+            " shift_rad"
+        ),
     )
     parser.add_argument(
         "--value",
@@ -89,15 +105,12 @@ def run(options: argparse.Namespace) -> int:
         wait_settled,
     )
 
-    details = {
-        name: getattr(options, name)
-        for name in ("ticks", "shift", "shape", "param", "value", "variable", "delta")
-    }
-    _check(options.mode, options.wheel, details)
+    details = _details(options)
+    ticks = _check(options.mode, options.wheel, details)
     with robot_of(options, moves=True, sends="kick") as robot:
         require_running(robot)
         require_control(robot)
-        with recorded(robot, _in_name(options), of_kick=True) as recording:
+        with recorded(robot, _in_name(options, ticks), of_kick=True) as recording:
             if not options.now and not wait_settled(robot):
                 raise NotDone(
                     "the wheels did not settle",
@@ -127,17 +140,37 @@ def in_one_line(result: dict[str, Any]) -> str:
     return f"{done}: {before} before the kick, {after} after it; log {result['log']}"
 
 
-def _in_name(options: argparse.Namespace) -> str:
+def _details(options: argparse.Namespace) -> dict[str, Any]:
+    """The kick's fields beside its mode, which --waveform gives if nothing else does.
+
+    Raises WrongUse.
+    """
+    names = ("ticks", "shift", "shape", "param", "value", "variable", "delta")
+    details = {name: getattr(options, name) for name in names}
+    if options.waveform is None:
+        if options.mode is None:
+            raise WrongUse("--mode is missing", f"it is one of {', '.join(MODES)}")
+        if options.mode == WAVEFORM:
+            raise WrongUse("the waveform is missing", "name its file: --waveform FILE")
+        return details
+    from host.kicking.waveform import read_waveform
+
+    options.mode = options.mode or WAVEFORM
+    details["param"], details["waveform"] = read_waveform(options.waveform, options.param)
+    return details
+
+
+def _in_name(options: argparse.Namespace, ticks: int) -> str:
     """The kick in its log's name, as in kick-phase-4-ticks-left."""
-    ticks = options.ticks or DEFAULT_TICKS[options.mode]
     side = "" if options.wheel == "both" else f"-{options.wheel}"
     return f"kick-{options.mode}-{ticks}-tick{'s' if ticks > 1 else ''}{side}"
 
 
-def _check(mode: str, wheel: str, details: dict[str, object]) -> None:
-    """Raise WrongUse for a kick that the robot would refuse, before anything is done."""
+def _check(mode: str, wheel: str, details: dict[str, object]) -> int:
+    """The kick's length, ticks. Raises WrongUse for a kick that the robot would refuse."""
     request = {name: value for name, value in details.items() if value is not None}
     try:
-        parse({"id": "check", "mode": mode, "wheel": wheel, **request}, (1, 1), Params(), 0)
+        kick = parse({"id": "check", "mode": mode, "wheel": wheel, **request}, (1, 1), Params(), 0)
     except Refused as refusal:
         raise WrongUse(refusal.message, refusal.hint) from refusal
+    return int(kick.ticks)

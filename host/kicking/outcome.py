@@ -10,7 +10,7 @@ from host.client.robot import Robot
 from host.errors import NotDone, RobotFault
 from host.logs.log import Log
 from host.logs.motion import HEADINGS, heading, settled, settling_s
-from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSED, WHEELS
+from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSE, PULSED, WHEELS
 from robot.record import Record
 from sim_motor.settling import WINDOW_S
 
@@ -44,7 +44,7 @@ class Outcome:
     Attributes:
         mode: The kick's mode.
         ticks: Its length, control periods.
-        shift_rad: The shift of a phase kick: a number, or one for each wheel if their signs differ;
+        shift_rad: The shift of a phase kick or pulse: a number, or one for each wheel if their signs differ;
             None for other modes.
         wheel: left, right or both.
         applied_tick: The tick in which the kick began.
@@ -192,7 +192,7 @@ def judge(
 
 
 def _shift(kick: Mapping[str, Any]) -> float | dict[str, float] | None:
-    if kick["mode"] != PHASE and kick["pulse"] != PULSED["shift_rad"]:
+    if kick["mode"] != PHASE and (kick["mode"], kick["pulse"]) != (PULSE, PULSED["shift_rad"]):
         return None
     shifts = {side: float(kick["values"][WHEELS.index(side)]) for side in kick["wheels"]}
     values = set(shifts.values())

@@ -213,7 +213,7 @@ class Body:
             wheel = self.wheels.index(name)
             numbers = kick.numbers(wheel % len(SIDES))
             if kick.pulse:
-                _, *own.whole[:, wheel], own.value[wheel] = numbers
+                _, *own.whole[:, wheel], own.value[wheel], _ = numbers
             else:
                 own.x1[wheel], own.x2[wheel], *_ = apply_kick(
                     numbers, kick.begin, own.x1[wheel], own.x2[wheel], 0.0, 0.0, 0.0

@@ -257,3 +257,39 @@ def test_a_row_of_the_table_is_one_tick_as_it_happened(kickctl):
     assert compared > 60
     assert {row["kick"] for row in rows} == {"", "phase"}
     assert {row["state"] for row in rows} <= set(STATES)
+
+
+def test_a_waveform_from_a_file_reverses_and_its_log_replays_bit_for_bit(kickctl):
+    file = kickctl.folder / "push.csv"
+    file.write_text("beta\n0.9\n1\n1\n0.8\n", encoding="utf-8")
+    status, out, _ = kickctl("kick", "--waveform", "push.csv", "--json", "--seed", "5")
+    result = json.loads(out)
+    assert (status, result["mode"], result["ticks"], result["reversed"]) == (
+        0,
+        "waveform",
+        4,
+        True,
+    )
+    assert "waveform-4-ticks" in result["log"]
+    log = Log.load(kickctl.folder / result["log"])
+    assert log.kicks()[-1][1]["waveform"] == [0.9, 1.0, 1.0, 0.8]
+    assert [KICK_NAMES[record.kick] for record in log.records].count("waveform") == 4
+    assert json.loads(kickctl("log", "replay", result["log"], "--json")[1])["worst"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "--mode is missing"),
+        (("--mode", "waveform"), "name its file: --waveform FILE"),
+        (("--waveform", "none.txt"), "cannot be read"),
+        (("--waveform", "big.txt"), "value 2 of the waveform of k: k cannot be 101.0"),
+        (("--waveform", "big.txt", "--mode", "phase"), "param does not belong to a phase kick"),
+        (("--waveform", "big.txt", "--ticks", "2"), "says its own length"),
+    ],
+)
+def test_a_kick_without_a_form_and_a_wrong_waveform_are_refused_first(kickctl, arguments, words):
+    (kickctl.folder / "big.txt").write_text("k\n1\n101\n", encoding="utf-8")
+    status, out, err = kickctl("kick", *arguments)
+    assert (status, out) == (2, "")
+    assert words in err

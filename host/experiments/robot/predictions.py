@@ -26,7 +26,7 @@ from host.kicking.robot_motor import motor_of
 from host.logs.log import Log
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
-from robot.kicks import FROZEN_MODES, JUMP, MAX_JUMP, MODES, PHASE, PULSE, SMOOTH, WHEELS
+from robot.kicks import FROZEN_MODES, JUMP, MAX_JUMP, MODES, PHASE, PULSE, SMOOTH, WAVEFORM, WHEELS
 
 simulate = None
 
@@ -163,7 +163,11 @@ def random_kick(number: int, rng: np.random.Generator) -> dict[str, Any]:
     """A kick, as robot.kick_requests.parse takes it. Modes take turns; the rest is by chance."""
     mode = MODES[number % len(MODES)]
     kick: dict[str, Any] = {"mode": mode}
-    if mode not in FROZEN_MODES:
+    if mode == WAVEFORM:
+        kick["param"] = str(rng.choice(list(PULSES)))
+        values = rng.uniform(*PULSES[kick["param"]], int(rng.choice(LENGTHS)))
+        kick["waveform"] = values.tolist()
+    elif mode not in FROZEN_MODES:
         kick["ticks"] = int(rng.choice(LENGTHS))
         if rng.random() < 0.25:
             kick["shape"] = SMOOTH

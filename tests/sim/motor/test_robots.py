@@ -62,7 +62,7 @@ def run_loop(seed, scene, changes, request=None, later=None):
             3,
             Scene(walls=3.0, across=0.6, bumper=0.3, axle=400.0),
             {"k": 8.0},
-            {"mode": "phase", "ticks": 4, "wheel": "left"},
+            {"mode": "waveform", "param": "k", "waveform": [0, 40, 2], "wheel": "left"},
             None,
         ),
     ],

@@ -8,12 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.errors import Refused
-from robot.kick_requests import parse
+from robot.kick_requests import FIELDS, parse
 from robot.kicks import (
+    MAX_WAVEFORM,
     MODES,
     PULSED,
     REST_TRAVEL_RAD,
     WHEELS,
+    X_LIMIT,
     Kick,
     direction,
     pulse_weight,
@@ -21,8 +23,7 @@ from robot.kicks import (
 )
 from robot.params import TABLE, Params
 from robot.wheel import Wheel
-
-FIELDS = ("id", "mode", "wheel", "ticks", "shape", "shift", "param", "value", "variable", "delta")
+from robot.wire import MAX_PAYLOAD
 
 scalars = st.one_of(
     st.none(),
@@ -64,6 +65,14 @@ pulses = st.fixed_dictionaries(
     },
     optional={"shape": st.just("smooth"), "ticks": st.integers(1, 120)},
 )
+waveforms = st.fixed_dictionaries(
+    {
+        "id": st.just("k"),
+        "mode": st.just("waveform"),
+        "param": st.sampled_from((*sorted(PULSED), "x1", "x2")),
+        "waveform": st.lists(st.floats(0.1, 1.0) | st.floats(-2.5, 2.5), max_size=9),
+    },
+)
 
 
 def ask(**request):
@@ -71,7 +80,7 @@ def ask(**request):
 
 
 @given(
-    wild | likely | pulses,
+    wild | likely | pulses | waveforms,
     st.tuples(*[st.sampled_from((-1, 0, 1))] * 2),
     st.sampled_from((0.03, 0.09)),
 )
@@ -92,10 +101,10 @@ def test_any_request_is_refused_or_gives_a_kick_that_runs(request, directions, d
             wheel.phi = 0.1 * tick
             torque = wheel.step(tick, dt_s, params, kick)
             assert isfinite(torque)
-            assert max(abs(wheel.x1), abs(wheel.x2)) <= 3.0
+            assert max(abs(wheel.x1), abs(wheel.x2)) <= (X_LIMIT if kick.waveform else 3.0)
 
 
-@given(likely)
+@given(likely | waveforms)
 def test_a_kick_as_data_is_the_kick(request):
     try:
         kick = parse(request, (1, -1), Params(), 9)
@@ -144,12 +153,64 @@ def test_a_kick_as_data_is_the_kick(request):
         ({"mode": "jump", "variable": "x1"}, "usage"),
         ({"mode": "jump", "variable": "phi", "delta": 1.0}, "usage"),
         ({"mode": "jump", "variable": "x1", "delta": 2.1}, "range"),
+        ({"mode": "waveform", "param": "k"}, "usage"),
+        ({"mode": "waveform", "waveform": [1.0]}, "usage"),
+        ({"mode": "waveform", "param": "rods", "waveform": [1]}, "usage"),
+        ({"mode": "waveform", "param": "k", "waveform": [1.0], "ticks": 1}, "usage"),
+        ({"mode": "waveform", "param": "k", "waveform": [1.0], "shape": "smooth"}, "usage"),
+        ({"mode": "pulse", "param": "k", "value": 1.0, "waveform": [1.0]}, "usage"),
+        ({"mode": "pulse", "param": "x1", "value": 1.0}, "usage"),
+        ({"mode": "waveform", "param": "k", "waveform": 8.0}, "usage"),
+        ({"mode": "waveform", "param": "k", "waveform": []}, "range"),
+        ({"mode": "waveform", "param": "k", "waveform": [8.0] * 101}, "range"),
+        ({"mode": "waveform", "param": "k", "waveform": [8.0, -1.0]}, "range"),
+        ({"mode": "waveform", "param": "x1", "waveform": [0.0, nan]}, "range"),
+        ({"mode": "waveform", "param": "tau_s", "waveform": [0.25, 0.05]}, "range"),
     ],
 )
 def test_what_is_wrong_is_refused(request_, code):
     with pytest.raises(Refused) as refused:
         ask(**request_)
     assert refused.value.code == code
+
+
+def run_wheel(kick):
+    """The states of a wheel under a kick, tick by tick."""
+    wheel, states = Wheel("left"), []
+    wheel.x1, wheel.x2 = 0.5, -0.5
+    for tick in range(12):
+        wheel.phi = 0.3 * tick
+        states.append((wheel.step(tick, 0.03, Params(), kick), wheel.x1, wheel.x2))
+    return states
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "shape"),
+    [("k", 2.0, "rectangular"), ("shift_rad", 2.0, "smooth"), ("beta", 1.0, "smooth")],
+)
+def test_a_waveform_of_a_pulses_values_is_that_pulse(name, value, shape):
+    pulse = ask(mode="pulse", param=name, value=value, ticks=5, shape=shape)
+    values = [value * pulse_weight(age, 5, shape == "smooth") for age in range(5)]
+    waveform = ask(mode="waveform", param=name, waveform=values)
+    assert (waveform.ticks, waveform.begin) == (5, 3)
+    assert run_wheel(waveform) == run_wheel(pulse)
+
+
+def test_a_waveform_of_a_potential_adds_to_it_in_each_tick():
+    twice = run_wheel(ask(mode="waveform", param="x2", waveform=[0.0, -0.7]))
+    once = ask(mode="jump", variable="x2", delta=-0.7)
+    once.begin = 4
+    assert twice == run_wheel(once)
+
+
+def test_the_longest_waveform_fits_into_frames_with_all_else():
+    """A request and the snapshot, in which a kick stands beside the parameters."""
+    longest = [-1.2345678901234567e-300] * MAX_WAVEFORM
+    request = {"id": "x" * 64, "mode": "waveform", "param": "shift_rad", "waveform": longest}
+    kick = parse(request, (1, 1), Params(), 0)
+    event = {"event": "snapshot", "params": Params().values(), "kick": kick.as_dict()}
+    for message in ({"id": 2**63, "do": "kick", "kick": request}, event):
+        assert len(json.dumps(message)) < MAX_PAYLOAD - 500
 
 
 def test_the_defaults_are_the_papers():
