@@ -44,8 +44,8 @@ class Outcome:
     Attributes:
         mode: The kick's mode.
         ticks: Its length, control periods.
-        shift_rad: The shift of a phase kick or pulse: a number, or one for each wheel if their signs differ;
-            None for other modes.
+        shift_rad: The shift of a phase kick or pulse: a number, or one for each wheel if their
+            signs differ; None for other modes.
         wheel: left, right or both.
         applied_tick: The tick in which the kick began.
         before: The heading of each wheel before the kick.

@@ -23,7 +23,7 @@ from host.theory.studies import tick as study
 from host.theory.studies.tick_rows import ORDERS, growth_of
 from robot.controller import target_position
 from robot.kick_requests import parse
-from robot.kicks import PHASE, POSITION
+from robot.kicks import PHASE, POSITION, WAVEFORM
 from robot.params import Params
 from tests.paper.theory.table import rows_of
 
@@ -97,17 +97,25 @@ def test_a_quarter_turn_and_a_mirror_change_nothing(clock):
 
 @pytest.mark.parametrize("clock", [clock for clock in CLOCKS if clock.fresh])
 @pytest.mark.parametrize(
-    "request_", [None, {"mode": POSITION, "ticks": 5}, {"mode": PHASE, "ticks": 4, "shift": -2.0}]
+    ("request_", "acting"),
+    [
+        (None, []),
+        ({"mode": POSITION, "ticks": 5}, 5 * [(8.0, sampled.Seen(1.0, 0.0))]),
+        ({"mode": PHASE, "ticks": 4, "shift": -2.0}, 4 * [(8.0, sampled.Seen(0.0, -2.0))]),
+        (
+            {"mode": WAVEFORM, "param": "k", "waveform": [0.0, 40.0, 2.5]},
+            [(k, sampled.PLAIN) for k in (0.0, 40.0, 2.5)],
+        ),
+    ],
 )
-def test_the_map_is_what_the_robots_own_wheel_does(clock, request_):
+def test_the_map_is_what_the_robots_own_wheel_does(clock, request_, acting):
     wheel, state = Wheel(k=8.0), random_states(1)
     kick = request_ and parse({"id": "test", **request_}, (1, 1), Params(), 7)
     phi, omega = sampled.as_robot(state[:, 0].tolist(), wheel, clock, 31, kick)
     ended = sampled.advance(state, wheel.columns(1), clock, 7)
-    if kick:
-        seen = sampled.Seen(1.0, 0.0) if request_["mode"] == POSITION else sampled.Seen(0.0, -2.0)
-        ended = sampled.advance(ended, wheel.columns(1), clock, kick.ticks, seen)
-    ended = sampled.advance(ended, wheel.columns(1), clock, 30 - 7 - (kick.ticks if kick else 0))
+    for k, seen in acting:
+        ended = sampled.advance(ended, Wheel(k=k).columns(1), clock, 1, seen)
+    ended = sampled.advance(ended, wheel.columns(1), clock, 30 - 7 - len(acting))
     assert ended[[PHI, OMEGA], 0].tolist() == pytest.approx([phi[30], omega[30]], rel=1e-10)
 
 
