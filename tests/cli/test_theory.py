@@ -86,6 +86,7 @@ def test_the_answer_is_a_table_and_json_has_the_same(kickctl):
         ("phase-diagram", "--I", "1e-8"),
         ("lyapunov", "--f", "0"),
         ("lyapunov-line", "--f", "0"),
+        ("section", "--a", "0"),
         ("tick", "--f", "0"),
     ],
 )

@@ -206,6 +206,18 @@ def rotation(wheel: Wheel, state: Array, field: str = "k") -> Point:
     return Curve(Shooting(wheel, ROTATION, field), _scales(wheel, value)).solve(guess, _ALONG)
 
 
+def rotation_by_formula(wheel: Wheel) -> Point:
+    """The rotation of a wheel, stable or not, from the paper's formula by Newton's method alone.
+
+    Raises:
+        NotDone: There is none near the formula.
+        WrongUse: There is no Hopf bifurcation.
+    """
+    start = turning_state(wheel)
+    guess = np.array([*start[[0, 1, OMEGA]], pi / 2 / start[OMEGA], wheel.k])
+    return Curve(Shooting(wheel, ROTATION), _scales(wheel, wheel.k)).solve(guess, _ALONG)
+
+
 def _scales(wheel: Wheel, value: float) -> Array:
     """The scales of the unknowns of Shooting, (5,)."""
     swinging = hopf(wheel).omega

@@ -15,6 +15,16 @@ F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel, s (its torque has no unit
 I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel, s^2 (its torque has no unit)")  # noqa: E741
 # The paper's constants, for which its claims are made.
 PAPER = {option.name: option.default for option in (A, TAU, F, I)}
+# The Poincare section (host.theory.analysis.sections).
+ON = Option(
+    "on",
+    "phi",
+    0.0,
+    0.0,
+    "the section; phi: sin(2 phi) = 0, the wheel passes a multiple of a quarter turn; omega: omega"
+    " = 0, it turns round",
+    ("phi", "omega"),
+)
 
 TABLE = {
     "fixpoints": Entry(
@@ -146,6 +156,25 @@ TABLE = {
             I,
             Option("k_to", 20.0, 1e-3, 1e4, "greatest k, without unit; the least is 0"),
             Option("tau_to", 1.5, 1e-3, 1e3, "greatest tau, s; the least is 0"),
+        ),
+    ),
+    "section": Entry(
+        "Poincare section and first-return map of a wheel, up to the symmetries, and its power"
+        " spectrum beside its cycle's frequency. Takes about 15 s",
+        (
+            A,
+            TAU._replace(default=1.0),
+            K._replace(default=15.0),
+            F,
+            I,
+            ON,
+            Option(
+                "seconds",
+                300.0,
+                10.0,
+                1e4,
+                "how long to follow each of eight wheels after it has settled, s",
+            ),
         ),
     ),
     "basins": Entry(

@@ -1,0 +1,147 @@
+"""Wheels on a Poincare section: their points up to the symmetries, and whether these repeat.
+
+The section phi = 0 stands for all multiples of a quarter turn, crossed in either direction:
+quarter turns and the mirror (host.theory.analysis.cycles) bring each crossing to phi = 0 with
+omega > 0. So a rotation and a forth-and-back cycle are fixpoints of the return map. The section
+omega = 0 stands likewise for a wheel that turns from forward to backward, at -pi/4 to pi/4.
+"""
+
+from __future__ import annotations
+
+from math import gcd, pi
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host.theory.analysis.attractors import KINDS, NEAR_ZERO, STILL, Kind
+from host.theory.engine.crossings import Surface
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, numpy_rates
+
+MotionKind = Literal[Kind, "quasi-periodic"]
+REST, BACK, ROLL, CHAOS = KINDS
+TORUS: MotionKind = "quasi-periodic"
+# Points are the same if they differ by less than this, potentials in 1 and speeds in units of the
+# greatest one.
+SAME = 1e-6
+# The longest period that is looked for, in crossings.
+LONGEST = 64
+
+
+class Points(NamedTuple):
+    """The crossings of one wheel, up to the symmetries.
+
+    Attributes:
+        times_s: when, s, (crossings,).
+        states: the states that stand for them, (crossings, 4).
+        quarters: the quarter turns that were taken off the angle, (crossings,).
+        mirrored: whether the mirror was applied, (crossings,).
+    """
+
+    times_s: Array
+    states: Array
+    quarters: NDArray[np.int64]
+    mirrored: NDArray[np.bool_]
+
+
+def points(times_s: Array, states: Array, wheel: Wheel, surface: Surface) -> Points:
+    """The points on the section that stand for crossings.
+
+    Args:
+        times_s: When the wheel crosses the surface, s, (crossings,).
+        states: In which states, (crossings, 4).
+        wheel: The wheel.
+        surface: The surface.
+
+    Returns:
+        The points.
+    """
+    x1, x2, phi, omega = states.T
+    quarters = np.round(phi / (pi / 2)).astype(np.int64)
+    if surface == "phi":
+        mirrored = omega < 0.0
+    else:
+        mirrored = numpy_rates(x1, x2, phi, omega, *wheel)[OMEGA] > 0.0
+    sign = np.where(mirrored, -1.0, 1.0)
+    turned = (x1 + 1j * x2) * np.array([1, -1j, -1, 1j])[quarters % 4]
+    rest = phi - quarters * (pi / 2)
+    found = np.array([turned.real, sign * turned.imag, sign * rest, sign * omega]).T
+    found[:, PHI if surface == "phi" else OMEGA] = 0.0
+    return Points(times_s, found, quarters, mirrored)
+
+
+class Repeat(NamedTuple):
+    """A motion that repeats itself.
+
+    Attributes:
+        crossings: after so many the points on the section repeat themselves.
+        period_s: after this time (s) the wheel repeats itself, whole turns apart.
+        quarters: by how many quarter turns it has then turned.
+        off_by: the greatest difference between points that are the same.
+    """
+
+    crossings: int
+    period_s: float
+    quarters: int
+    off_by: float
+
+
+def repeat(found: Points, within: float = SAME) -> Repeat | None:
+    """How a motion repeats itself at its end.
+
+    Args:
+        found: Its points.
+        within: Points are the same if they differ by less than this.
+
+    Returns:
+        The shortest period, of at most LONGEST crossings and a half of all; None if there is none.
+    """
+    fastest = max(float(np.abs(found.states[:, OMEGA]).max(initial=0.0)), STILL)
+    scaled = found.states / [1.0, 1.0, 1.0, fastest]
+    for length in range(1, min(LONGEST, len(scaled) // 2) + 1):
+        last, before = scaled[-length:], scaled[-2 * length : -length]
+        off_by = float(np.abs(last - before).max())
+        if off_by < within:
+            quarters = int(found.quarters[-1] - found.quarters[-1 - length])
+            seconds = float(found.times_s[-1] - found.times_s[-1 - length])
+            # The symmetry that has brought the wheel back is a mirror, or so many quarter turns.
+            if found.mirrored[-1] != found.mirrored[-1 - length]:
+                times, quarters = 2, 0
+            else:
+                times = 4 // gcd(4, quarters % 4)
+            return Repeat(length, times * seconds, times * quarters, off_by)
+    return None
+
+
+class Motion(NamedTuple):
+    """What a wheel does in the end.
+
+    Attributes:
+        kind: at rest, forth-and-back, rolling, chaotic or quasi-periodic.
+        repeat: how it repeats itself; None if it does not, or has no points on the section.
+    """
+
+    kind: MotionKind
+    repeat: Repeat | None
+
+
+def motion(found: Points, ended: Array, within: float = SAME) -> Motion | None:
+    """What a wheel does, as far as its points show it.
+
+    Args:
+        found: Its points on the section.
+        ended: The state after them, (4,).
+        within: Points are the same if they differ by less than this.
+
+    Returns:
+        The motion; None if it does not repeat itself (see `irregular`).
+    """
+    if not len(found.times_s):
+        return Motion(REST if abs(ended[OMEGA]) < STILL else ROLL, None)
+    cycle = repeat(found, within)
+    return cycle and Motion(ROLL if cycle.quarters else BACK, cycle)
+
+
+def irregular(exponent: float) -> Motion:
+    """The motion of a wheel that does not repeat itself, by its largest exponent, 1/s."""
+    return Motion(CHAOS if exponent > NEAR_ZERO else TORUS, None)

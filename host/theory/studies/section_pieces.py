@@ -1,0 +1,88 @@
+"""What the pieces of the studies `section` and `orbit` share: wheels that settle on a section."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from host.theory.analysis.hopf import hopf
+from host.theory.analysis.sections import Motion, Points, irregular, motion, points
+from host.theory.analysis.spectrum import largest_exponents
+from host.theory.engine.crossings import Surface, crossings
+from host.theory.model.wheel import Array, Wheel
+from host.theory.studies.section_rows import MotionColumns
+
+# How long the largest exponent of wheels that do not repeat themselves is measured, s.
+EXPONENT_S = 200.0
+
+
+class Settled(NamedTuple):
+    """A wheel on the section.
+
+    Attributes:
+        points: its points.
+        crossed: the crossings that they stand for, (crossings, 4).
+        ended: the state after them, (4,).
+        motion: what it does; None if it does not repeat itself.
+    """
+
+    points: Points
+    crossed: Array
+    ended: Array
+    motion: Motion | None
+
+
+def swing_s(wheel: Wheel) -> float:
+    """The period of the slowest swings, s: those at the Hopf bifurcation. Raises WrongUse."""
+    return 2 * pi / hopf(wheel).omega
+
+
+def follow_wheels(
+    wheels: list[Wheel], states: Array, seconds: float, surface: Surface, fineness: float
+) -> list[Settled]:
+    """Follow wheels from their states, (4, wheels), for some seconds.
+
+    A rolling wheel never turns round: its motion is then that on the other section.
+    """
+    parameters = np.array(wheels).T
+    found = crossings(states, parameters, seconds, surface, fineness=fineness)
+    settled = []
+    for number, (wheel, times_s, crossed, ended) in enumerate(
+        zip(wheels, found.times_s, found.states, found.ended.T, strict=True)
+    ):
+        own = points(times_s, crossed, wheel, surface)
+        what = motion(own, ended)
+        if surface != "phi" and not len(times_s):
+            what = follow_wheels([wheel], states[:, [number]], seconds, "phi", fineness)[0].motion
+            if what and what.repeat:
+                what = Motion(what.kind, what.repeat._replace(crossings=0))
+        settled.append(Settled(own, crossed, ended, what))
+    return settled
+
+
+def motions_of(wheels: list[Wheel], settled: list[Settled]) -> list[MotionColumns]:
+    """What wheels do in the end, with the exponents of those that do not repeat themselves."""
+    odd = [number for number, one in enumerate(settled) if one.motion is None]
+    exponents = {}
+    if odd:
+        states = np.array([settled[number].ended for number in odd]).T
+        parameters = np.array([wheels[number] for number in odd]).T
+        moving = np.ones(len(odd), dtype=bool)
+        found = largest_exponents(states, parameters, EXPONENT_S, moving)
+        exponents = dict(zip(odd, found.tolist(), strict=True))
+    rows: list[MotionColumns] = []
+    for number, one in enumerate(settled):
+        exponent = exponents.get(number)
+        what = one.motion or irregular(exponents[number])
+        cycle = what.repeat
+        rows.append(
+            {
+                "kind": what.kind,
+                "period": (cycle.crossings or None) if cycle else None,
+                "period_s": cycle.period_s if cycle else None,
+                "exponent": exponent,
+            }
+        )
+    return rows
