@@ -7,7 +7,8 @@
         outcome = robot.kick_and_watch("phase", ticks=4)
     print(outcome)
 
-The names in `__all__` are the public API. Each is loaded when it is first used.
+The names in `__all__` are the public API, with those of `kickctl.theory`, the paper's model of a
+wheel. Each is loaded when it is first used.
 
 What goes wrong is a KickctlError with `message`, `hint` and `status`, of one of these kinds:
     WrongUse: The request makes no sense; nothing has changed. LogError is one about a log's file.
@@ -19,11 +20,10 @@ What goes wrong is a KickctlError with `message`, `hint` and `status`, of one of
 
 from __future__ import annotations
 
-from difflib import get_close_matches
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 from kickctl import _neighbours
+from kickctl._lazy import load
 
 if TYPE_CHECKING:
     from host.client.listeners import Listener, Records
@@ -60,6 +60,7 @@ __all__ = (
 )
 
 _PLACES = {
+    **dict.fromkeys(__all__, "host.errors"),
     "connect": "kickctl.robots",
     "Robot": "kickctl.robots",
     "KickOutcome": "kickctl.robots",
@@ -67,21 +68,14 @@ _PLACES = {
     "Records": "host.client.listeners",
     "Log": "host.logs.log",
     "LogError": "host.logs.mcap_files",
-    "run_experiment": "host.perform.run",
+    "run_experiment": "host.perform.run:perform",
 }
-_OTHER_NAMES = {"run_experiment": "perform"}
 
 _neighbours.check()
 
 
 def __getattr__(name: str) -> object:
-    if name not in __all__:
-        close = get_close_matches(name, __all__, 1)
-        hint = f"did you mean '{close[0]}'?" if close else f"it has {', '.join(__all__)}"
-        raise AttributeError(f"module 'kickctl' has no attribute '{name}'; {hint}", name=name)
-    module = import_module(_PLACES.get(name, "host.errors"))
-    value: object = getattr(module, _OTHER_NAMES.get(name, name))
-    globals()[name] = value
+    globals()[name] = value = load("kickctl", name, __all__, _PLACES.get(name))
     return value
 
 

@@ -85,7 +85,20 @@ def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
 
 
 def fixpoints(wheel: Wheel) -> list[Fixpoint]:
-    """All eight, in the order of their angles. Raises WrongUse as `fixpoint` does."""
+    """All eight fixpoints, in the order of their angles.
+
+    >>> [point.kind for point in fixpoints(Wheel(k=1.4))][:2]
+    ['stable focus', 'saddle']
+
+    Args:
+        wheel: The wheel; with dry friction, one that begins to roll forward.
+
+    Returns:
+        The fixpoints.
+
+    Raises:
+        WrongUse: The rods do not pull: the wheel can rest at any angle.
+    """
     return [fixpoint(phi, wheel) for phi in ANGLES]
 
 

@@ -43,6 +43,9 @@ class Hopf(NamedTuple):
 def hopf(wheel: Wheel) -> Hopf:
     """The Hopf bifurcation of the even fixpoints in k.
 
+    >>> hopf(Wheel(tau=0.25))
+    Hopf(k=1.58727677..., omega=3.06535941..., l1=-0.04873232...)
+
     Args:
         wheel: The wheel; its own k does not matter.
 

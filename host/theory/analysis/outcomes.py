@@ -156,6 +156,11 @@ def rolling_states(model: Model, wheel: Wheel, phases: int) -> Array | None:
     return np.asarray(found[:, np.argsort(found[PHI] % QUARTER)])
 
 
+def acts_at_once(mode: str) -> bool:
+    """Whether a kick of this mode changes the neurons at once: it has no length."""
+    return mode in FROZEN_MODES
+
+
 def outcomes_after_kicks(
     model: Model, wheel: Wheel, states: Array, mode: str, sign: int, lengths_s: list[float]
 ) -> NDArray[np.str_]:
@@ -177,7 +182,7 @@ def outcomes_after_kicks(
         WrongUse: The wheels cannot be followed.
     """
     count = states.shape[1]
-    if mode in FROZEN_MODES:
+    if acts_at_once(mode):
         after = [inverted(states)] * len(lengths_s)
     else:
         after = [states]

@@ -25,6 +25,7 @@ from host.theory.analysis.outcomes import (
     SETTLE,
     WINDOW,
     Outcome,
+    acts_at_once,
     free_speed,
     mirror,
     outcomes_after_kicks,
@@ -54,7 +55,6 @@ from host.theory.studies.basins_rows import (
     Start,
     Sure,
 )
-from robot.kicks import FROZEN_MODES
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -74,18 +74,11 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
 
     Raises WrongUse if wheels take too many steps to settle.
     """
-    wheel = wheel_of(options)
-    steps = memory_s(wheel) * (SETTLE + 2 * WINDOW) * float(rate_per_s(wheel.columns(1))[0])
-    if not steps <= MOST_STEPS:
-        raise WrongUse(
-            f"a wheel with these constants takes {steps:.1e} steps to settle: it is too stiff, or"
-            " settles too slowly",
-            "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
-        )
+    require_settling(wheel_of(options))
     found: list[BasinsCell] = [
         {"part": "sure", "model": CONTINUOUS, "mode": mode, "sign": sign}
         for mode, sign in KICKS
-        if mode not in FROZEN_MODES
+        if not acts_at_once(mode)
     ]
     for model in MODEL_NAMES:
         bands = range(0, options["points"], BAND)
@@ -95,6 +88,17 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
         ]
         found.append({"part": "check", "model": model})
     return found
+
+
+def require_settling(wheel: Wheel) -> None:
+    """Raise WrongUse for a wheel that takes too many steps to settle."""
+    steps = memory_s(wheel) * (SETTLE + 2 * WINDOW) * float(rate_per_s(wheel.columns(1))[0])
+    if not steps <= MOST_STEPS:
+        raise WrongUse(
+            f"a wheel with these constants takes {steps:.1e} steps to settle: it is too stiff, or"
+            " settles too slowly",
+            "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
+        )
 
 
 def simulate(cell: BasinsCell, setting: Setting) -> Measured:
@@ -152,7 +156,7 @@ def simulate_starts(model: Model, wheel: Wheel, phi: Array, omega: Array) -> lis
 def _kicks(cell: KicksCell, wheel: Wheel) -> list[Kick]:
     """A row for each length and phase; none if the wheel does not roll."""
     model = MODELS[cell["model"]]
-    lengths_s = [0.0] if cell["mode"] in FROZEN_MODES else LENGTHS_S[cell["model"]]
+    lengths_s = [0.0] if acts_at_once(cell["mode"]) else LENGTHS_S[cell["model"]]
     states = rolling_states(model, wheel, PHASES)
     if states is None:
         return []
