@@ -88,6 +88,7 @@ def test_a_trajectory_is_that_of_another_integrator_at_the_times_that_were_asked
         (lambda: theory.hopf(Wheel(f=0.0)), "no Hopf bifurcation"),
         (lambda: branch(Wheel(), along="q"), "along cannot be 'q'"),
         (lambda: branch(Wheel(), to=-1.0), "to cannot be -1.0"),
+        (lambda: branch(Wheel(), to=[2.0, 3.0]), "to cannot be"),
         (lambda: branch(Wheel(dry_friction=0.1)), "dry friction"),
         (lambda: phase_diagram(Wheel(), k=[], tau=[1]), "k cannot be"),
         (lambda: phase_diagram(Wheel(), k=[1], tau=[0]), "tau cannot be"),
