@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from host.runs.presets import OPTION as PRESET
 from host.runs.registry import Entry, Option
+from host.runs.robot_options import NAMES, robot_options
 
 # On simulated cars, which need no robot: `kickctl[bodies]`.
 BODIES = {
@@ -91,6 +92,7 @@ ROBOT = {
         " slip between the wheels",
         (
             Option("trials", 25, 1, 10000, "number of rounds of the three kicks, there and back"),
+            *robot_options(),
             PRESET,
         ),
         ("R11", "R12"),
@@ -98,7 +100,11 @@ ROBOT = {
     "reliability": Entry(
         "how reliably kicks of 1 to 10 ticks reverse a wheel: position, phase of both signs, and"
         " membrane",
-        (Option("trials", 50, 1, 100000, "number of kicks at each point"), PRESET),
+        (
+            Option("trials", 50, 1, 100000, "number of kicks at each point"),
+            *robot_options(),
+            PRESET,
+        ),
         ("R8", "R9", "R10"),
     ),
     "kick-map": Entry(
@@ -106,6 +112,7 @@ ROBOT = {
         " it begins",
         (
             Option("kicks", 200000, 36, 100000000, "number of kicks; on a robot a few hundred"),
+            *robot_options(),
             PRESET,
         ),
     ),
@@ -118,6 +125,8 @@ ROBOT = {
             Option(
                 "branch", 13, 0, 13, "number of speeds at which k is regulated, in each direction"
             ),
+            Option("k", 8.0, 1.5, 100.0, "greatest spring constant of the rods, without unit"),
+            *robot_options()[1:],
             PRESET,
         ),
         ("R5", "R6"),
@@ -125,13 +134,21 @@ ROBOT = {
     "wall": Entry(
         "a robot with k = 2 between two walls, which reverses by itself: on which axles, floors,"
         " fronts and batteries",
-        (Option("bounces", 50, 1, 10000, "number of bounces to count"), PRESET),
+        (
+            Option("bounces", 50, 1, 10000, "number of bounces to count"),
+            *robot_options(k=2.0),
+            PRESET,
+        ),
         ("R13",),
     ),
     "chaos": Entry(
         "k = 15 and tau = 1 s: torque series, return map, Lyapunov exponent, and which older rods"
         " make it chaotic",
-        (Option("minutes", 10.0, 1.0, 600.0, "length of the series, minutes"), PRESET),
+        (
+            Option("minutes", 10.0, 1.0, 600.0, "length of the series, minutes"),
+            *robot_options(k=15.0, tau=1.0),
+            PRESET,
+        ),
         ("R14",),
     ),
     "starts": Entry(
@@ -173,3 +190,8 @@ SIMULATED = {
 }
 
 TABLE = {**ROBOT, **SIMULATED, **BODIES}
+
+
+def claimed(name: str) -> dict[str, float | str | None]:
+    """The robot's parameters for which an experiment's claims are made, by their options."""
+    return {option.name: option.default for option in ROBOT[name].options if option.name in NAMES}

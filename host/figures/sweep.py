@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import ceil, sqrt
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,7 +51,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         figure = Figure(**SIZE)
         columns = ceil(sqrt(len(panels)))
         grid = figure.subplots(
-            max(1, ceil(len(panels) / max(1, columns))), max(1, columns), squeeze=False
+            max(1, ceil(len(panels) / max(1, columns))),
+            max(1, columns),
+            squeeze=False,
+            sharex=not as_map,
         )
         for axes in grid.flat[len(panels) :]:
             axes.set_axis_off()
@@ -59,7 +63,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
                 _draw_map(axes, panel, swept)
             else:
                 _draw_lines(axes, panel, swept)
-            axes.set_title(_wrapped(panel.name), fontsize=11)
+                _draw_failed(axes, rows, swept[0])
+            axes.set_title("\n".join(wrap(panel.name, 30)), fontsize=11)
         if len(swept) > 1 and not as_map and panels:
             share_legend(
                 figure, grid.flat, title=_label(swept[1]), loc="outside right center", fontsize=11
@@ -69,6 +74,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         )
         over = " and ".join(axis["name"] for axis in numbers["swept"])
         figure.suptitle(f"{numbers['of']} over {over}", fontsize=16)
+        if any(row["failed"] for row in rows):
+            constants += "  (crosses and white: points that failed)"
         figure.supxlabel(constants, fontsize=9, color="dimgrey")
     return figure
 
@@ -115,12 +122,23 @@ def _draw_lines(axes: Axes, panel: Panel, swept: list[Axis]) -> None:
         )
     _scale(axes, "x", x)
     axes.set_xlabel(_label(swept[0]))
+    axes.tick_params(labelbottom=True)
     if panel.words:
         axes.set_yticks(range(len(panel.words)), panel.words, fontsize=10)
         axes.set_ylim(-0.5, len(panel.words) - 0.5)
+    elif panel.unit == "%":
+        axes.set(ylabel=panel.unit, ylim=(-5.0, 105.0))
     else:
         _scale(axes, "y", panel.values)
         axes.set_ylabel(panel.unit)
+
+
+def _draw_failed(axes: Axes, rows: list[Row], swept: Axis) -> None:
+    """A cross below each value at which a point failed. All panels go over all values."""
+    below: Any = {"transform": axes.get_xaxis_transform(), "linestyle": ""}
+    axes.plot(swept["values"], [0.04] * len(swept["values"]), **below)
+    failed = [row[swept["name"]] for row in rows if row["failed"]]
+    axes.plot(failed, [0.04] * len(failed), marker="x", color="dimgrey", **below)
 
 
 def _draw_map(axes: Axes, panel: Panel, swept: list[Axis]) -> None:
@@ -160,9 +178,3 @@ def _label(axis: Axis) -> str:
 
 def _word(value: Any) -> str:
     return f"{value:g}" if isinstance(value, int | float) else str(value)
-
-
-def _wrapped(name: str) -> str:
-    """A quantity's name on two lines, if it is long."""
-    middle = name.rfind(" ", 0, len(name) // 2 + 8)
-    return name if len(name) < 32 or middle < 0 else f"{name[:middle]}\n{name[middle + 1 :]}"

@@ -12,6 +12,7 @@ from math import degrees, radians
 from typing import Any, TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robot.kick_requests import parse
 from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION
@@ -102,17 +103,23 @@ def lengths(tick_s: float) -> list[int]:
 
 def settle_ticks(params: Params) -> int:
     """How many ticks a wheel takes from rest into its cycle."""
-    return _ticks(_SETTLE_S, params)
+    return span_ticks(_SETTLE_S, params)
 
 
 def watch_ticks(params: Params) -> int:
     """How many ticks a wheel takes back into a cycle after a kick."""
-    return _ticks(_WATCH_S, params)
+    return span_ticks(_WATCH_S, params)
 
 
-def _ticks(least_s: float, params: Params) -> int:
+def span_ticks(least_s: float, params: Params) -> int:
+    """How many ticks a wheel takes to settle: some time (s), and the potentials' memory."""
     ticks: int = round(min(_PATIENCE_S, least_s + _MEMORY_TAU * params.tau_s) / params.tick_s)
     return ticks
+
+
+def times_of(ticks: int, params: Params) -> NDArray[np.float64] | None:
+    """When ticks begin (s), (ticks,): exactly in time if they are short; None for by chance."""
+    return None if params.tick_s >= _LEAST_LATE_TICK_S else np.arange(ticks) * params.tick_s
 
 
 def kick_specimens(
@@ -140,7 +147,6 @@ def kick_specimens(
     motors = (motor or load()).specimens(specimens, rng)
     own = parse({"id": "map", **kick}, (0, 0), params, settle_ticks(params))
     whole = own.begin + own.ticks + watch_ticks(params)
-    times = None if params.tick_s >= _LEAST_LATE_TICK_S else np.arange(whole) * params.tick_s
     chance = int(rng.integers(2**32))
     return run(
         wheels,
@@ -150,7 +156,7 @@ def kick_specimens(
         kick=own,
         motors=motors,
         battery_v=battery_v,
-        times=times,
+        times=times_of(whole, params),
     )
 
 

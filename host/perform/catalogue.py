@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple, cast
 
 from host.experiments.registry import BODIES, ROBOT, SIMULATED
-from host.runs.contract import Experiment, Findings, Row
+from host.runs.contract import Cell, Experiment, Findings, Options, Row
 from host.runs.registry import Entry, entry_of
+from host.runs.robot_options import params_of, params_with
 from host.runs.runner import Draw
 from host.theory.studies.registry import TABLE as STUDIES
 
@@ -37,6 +38,12 @@ class Found(NamedTuple):
     entry: Entry
     work: Experiment
     draw: Draw
+
+    def cells(self, options: Options, *, batch: bool) -> list[Cell]:
+        """The cells of a run. Raises WrongUse if it makes no sense, or no robot could do it."""
+        if self.kind == EXPERIMENT:
+            params_with(params_of(options))
+        return self.work.cells(options, batch=batch)
 
 
 def find(name: str) -> Found:

@@ -110,7 +110,7 @@ def _trial(
     path = logs / f"{digest(cell)}.mcap"
     path.unlink(missing_ok=True)
     # Every trial begins with the paper's parameters; a real robot gets its own back in the end.
-    _set(robot, {**PAPER, **setting.preset.params})
+    _set(robot, {**PAPER, **setting.at(cell).own_params()})
     if robot.status()["state"] != "running":
         robot.start()
     info = {**robot.info(), "cell": cell}

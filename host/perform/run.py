@@ -103,7 +103,7 @@ def perform(
     batch = simulated is not None and experiment.simulate is not None
     if scheduler:
         _require_cluster(scheduler, batch=batch)
-    cells = experiment.cells(options, batch=batch)
+    cells = (sweep or found).cells(options, batch=batch)
     if swept:
         say(f"{name}: {len(points(swept))} points, {in_all(swept)}")
     with open_study(out, settings, cells, say) as study:

@@ -43,7 +43,8 @@ class Sweep:
     """
 
     def __init__(self, name: str, swept: list[Axis]) -> None:
-        self._name, self._work = name, find(name).work
+        self._name, self._found = name, find(name)
+        self._work = self._found.work
         self._swept = swept
         self.simulate: Callable[[Cell, Setting], list[Row]] | None = (
             None if self._work.simulate is None else partial(_simulate, name)
@@ -55,7 +56,7 @@ class Sweep:
         refusals: list[KickctlError] = []
         for point in points(self._swept):
             try:
-                own = self._work.cells({**options, **point}, batch=batch)
+                own = self._found.cells({**options, **point}, batch=batch)
                 found += [{POINT: point, _CELL: cell} for cell in own]
             except WrongUse as error:
                 refusals.append(error)

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator
 from math import floor, log10
 from typing import Any, NamedTuple
 
+from host.util.intervals import standard_error, wilson
+
 
 class Answer(NamedTuple):
     """One result.
@@ -33,6 +35,14 @@ class Answer(NamedTuple):
             return f"{self.value:.9g}{unit}"
         digits = max(0, 1 - floor(log10(self.error)))
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}{unit}"
+
+
+def share(name: str, done: int, tried: int) -> Answer:
+    """The share of tries that did something, %; none without tries."""
+    if not tried:
+        return Answer(name, None)
+    low, high = wilson(done, tried)
+    return Answer(name, 100 * done / tried, 100 * standard_error((low, high)), "%")
 
 
 def as_data(answers: Iterable[Answer]) -> list[dict[str, Any]]:

@@ -20,6 +20,7 @@ from host.logs.log import Log
 from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.presets import OPTION, ORDINARY, PRESETS, Preset
+from host.runs.robot_options import params_of, params_with
 from robot.params import Params
 from sim_motor.constants import Constants, load
 
@@ -68,12 +69,13 @@ class Setting:
         object.__setattr__(setting, "options", {**self.options, **cell[POINT]})
         return setting
 
+    def own_params(self) -> dict[str, float]:
+        """The robot's parameters that this setting chooses, by name."""
+        return {**self.preset.params, **params_of(self.options)}
+
     def params(self) -> Params:
-        """The robot's parameters in this setting."""
-        params = Params()
-        if self.preset.params:
-            params.apply(params.check(self.preset.params))
-        return params
+        """The robot's parameters in this setting. Raises WrongUse if it would refuse them."""
+        return params_with(self.own_params())
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
         """The random seed of a cell. It does not depend on other cells or on the machine."""
@@ -84,8 +86,9 @@ class Setting:
         """Why this run cannot decide a claim: the claim is made for other parameters.
 
         Args:
-            own: The options at which the claim is made. A claim about a simulated robot is made for
-                the default motor and a battery of nominal voltage; one about the model has neither.
+            own: The options at which the claim is made, as far as the run has them. A claim about
+                a simulated robot is made for the default motor and a battery of nominal voltage;
+                one about the model has neither.
 
         Returns:
             Words that name the claim's parameters; empty if this run is at them.
@@ -93,7 +96,7 @@ class Setting:
         made_for = [
             f"{name} = {_word(value)} (here {_word(self.options[name])})"
             for name, value in own.items()
-            if self.options[name] != value
+            if self.options.get(name, value) != value
         ]
         if self.motor != Setting.motor:
             made_for.append(f"motor = {Setting.motor} (here {self.motor})")

@@ -31,6 +31,12 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
     return low, 1.0 if successes == trials else centre + half
 
 
+def standard_error(interval: tuple[float, float]) -> float:
+    """The standard error of which this is the 95 % interval, if chances are normal."""
+    low, high = interval
+    return (high - low) / (2 * _QUANTILE)
+
+
 def fair_p(successes: int, trials: int) -> float:
     """The two-sided exact binomial test of a rate against 1/2.
 

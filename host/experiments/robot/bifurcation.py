@@ -3,8 +3,8 @@
 Locomotion ends at k_c, a robot may rest above it too, and an unstable limit cycle lies between.
 There are four kinds of pieces, named by `part`:
 
-- sweep: from locomotion at k = 8, k goes down and up again in small steps. Each is held until the
-  wheels are steady. Where down and up differ at the same k, there is hysteresis.
+- sweep: from locomotion at the greatest k, k goes down and up again in small steps. Each is held
+  until the wheels are steady. Where down and up differ at the same k, there is hysteresis.
 - fold: from locomotion at k = 1, k goes down in steps of STEP until both wheels rest. Where a wheel
   falls to rest is one measurement of k_c.
 - branch: the limit cycles themselves, stable or not, by control-based continuation. Proportional
@@ -25,6 +25,7 @@ import numpy as np
 
 from host.client.robot import Robot
 from host.errors import NotDone
+from host.experiments.registry import claimed
 from host.experiments.robot.bifurcation_pieces import (
     LEAST_K,
     MIDDLE_K,
@@ -53,9 +54,10 @@ from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
 from host.kicking.robot_claims import STALL_TORQUE, break_away
 from host.logs.log import Log
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
-from host.util.intervals import bootstrap_interval
+from host.util.intervals import bootstrap_interval, standard_error
 from robot.record import STATES
 
 simulate = None
@@ -64,7 +66,6 @@ RUNNING = STATES.index("running")
 
 SIGN = {"forward": 1, "backward": -1}
 FOLLOWED = {"forward": "left", "backward": "right"}
-START_K = 8.0
 LEAST_JUMP = 0.15
 RAMPS = 5
 SPEEDS_HZ = (0.2, 0.22, 0.24, 0.26, 0.28, 0.3, 0.33, 0.36, 0.4, 0.45, 0.5, 0.6, 0.8)
@@ -137,31 +138,32 @@ def world(cell: BifurcationCell) -> dict[str, str]:
     return {}
 
 
-def ladder(points: int) -> list[float]:
+def ladder(points: int, greatest_k: float) -> list[float]:
     """The values of k of a sweep, upwards: half of them up to MIDDLE_K, where they are denser."""
     below = points // 2
     lower = np.linspace(LEAST_K, MIDDLE_K, below, endpoint=False)
-    upper = np.geomspace(MIDDLE_K, START_K, points - below)
+    upper = np.geomspace(MIDDLE_K, greatest_k, points - below)
     return [float(k) for k in np.round([*lower, *upper], 4)]
 
 
 def trial(cell: BifurcationCell, robot: Robot, log: Log, setting: Setting) -> CellRows:
-    """Do one cell. Before and after it, k is at START_K."""
+    """Do one cell. Before and after it, k is at its greatest."""
+    greatest_k = setting.options["k"]
     if cell["part"] == "ramp":
         return [_ramp(robot, log)]
-    robot.set(k=START_K)
+    robot.set(k=greatest_k)
     robot.wait(WINDOW_S)
     motion = cell["motion"]
     drive(robot, log, motion)
     rows: CellRows
     if cell["part"] == "sweep":
-        rows = sweep(robot, ladder(setting.options["points"]))
+        rows = sweep(robot, ladder(setting.options["points"], greatest_k))
     elif cell["part"] == "fold":
         rows = fold(robot)
     else:
         rows = [hold(robot, FOLLOWED[motion], SIGN[motion], cell["held_hz"])]
     require_running(robot)
-    robot.set(k=START_K)
+    robot.set(k=greatest_k)
     return rows
 
 
@@ -206,12 +208,30 @@ def report(rows: list[BifurcationRow], setting: Setting) -> Findings:
         ],
         "not_held_hz": sorted(asked - {row["held_hz"] for row in cycles}),
     }
-    foreign = setting.elsewhere()
+    foreign = setting.elsewhere(**claimed("bifurcation"))
     stall = _stall(ramp_rows(rows)).doubted(foreign)
     jump = _jump(folds, critical, restarts(rows)).doubted(
         foreign, setting.short_of(points=33, rounds=3)
     )
-    return Findings([stall, jump], numbers)
+    answers = [
+        Answer("locomotion ends at k_c", *_with_error(critical)),
+        Answer("k_c by continuation", node["k"] if node else None),
+        Answer("|torque M| before it ends", *_with_error([abs(row["torque"]) for row in folds])),
+        Answer("speed before it ends", *_with_error([abs(row["hz"]) for row in folds]), "Hz"),
+        Answer("wheels at rest start again at k", *_with_error(restarts(rows))),
+        Answer("from rest, wheels move at |M|", *_with_error(_torques(ramp_rows(rows)))),
+    ]
+    return Findings([stall, jump], numbers, answers=answers)
+
+
+def _with_error(values: list[float]) -> tuple[float | None, float | None]:
+    """The mean and its standard error."""
+    interval = bootstrap_interval(values)
+    return (_mean(values) if values else None), (standard_error(interval) if interval else None)
+
+
+def _torques(ramps: list[RampRow]) -> list[float]:
+    return [row["torque"] for row in ramps]
 
 
 def _mean(values: list[float]) -> float:
@@ -219,7 +239,7 @@ def _mean(values: list[float]) -> float:
 
 
 def _stall(ramps: list[RampRow]) -> Claim:
-    torques = [row["torque"] for row in ramps]
+    torques = _torques(ramps)
     failed = [row["note"] for row in ramps if not row["holds"]]
     return Claim(
         "R5",

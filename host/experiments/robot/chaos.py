@@ -16,9 +16,11 @@ A robot records the series. The other parts explain it, and only the simulated b
 from __future__ import annotations
 
 from host.client.robot import Robot
+from host.experiments import registry
 from host.experiments.robot import chaos_pieces as pieces
 from host.experiments.robot.chaos_numbers import (
     Numbers,
+    Rate,
     explain,
     growth,
     in_words,
@@ -27,7 +29,7 @@ from host.experiments.robot.chaos_numbers import (
     series_numbers,
     tally,
 )
-from host.experiments.robot.chaos_pieces import SEEN, TAU_S, UNSEEN, K
+from host.experiments.robot.chaos_pieces import SEEN, UNSEEN
 from host.experiments.robot.chaos_rows import (
     CellRows,
     ChaosCell,
@@ -40,10 +42,11 @@ from host.experiments.robot.chaos_rows import (
 from host.experiments.robot.switching import CONDITIONS, OLDER, ORDINARY
 from host.kicking.outcome import require_running
 from host.logs.log import Log
+from host.runs.answers import Answer, share
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.theory.analysis.series_exponents import of_noise
-from host.util.intervals import wilson
+from host.util.intervals import standard_error, wilson
 from robot.kicks import WHEELS
 from robot.safety import RUNNING
 
@@ -108,7 +111,7 @@ def simulate(cell: ChaosCell, setting: Setting) -> CellRows:
 def trial(cell: ChaosCell, robot: Robot, log: Log, setting: Setting) -> list[Sample]:
     """Record both wheels of a robot from its start on."""
     robot.stop()
-    robot.set(k=K, tau_s=TAU_S)
+    robot.set(**pieces.chaotic(setting.options))
     first = robot.start()
 
     def stopped() -> bool:
@@ -150,7 +153,8 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
     exponents = f"Lyapunov exponent of the time series {rates_text}; of noise {of_noise():.2f}/s"
     notes = [switching, exponents]
     numbers: Numbers = {
-        "series": {f"{condition}, {side}": found for (condition, side), found in series.items()}
+        "parameters": {**pieces.chaotic(setting.options), "tick_s": setting.params().tick_s},
+        "series": {f"{condition}, {side}": found for (condition, side), found in series.items()},
     }
     parted = twins_rows(rows).get((claimed, SEEN))
     if parted:
@@ -170,5 +174,26 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         own["to_the_end"] >= SUSTAINED * own["wheels"] and chaotic,
         "; ".join(notes),
     )
-    doubts = setting.elsewhere(), setting.short_of(minutes=CLAIMED_MIN)
-    return Findings([claim.doubted(*doubts)], numbers)
+    doubts = setting.elsewhere(**registry.claimed("chaos")), setting.short_of(minutes=CLAIMED_MIN)
+    answers = [
+        share("wheels that switch to the end", own["to_the_end"], own["wheels"]),
+        share("wheels that roll in the end", own["roll"], own["wheels"]),
+        share("wheels that rest in the end", own["rest"], own["wheels"]),
+        Answer("half of them switch until", own["median_until_s"], None, "s"),
+        *(
+            _rate_answer(f"exponent of the series, {condition}, {side} wheel", found["exponent"])
+            for (condition, side), found in series.items()
+        ),
+        *(
+            _rate_answer(f"exponent of twins, {condition}, jump of {jump:g}", plain(growth(own)))
+            for (condition, jump), own in twins_rows(rows).items()
+        ),
+    ]
+    return Findings([claim.doubted(*doubts)], numbers, answers=answers)
+
+
+def _rate_answer(name: str, rate: Rate | None) -> Answer:
+    if rate is None:
+        return Answer(name, None)
+    error = standard_error(rate["interval"]) if rate["interval"] else None
+    return Answer(name, rate["per_s"], error, "/s")

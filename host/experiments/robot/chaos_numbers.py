@@ -123,8 +123,12 @@ class Explanations(TypedDict):
 
 
 class Numbers(TypedDict):
-    """How the wheels of each series switched, and the explanations, if they were simulated."""
+    """How the wheels of each series switched, and the explanations, if they were simulated.
 
+    parameters: those of the robot, by its names for them.
+    """
+
+    parameters: dict[str, float]
     series: dict[str, SeriesNumbers]
     conditions: NotRequired[dict[str, ConditionNumbers]]
     twins: NotRequired[list[TwinsNumbers]]

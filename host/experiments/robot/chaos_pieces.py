@@ -6,7 +6,7 @@ Each function does one cell and returns its rows.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
+from dataclasses import replace
 from math import cos, pi, sin
 from typing import TypedDict
 
@@ -42,6 +42,7 @@ from host.experiments.robot.switching import (
 from host.kicking.modes import CHAOS, MODES
 from host.runs.contract import Options, Setting
 from host.runs.presets import OPTION, PAPER
+from host.runs.robot_options import params_of
 from host.theory.model.wheel import acceleration
 from robot.controller import actual_positions, step_wheel
 from robot.params import Params
@@ -71,7 +72,6 @@ def claimed_in(options: Options) -> str:
 
 MODEL_S, MODEL_STEP_S = 60.0, 0.002
 
-_chaotic_run = partial(wheels_run, k=K, tau_s=TAU_S)
 _PHI, _X1, _X2, _FORCE, _TORQUE = (
     CHANNELS.index(name) for name in ("phi_rad", "x1", "x2", "force", "torque")
 )
@@ -88,6 +88,31 @@ class WheelConstants(TypedDict):
 PAPER_WHEEL: WheelConstants = {"moment": 0.05, "friction": 0.5}
 
 
+def chaotic(options: Options) -> dict[str, float]:
+    """The parameters of wheels that may be chaotic, by the robot's names, but for the tick."""
+    own = {"k": K, "tau_s": TAU_S, "a": Params().a, **params_of(options)}
+    return {name: own[name] for name in own if name != "tick_s"}
+
+
+def condition_of(name: str, setting: Setting) -> Condition:
+    """The condition of this name, at the run's control period if it has none of its own."""
+    found = CONDITIONS[name]
+    own = found.tick_s != Condition.tick_s
+    return found if own else replace(found, tick_s=setting.params().tick_s)
+
+
+def _chaotic_run(
+    condition: Condition,
+    setting: Setting,
+    wheels: int,
+    seconds: float,
+    seed: int,
+    jump: Jump | None = None,
+) -> Iterator[Array]:
+    changes = chaotic(setting.options)
+    return wheels_run(condition, setting, wheels, seconds, seed, jump, **changes)
+
+
 def _gather(records: Iterator[Array]) -> Array:
     """The records of all wheels in one array, (wheels, ticks, CHANNELS)."""
     return np.concatenate(list(records))
@@ -95,7 +120,7 @@ def _gather(records: Iterator[Array]) -> Array:
 
 def series(cell: SeriesCell, setting: Setting) -> list[Sample]:
     """One wheel, tick by tick."""
-    condition = CONDITIONS[cell["condition"]]
+    condition = condition_of(cell["condition"], setting)
     seconds, seed = 60 * setting.options["minutes"], setting.seed_of(cell)
     records = _gather(_chaotic_run(condition, setting, 2, seconds, seed))[0]
     samples = records[:, [_PHI, _FORCE, _TORQUE]].tolist()
@@ -113,7 +138,7 @@ def series(cell: SeriesCell, setting: Setting) -> list[Sample]:
 
 def lives(cell: LivesCell, setting: Setting) -> list[Life]:
     """How long each of many wheels switches, and what it does then."""
-    condition = CONDITIONS[cell["condition"]]
+    condition = condition_of(cell["condition"], setting)
     wheels = (
         LIVES_WHEELS
         if cell["condition"] in (*SHOWN, ALL_HOLD)
@@ -132,7 +157,7 @@ def lives(cell: LivesCell, setting: Setting) -> list[Life]:
 
 def speed(cell: SpeedCell, setting: Setting) -> list[Speed]:
     """Turns per second at the default parameters, over the second half of each run."""
-    condition = CONDITIONS[cell["condition"]]
+    condition = condition_of(cell["condition"], setting)
     records = _gather(wheels_run(condition, setting, SPEED_WHEELS, SPEED_S, setting.seed_of(cell)))
     phi = records[:, len(records[0]) // 2 :, _PHI]
     seconds = (phi.shape[1] - 1) * condition.tick_s
@@ -148,7 +173,7 @@ def _distances(first: Array, second: Array) -> Array:
 
 def twins(cell: TwinsCell, setting: Setting) -> list[Distance]:
     """The distance of each pair of twins, from the jump on."""
-    condition, seed = CONDITIONS[cell["condition"]], setting.seed_of(cell)
+    condition, seed = condition_of(cell["condition"], setting), setting.seed_of(cell)
     tick_s = condition.tick_s
     seconds = TWIN_TICK * tick_s + TWIN_S + 1.0
     jump = Jump(TWIN_TICK, cell["jump"])
@@ -169,7 +194,12 @@ def twins(cell: TwinsCell, setting: Setting) -> list[Distance]:
 
 def map_wheels(cell: MapCell, setting: Setting) -> list[MapWheel]:
     """What wheels at this lag and voltage do in the end, and whether their twins parted."""
-    condition = Condition(rod_lag_s=cell["rod_lag_s"], battery_v=cell["battery_v"], scene=Scene())
+    condition = Condition(
+        tick_s=setting.params().tick_s,
+        rod_lag_s=cell["rod_lag_s"],
+        battery_v=cell["battery_v"],
+        scene=Scene(),
+    )
     seed, tick_s = setting.seed_of(cell), condition.tick_s
     jump = Jump(round(MAP_JUMP_S / tick_s), SEEN)
     plain = _gather(_chaotic_run(condition, setting, MAP_WHEELS, MAP_S, seed))
@@ -187,12 +217,17 @@ def model_runs(cell: ModelCell, setting: Setting) -> list[ModelRun]:
     """Runs of the paper's model, each from potentials of its own."""
     rng = np.random.default_rng(setting.seed_of(cell))
     constants = PAPER_WHEEL if cell["wheel"] == "paper" else model_constants(setting)
-    tick_s = Params().tick_s
+    tick_s = setting.params().tick_s
     stride = round(tick_s / MODEL_STEP_S)
     rows: list[ModelRun] = []
     for _ in range(MODEL_RUNS):
         remembered = float(rng.uniform(-pi, pi))
-        phi = model_run(**constants, remembered=remembered, bounded=cell["bounded"])
+        phi = model_run(
+            **constants,
+            remembered=remembered,
+            bounded=cell["bounded"],
+            **chaotic(setting.options),
+        )
         until_s, end = ending(phi[::stride], tick_s)
         rows.append({**constants, "until_s": until_s, "end": end})
     return rows
@@ -211,7 +246,16 @@ def model_constants(setting: Setting) -> WheelConstants:
     }
 
 
-def model_run(moment: float, friction: float, remembered: float, *, bounded: bool) -> Array:
+def model_run(
+    moment: float,
+    friction: float,
+    remembered: float,
+    *,
+    bounded: bool,
+    a: float,
+    tau_s: float,
+    k: float,
+) -> Array:
     """Follow the paper's model of a wheel from rest at angle 0.
 
     Args:
@@ -219,17 +263,19 @@ def model_run(moment: float, friction: float, remembered: float, *, bounded: boo
         friction: friction f, in the model's units.
         remembered: the angle (rad) that the potentials begin with.
         bounded: whether the torque M drives the wheel; otherwise the force F_tan does.
+        a: gain of the neurons (1).
+        tau_s: time constant of the potentials (s).
+        k: spring constant (1).
 
     Returns:
         Its angles (rad), one every MODEL_STEP_S.
     """
-    a = Params().a
     x1, x2, angle, omega = cos(remembered), sin(remembered), 0.0, 0.0
     angles = []
     for _ in range(round(MODEL_S / MODEL_STEP_S)):
         at_1, at_2 = actual_positions(angle)
         x1, x2, force, torque = step_wheel(
-            x1, x2, at_1, at_2, at_1, at_2, at_1, at_2, MODEL_STEP_S, a, TAU_S, K, 2
+            x1, x2, at_1, at_2, at_1, at_2, at_1, at_2, MODEL_STEP_S, a, tau_s, k, 2
         )
         drive = torque if bounded else force
         omega += MODEL_STEP_S * acceleration(drive, omega, moment, friction, 0.0)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.client.robot import Robot
+from host.experiments.registry import claimed
 from host.experiments.robot.kick_map_rows import Cell, ChunkCell, Row, TrialCell, counts, of_kind
 from host.experiments.robot.reliability import kick_settled
 from host.kicking.kick_map import (
@@ -29,9 +30,10 @@ from host.kicking.outcome import DIRECTIONS, OPPOSITE
 from host.kicking.planning import choose
 from host.kicking.robot_claims import INVERTED, SHIFTED, quenched, surest
 from host.logs.log import Log
+from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
-from host.util.intervals import fraction, wilson
+from host.util.intervals import fraction, standard_error, wilson
 from robot.kicks import DEFAULT_TICKS, PHASE, POSITION, WHEELS
 
 # Kicks in one cell: they take some seconds, and memory that any machine has. A million kicks make
@@ -169,7 +171,34 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             for before in (1, -1)
         ],
     }
-    return Findings([claim.doubted(setting.elsewhere()) for claim in claims], numbers)
+    foreign = setting.elsewhere(**claimed("kick-map"))
+    return Findings(
+        [claim.doubted(foreign) for claim in claims], numbers, answers=_answers(numbers)
+    )
+
+
+def _answers(numbers: Numbers) -> list[Answer]:
+    """The paper's kick at any phase, and the best one, of each kind and direction."""
+    answers = []
+    for own in numbers["maps"]:
+        kick = "inverted positions"
+        if own["mode"] == PHASE:
+            kick = f"phase kicks of {'+' if own['sign'] > 0 else '-'}135°"
+        way = "forward" if own["before"] > 0 else "backward"
+        blind, best = own["blind_as_in_the_paper"], own["best"]
+        answers += [
+            _rate_answer(f"{kick}, {way} wheels: {blind['ticks']} ticks reverse", blind),
+            _rate_answer(f"{kick}, {way} wheels: the best kick reverses", best),
+            Answer(f"{kick}, {way} wheels: its length", best and best["ticks"], None, "ticks"),
+        ]
+    return answers
+
+
+def _rate_answer(name: str, rate: Rate | None) -> Answer:
+    if rate is None or rate["rate"] is None:
+        return Answer(name, None)
+    low, high = rate["interval"]
+    return Answer(name, 100 * rate["rate"], 100 * standard_error((low, high)), "%")
 
 
 def _kind_numbers(rows: list[Row], mode: str, sign: int, before: int) -> KindNumbers:

@@ -15,24 +15,26 @@ import numpy as np
 
 from host.client.robot import Robot
 from host.errors import NotDone
-from host.kicking.kick_map import KickCell, request, shift_of
+from host.experiments.registry import claimed
+from host.kicking.kick_map import KickCell, request, shift_of, span_ticks, times_of
 from host.kicking.outcome import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
 from host.kicking.robot_claims import INVERTED, SHIFTED, inversions, quenched
 from host.logs.log import Log
 from host.logs.motion import settling_s
+from host.runs.answers import Answer, share
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction
 from robot.kick_requests import parse
-from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS
-from robot.params import Params
+from robot.kicks import DEFAULT_TICKS, MEMBRANE, PHASE, POSITION, WHEELS
 from sim_motor.batch import run
 
 LENGTHS = tuple(range(1, 11))
 TURN_S = 0.5
 # If no wheel runs in one of the directions after this many batches, it is not by chance.
 PATIENT_BATCHES = 3
-_SETTLE_TICKS, _WATCH_TICKS = 170, 130
+# How long a wheel settles before a kick and is watched after it, without the neurons' memory, s.
+_SETTLE_S, _WATCH_S = 3.1, 1.9
 
 
 class Cell(KickCell):
@@ -93,7 +95,9 @@ def simulate(cell: Cell, setting: Setting) -> list[Trial]:
     """Kick simulated wheels until enough of them ran in each direction."""
     rng = np.random.default_rng(setting.seed_of(cell))
     asked = request(cell["mode"], cell["ticks"], shift_of(cell["sign"]))
-    kick = parse({"id": "reliability", **asked}, (0, 0), Params(), _SETTLE_TICKS)
+    params = setting.params()
+    settle, watch = span_ticks(_SETTLE_S, params), span_ticks(_WATCH_S, params)
+    kick = parse({"id": "reliability", **asked}, (0, 0), params, settle)
     published, trials = setting.constants, setting.options["trials"]
     rows: dict[int, list[Trial]] = {1: [], -1: []}
     batches = 0
@@ -102,19 +106,20 @@ def simulate(cell: Cell, setting: Setting) -> list[Trial]:
             raise NotDone(
                 f"of {3 * trials * batches} simulated wheels {len(rows[1])} rolled forward and"
                 f" {len(rows[-1])} backward, and nothing else can be kicked around",
-                "is the battery too weak for this motor?",
+                "is k too small, or the battery too weak for this motor?",
             )
         batches += 1
         motors = published.specimens(3 * trials, rng)
-        ticks = _SETTLE_TICKS + kick.ticks + _WATCH_TICKS
+        ticks = settle + kick.ticks + watch
         result = run(
             len(motors),
             ticks,
             int(rng.integers(2**32)),
-            params=setting.params(),
+            params=params,
             kick=kick,
             motors=motors,
             battery_v=setting.battery_v,
+            times=times_of(ticks, params),
         )
         wheels = zip(
             result.before.tolist(), result.reversed.tolist(), result.settled_s.tolist(), strict=True
@@ -188,8 +193,27 @@ def report(rows: list[Row], setting: Setting) -> Findings:
             for name, mode, named in kinds
         },
     }
-    claims = [claim.doubted(setting.elsewhere()) for claim in claims]
-    return Findings(claims, numbers)
+    claims = [claim.doubted(setting.elsewhere(**claimed("reliability"))) for claim in claims]
+    return Findings(claims, numbers, answers=_answers(rows))
+
+
+def _answers(rows: list[Row]) -> list[Answer]:
+    """The share of each kick that reverses a wheel, the paper's lengths first."""
+    answers = [share("inversions of the potentials that reverse", *rate(points(rows, MEMBRANE, 1)))]
+    of_kinds = [
+        (f"{words} of {ticks} tick{'' if ticks == 1 else 's'} that reverse", mode, ticks, named)
+        for words, mode, named in (
+            ("inverted positions", POSITION, None),
+            ("phase kicks", PHASE, True),
+            ("phase kicks of the other sign", PHASE, False),
+        )
+        for ticks in LENGTHS
+    ]
+    of_kinds.sort(key=lambda kind: kind[2] != DEFAULT_TICKS[kind[1]])
+    return answers + [
+        share(words, *rate(points(rows, mode, ticks, named)))
+        for words, mode, ticks, named in of_kinds
+    ]
 
 
 def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | None) -> Claim:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.client.robot import Robot
+from host.experiments.registry import claimed
 from host.experiments.robot.timeline_rows import (
     Cell,
     Kick,
@@ -31,9 +32,10 @@ from host.kicking.primitives import drive
 from host.kicking.robot_claims import LEAST_TRIALS, inversions
 from host.logs.log import Log
 from host.logs.motion import settling_s
+from host.runs.answers import Answer, share
 from host.runs.claims import Claim, too_few
 from host.runs.contract import Findings, Options, Setting
-from host.util.intervals import bootstrap_interval, wilson
+from host.util.intervals import bootstrap_interval, standard_error, wilson
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, PHASE, POSITION
 
 simulate = None
@@ -178,7 +180,25 @@ def report(rows: list[TimelineRow], setting: Setting) -> Findings:
         _settling(done).doubted(few),
         _slips(done).doubted(few),
     ]
-    return Findings([claim.doubted(setting.elsewhere()) for claim in claims], numbers)
+    foreign = setting.elsewhere(**claimed("timeline"))
+    answers = [answer for mode in KICKS for answer in _answers(mode, kick_rows(rows, mode))]
+    return Findings([claim.doubted(foreign) for claim in claims], numbers, answers=answers)
+
+
+def _answers(mode: str, kicks: list[KickRow]) -> list[Answer]:
+    done = settled_kicks(kicks)
+    return [
+        share(f"{mode} kicks that reverse", sum(row["reversed"] for row in kicks), len(kicks)),
+        _median("  they settle in (median)", [kick.settling_s for kick in done], "s"),
+        _median("  they slip by (median)", [abs(kick.slip_rad) for kick in done], "rad"),
+        _median("  without a kick they drift by", [abs(kick.drift_rad) for kick in done], "rad"),
+    ]
+
+
+def _median(name: str, values: list[float], unit: str) -> Answer:
+    interval = bootstrap_interval(values, np.median)
+    error = standard_error(interval) if interval else None
+    return Answer(name, float(np.median(values)) if values else None, error, unit)
 
 
 def _mode_numbers(kicks: list[KickRow]) -> ModeNumbers:

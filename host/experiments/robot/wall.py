@@ -19,6 +19,7 @@ from typing import TypedDict
 import numpy as np
 
 from host.client.robot import Robot
+from host.experiments.registry import claimed
 from host.experiments.robot import unattended
 from host.experiments.robot.wall_hits import Motion, bounces, motion_since, read_hit, read_series
 from host.experiments.robot.wall_rows import (
@@ -46,6 +47,7 @@ from host.kicking.primitives import SHIFT_TOWARD
 from host.kicking.robot_claims import WHEEL_RADIUS_M
 from host.logs.log import Log
 from host.runs import presets
+from host.runs.answers import Answer, share
 from host.runs.claims import Claim, too_few
 from host.runs.contract import Findings, Options, Setting
 from host.runs.presets import OPTION
@@ -88,20 +90,22 @@ MAPS: dict[str, list[Condition]] = {
 
 def cells(options: Options, *, batch: bool) -> list[WallCell]:
     """All hits under one condition for the simulation, one hit for a robot."""
-    hits = options["bounces"]
+    hits, k = options["bounces"], options["k"]
     if not batch:
-        return [{"k": PAPER["k"], "hit": hit} for hit in range(hits)]
+        return [{"k": k, "hit": hit} for hit in range(hits)]
     if options.get(OPTION.name) == presets.PAPER:
-        return [{"part": "claim", **ON_AXLES, "hits": BEST_HITS * hits}]
+        return [{"part": "claim", "k": k, **ON_AXLES, "hits": BEST_HITS * hits}]
     # To tell the best condition from one at TARGET takes more hits.
     counts = [(PAPER, hits), (ON_SMOOTH, hits), (ON_AXLES, BEST_HITS * hits)]
-    work: list[WallCell] = [{"part": "claim", **where, "hits": count} for where, count in counts]
+    work: list[WallCell] = [
+        {"part": "claim", "k": k, **where, "hits": count} for where, count in counts
+    ]
     done = [condition for condition, _ in counts]
     for condition in (condition for plane in MAPS.values() for condition in plane):
         if condition not in done:
-            work.append({"part": "map", **condition, "hits": MAP_HITS})
+            work.append({"part": "map", "k": k, **condition, "hits": MAP_HITS})
             done.append(condition)
-    work += [{"part": "series", **condition} for condition in (PAPER, ON_AXLES)]
+    work += [{"part": "series", "k": k, **condition} for condition in (PAPER, ON_AXLES)]
     return work
 
 
@@ -143,7 +147,7 @@ def _run_into_wall(cell: OneHit | SeriesCell, setting: Setting, *, stop: bool) -
     def run(seconds: float) -> None:
         log.take_records(unattended.run(loop, ceil(seconds / loop.params.tick_s)))
 
-    loop.set_params({**setting.preset.params, "k": 0.0})
+    loop.set_params({**setting.own_params(), "k": 0.0})
     loop.start()
     run(REST_S)
     log.records.clear()
@@ -174,19 +178,35 @@ def report(rows: list[WallRow], setting: Setting) -> Findings:
     """R13."""
     hits = hits_under(rows, PAPER) or hits_under(rows, ON_AXLES)
     done, tried = count_bounces(hits)
-    share = fraction(done, tried)
+    part = fraction(done, tried)
     claim = Claim(
         "R13",
         "at k = 2 a robot that hits a wall reverses by itself, with no sensor for it",
         ">= 95 % of 50 bounces, M changes sign",
-        share,
+        part,
         "1",
         wilson(done, tried),
-        share >= TARGET and all(_changes_sign(row) for row in hits if row["reversed"]),
+        part >= TARGET and all(_changes_sign(row) for row in hits if row["reversed"]),
         _note(rows, hits),
     )
     few = too_few(tried, BOUNCES, "hits")
-    return Findings([claim.doubted(setting.elsewhere(), few)], _numbers(rows, hits))
+    foreign = setting.elsewhere(**claimed("wall"))
+    numbers = _numbers(rows, hits)
+    answers = [
+        share(f"hits that reverse the robot, {where}", *count_bounces(own))
+        for where, own in (
+            ("wheels fixed to the motors", hits_under(rows, PAPER)),
+            ("smooth floor", hits_under(rows, ON_SMOOTH)),
+            ("soft axles", hits_under(rows, ON_AXLES)),
+        )
+        if own
+    ]
+    answers += [
+        Answer("torque M before a bounce (median)", numbers["torque_before"]),
+        Answer("torque M after it (median)", numbers["torque_after"]),
+        Answer("a bounce takes (median)", numbers["took_s"], None, "s"),
+    ]
+    return Findings([claim.doubted(foreign, few)], numbers, answers=answers)
 
 
 def _changes_sign(row: HitRow) -> bool:

@@ -15,14 +15,12 @@ class Condition(TypedDict):
     """The circumstances of a hit.
 
     Attributes:
-        k: spring constant (1).
         grip: friction coefficient of the tyres on the floor (1).
         bumper: width of the body's front and rear (m).
         axle: stiffness of the axle of a wheel, at its rim (N/m); None for a rigid one.
         battery_v: open-circuit voltage of the battery (V); None for the run's own.
     """
 
-    k: float
     grip: float
     bumper: float
     axle: float | None
@@ -34,9 +32,11 @@ class HitsCell(Condition):
 
     Attributes:
         part: `claim` for the conditions that R13 names, `map` for all others.
+        k: spring constant (1).
         hits: how many hits.
     """
 
+    k: float
     part: Literal["claim", "map"]
     hits: int
 
@@ -48,8 +48,9 @@ class OneHit(HitsCell):
 
 
 class SeriesCell(Condition):
-    """A simulated robot that bounces to and fro for a while."""
+    """A simulated robot that bounces to and fro for a while. k: spring constant (1)."""
 
+    k: float
     part: Literal["series"]
 
 
@@ -131,7 +132,6 @@ WallRow = HitRow | SeriesRow
 # The ordinary condition: a rough floor, and wheels that sit on the motors rigidly.
 CARPET, SMOOTH = ROBOT["grip_on_carpet"], ROBOT["grip"]
 PAPER: Condition = {
-    "k": 2.0,
     "grip": CARPET,
     "bumper": ROBOT["body_width"],
     "axle": None,
@@ -152,7 +152,6 @@ ON_AXLES: Condition = {
 def condition_of(row: WallRow) -> Condition:
     """The condition of a row; what a real robot's row does not say is taken to be the paper's."""
     return {
-        "k": row["k"],
         "grip": row.get("grip", PAPER["grip"]),
         "bumper": row.get("bumper", PAPER["bumper"]),
         "axle": row.get("axle", PAPER["axle"]),

@@ -51,7 +51,8 @@ def draw(rows: list[BifurcationRow], findings: Findings) -> Figure:
         stall: Any = {"color": "grey", "alpha": 0.25, "linewidth": 0}
         for axes in upper:
             axes.axhspan(-STALL_TORQUE, STALL_TORQUE, label=f"stall, $|M|<{STALL_TORQUE}$", **stall)
-        upper[0].set_xlim(-0.1, 8.2)
+        greatest_k = max((row["k"] for row in rows if row["part"] == "sweep"), default=8.0)
+        upper[0].set_xlim(-0.1, greatest_k + 0.2)
         upper[1].set_xlim(k_c + _NEAR_K[0], k_c + _NEAR_K[1])
         upper[1].xaxis.set_major_locator(MultipleLocator(0.01))
         upper[1].text(k_c - 0.002, 0.43, f"$k_c$ = {k_c:.3f}", ha="right", va="top")

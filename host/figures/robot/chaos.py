@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.experiments.robot.chaos_numbers import tally
-from host.experiments.robot.chaos_pieces import SEEN, TAU_S, TWIN_S, UNSEEN, K
+from host.experiments.robot.chaos_pieces import SEEN, TWIN_S, UNSEEN
 from host.experiments.robot.chaos_rows import (
     ChaosRow,
     MapRow,
@@ -26,7 +26,6 @@ from host.figures.style import COLOURS, SIZE, styled
 from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
 from host.util.intervals import wilson
-from robot.params import Params
 from sim_motor.settling import COUNT_RAD
 
 STRETCH_S = 20.0
@@ -45,6 +44,7 @@ def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
     """Draw the rows of a simulated brick, or of a robot, which has neither twins nor map."""
     wheels = series_of_wheels(rows)
     places = map_rows(rows)
+    params = findings.numbers["parameters"]
     with styled():
         figure = Figure(**{**SIZE, "figsize": _SLIDE})
         grid = figure.add_gridspec(2, 3)
@@ -59,14 +59,14 @@ def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
             _draw_return_map(axes, older, OLDER)
             end_s = max(series[-1]["t_s"] for series in wheels.values())
             _draw_lives(figure.add_subplot(grid[1, 0]), rows, end_s)
-            _draw_twins(figure.add_subplot(grid[1, 1]), twins_rows(rows))
+            _draw_twins(figure.add_subplot(grid[1, 1]), twins_rows(rows), params)
             _draw_map(figure.add_subplot(grid[1, 2]), places)
         else:
             _draw_return_map(axes, list(wheels.values()), "both wheels")
             _draw_intervals(figure.add_subplot(grid[1, :]), list(wheels.values()))
         figure.suptitle(
-            f"Chaos at $a$ = {Params().a:g}, $k$ = {K:g}, $\\tau$ = {TAU_S:g} s: do the wheels"
-            " switch irregularly?",
+            "Chaos at $a$ = {a:g}, $k$ = {k:g}, $\\tau$ = {tau_s:g} s: do the wheels switch"
+            " irregularly?".format(**params),
             fontsize=18,
         )
     return figure
@@ -133,7 +133,9 @@ def _draw_lives(axes: Axes, rows: list[ChaosRow], end_s: float) -> None:
     axes.set_title("how many last (line: 95 % interval)", fontsize=14, loc="left")
 
 
-def _draw_twins(axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]]) -> None:
+def _draw_twins(
+    axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]], params: dict[str, float]
+) -> None:
     """Draw the median, and 10 to 90 %, of the distance of twins."""
     for (condition, jump, label, place), colour in zip(_TWINS, COLOURS, strict=False):
         pairs = twins[condition, jump]
@@ -143,7 +145,7 @@ def _draw_twins(axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]]) -> N
         axes.plot(since_s, median, color=colour)
         axes.text(*place, label, color=colour, fontsize=_SMALL, va="bottom")
         axes.fill_between(since_s, low, high, color=colour, alpha=0.2, linewidth=0)
-    seen = CONDITIONS[ORDINARY].tick_s / TAU_S * COUNT_RAD
+    seen = params["tick_s"] / params["tau_s"] * COUNT_RAD
     axes.axhline(seen, color="black", linestyle=":", linewidth=1.2)
     axes.text(TWIN_S, seen, "one degree, one tick", fontsize=_SMALL, ha="right", va="top")
     axes.set_yscale("log")

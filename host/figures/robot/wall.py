@@ -88,7 +88,7 @@ def draw(rows: list[WallRow], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**(_SLIDE if simulated else SIZE))
         hits = hits_under(rows, PAPER) or hits_under(rows, ON_AXLES)
-        title = f"A wall reverses the robot ($k$ = 2) in {_words(hits)} hits"
+        title = f"A wall reverses the robot ($k$ = {rows[0]['k']:g}) in {_words(hits)} hits"
         if simulated:
             title += f", and on soft axles in {_words(hits_under(rows, ON_AXLES))}"
         figure.suptitle(title, fontsize=17)

@@ -34,6 +34,7 @@ from host.theory.studies.route_to_chaos import (
     rolling_end_numbers,
     route,
 )
+from host.util.intervals import standard_error
 
 # Values of k, wheels of either start at each, and values in a cell.
 KS, WHEELS, BAND = 160, 8, 16
@@ -87,12 +88,7 @@ def report(rows: list[LineRow], setting: Setting) -> Findings:
     ]
     if found:
         answers += [
-            Answer("chaos lasts above k (crisis)", found.k, _error(found.k_interval)),
-            Answer("power of the mean life", found.power, _error(found.power_interval)),
+            Answer("chaos lasts above k (crisis)", found.k, standard_error(found.k_interval)),
+            Answer("power of the mean life", found.power, standard_error(found.power_interval)),
         ]
     return Findings([], numbers, answers=answers)
-
-
-def _error(interval: tuple[float, float]) -> float:
-    """A standard error from a 95 % interval."""
-    return (interval[1] - interval[0]) / (2 * 1.96)

@@ -14,7 +14,7 @@ from host.logs.log import Log
 from host.runs.contract import Setting
 from robot.kicks import WHEELS
 
-SETTING = Setting(1, {"points": 33, "rounds": 3})
+SETTING = Setting(1, {"points": 33, "rounds": 3, "k": 8.0})
 
 
 def done(cell, seed=3):
@@ -58,7 +58,7 @@ def test_the_same_k_finds_the_robot_running_on_the_way_down_and_at_rest_on_the_w
             for way in ("down", "up")
         }
         assert len(runs["down"] - runs["up"]) >= 2
-        assert bifurcation.START_K in runs["up"]
+        assert 8.0 in runs["up"]
         assert min(runs["down"] | runs["up"]) > 0.44
 
 
@@ -133,9 +133,9 @@ def test_the_figure_separates_unstable_cycles_from_stable_ones(sweep, folds, bra
 
 
 def test_a_ladder_has_as_many_rungs_as_asked_for_and_is_denser_at_small_k():
-    steps = bifurcation.ladder(33)
+    steps = bifurcation.ladder(33, 8.0)
     assert len(set(steps)) == 33
     assert steps == sorted(steps)
     assert steps[0] == LEAST_K
-    assert steps[-1] == bifurcation.START_K
+    assert steps[-1] == 8.0
     assert sum(k <= MIDDLE_K for k in steps) >= 16

@@ -13,9 +13,9 @@ from host.logs.log import Log
 from host.runs.contract import Setting
 from robot.kicks import WHEELS
 
-SETTING = Setting(1, {"bounces": 50})
+SETTING = Setting(1, {"bounces": 50, "k": 2.0})
 TICK_S = 0.03
-FLOOR = {"part": "claim", **wall_rows.PAPER}
+FLOOR = {"part": "claim", "k": 2.0, **wall_rows.PAPER}
 
 
 def ticks(*phases):
@@ -100,8 +100,8 @@ def test_cells_are_plain_data_and_name_every_condition_once():
         assert json.loads(json.dumps(cells)) == cells
         texts = [json.dumps(cell, sort_keys=True) for cell in cells]
         assert len(set(texts)) == len(texts)
-    assert len(wall.cells({"bounces": 7}, batch=False)) == 7
-    claimed = wall.cells({"bounces": 7}, batch=True)[0]
+    assert len(wall.cells({"bounces": 7, "k": 2.0}, batch=False)) == 7
+    claimed = wall.cells({"bounces": 7, "k": 2.0}, batch=True)[0]
     assert (claimed["part"], claimed["k"], claimed["hits"]) == ("claim", 2.0, 7)
 
 
@@ -154,7 +154,7 @@ def test_on_a_rough_floor_most_hits_bounce_and_m_changes_its_sign():
 
 def test_on_soft_axles_nearly_every_hit_bounces():
     """The blocked motor springs back on its axle. A rigid one reverses two of three hits."""
-    rows = wall.simulate({"part": "claim", **wall_rows.ON_AXLES, "hits": 24}, SETTING)
+    rows = wall.simulate({**FLOOR, **wall_rows.ON_AXLES, "hits": 24}, SETTING)
     assert sum(row["reversed"] for row in rows) >= 22
     assert all(row["after"] < -0.5 for row in rows if row["reversed"])
 

@@ -126,7 +126,7 @@ def own_motor(path, torque_constant):
 def test_experiments_take_the_motor_from_the_setting(tmp_path, monkeypatch):
     own = own_motor(tmp_path / "motors.toml", 0.5)
     monkeypatch.setenv("KICK_MOTORS", str(own))
-    setting = Setting(1, {"kicks": 36, "trials": 1, "bounces": 1}, motor="mine")
+    setting = Setting(1, {"kicks": 36, "trials": 1, "bounces": 1, "k": 2.0}, motor="mine")
     own.unlink()
     assert switching.Condition().constants(setting).torque_constant == 0.5
     for experiment in (kick_map, reliability, wall):
