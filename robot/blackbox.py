@@ -12,6 +12,8 @@ from robot.wire import EVENT, encode_json, encode_samples
 DEFAULT_CAPACITY = 20000  # ten minutes of 30 ms ticks in 2.2 MB
 JOURNAL_CAPACITY = 2000
 FRAMES_KEPT = 16
+# Bound once: each tick needs them.
+_pack_into, _SIZE = STRUCT.pack_into, STRUCT.size
 
 
 class Snapshot(object):
@@ -104,10 +106,9 @@ class BlackBox(object):
         Args:
             fields: The values of `robot.record.CHANNELS` after the tick's number.
         """
-        STRUCT.pack_into(
-            self._ring, self.next_tick % self._capacity * STRUCT.size, self.next_tick, *fields
-        )
-        self.next_tick += 1
+        tick = self.next_tick
+        _pack_into(self._ring, tick % self._capacity * _SIZE, tick, *fields)
+        self.next_tick = tick + 1
 
     def note(self, event, **details):
         """Put an event into the journal.

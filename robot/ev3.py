@@ -7,6 +7,7 @@ descriptors that are opened once, which is faster.
 import errno
 import os
 from math import pi
+from os import pread, pwrite
 
 import ev3dev2
 from ev3dev2.motor import LargeMotor
@@ -80,7 +81,7 @@ class Ev3Motor(Motor):
     def angle_rad(self):
         try:
             self._angle = angle = (
-                self._zero + int(os.pread(self._position, READ_BYTES, 0)) * RAD_PER_DEGREE
+                self._zero + int(pread(self._position, READ_BYTES, 0)) * RAD_PER_DEGREE
             )
         except (OSError, ValueError) as error:
             raise self._fault(error) from error
@@ -90,7 +91,7 @@ class Ev3Motor(Motor):
         try:
             if not self._running:
                 self._run()
-            os.pwrite(self._duty, DUTY_TEXT[duty_pct], 0)
+            pwrite(self._duty, DUTY_TEXT[duty_pct], 0)
         except OSError as error:
             raise self._fault(error) from error
         except KeyError:

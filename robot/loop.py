@@ -37,7 +37,10 @@ def clamp_step(dt_s, tick_s):
     Returns:
         The same time, but from SHORTEST_STEP_TICKS to LONGEST_STEP_TICKS control periods, s.
     """
-    return max(SHORTEST_STEP_TICKS * tick_s, min(LONGEST_STEP_TICKS * tick_s, dt_s))
+    shortest_s, longest_s = SHORTEST_STEP_TICKS * tick_s, LONGEST_STEP_TICKS * tick_s
+    if dt_s < shortest_s:
+        return shortest_s
+    return longest_s if dt_s > longest_s else dt_s
 
 
 class Loop(object):
@@ -110,56 +113,72 @@ class Loop(object):
     def tick(self):
         """One control period."""
         now = self.clock.now()
-        late_s, missed = self._keep_schedule(now)
-        dt_s = self._measure(now)
-        if self.lease.expire(now, self.params.link_loss_s):
+        params = self.params
+        period = params.tick_s
+        late_s, missed = self._keep_schedule(now, period)
+        tick = self.blackbox.next_tick
+        dt_s = now - self._before if tick else period
+        self._before = now
+        step_s = clamp_step(dt_s, period)
+        if step_s != dt_s:
+            self.clamped += 1
+        if self.lease.expire(now, params.link_loss_s):
             self._lose_link()
+        left, right = self._sides
         try:
-            duties = self._control(dt_s)
+            left_duty = self._drive(left, params.polarity_left, tick, step_s)
+            right_duty = self._drive(right, params.polarity_right, tick, step_s)
+            if self.safety.state == FAULT:
+                self._stop_motors()  # again, for one that did not obey
         except MotorFault as fault:
             self.fail(str(fault))
-            duties = (0, 0)
-        self._record(now, dt_s, late_s, missed, duties)
-        self.deadline += self.params.tick_s
-        if self.clock.now() > self.deadline:
+            left_duty = right_duty = 0
+        kick_code = 0 if self._kick is None else self._kick_code(tick)
+        left, right = left.wheel, right.wheel
+        self.blackbox.append(
+            (
+                now - self.epoch,
+                step_s,
+                late_s,
+                missed,
+                self.safety.state,
+                kick_code,
+                left.phi,
+                left.x1,
+                left.x2,
+                left.force,
+                left.torque,
+                left_duty,
+                right.phi,
+                right.x1,
+                right.x2,
+                right.force,
+                right.torque,
+                right_duty,
+            )
+        )
+        if tick % BATTERY_TICKS == 0:
+            self._watch_power()
+        self.deadline = deadline = self.deadline + params.tick_s
+        if self.clock.now() > deadline:
             self.overruns += 1
 
-    def _keep_schedule(self, now):
+    def _keep_schedule(self, now, period):
         """How late this tick is, s, and how many deadlines passed without one.
 
         The grid of deadlines never moves.
         """
-        period = self.params.tick_s
         late_s = now - self.deadline
-        missed = int(late_s // period) if late_s >= period else 0
-        if missed:
+        missed = 0
+        if late_s >= period:
+            missed = int(late_s // period)
             self.deadline += missed * period
             self.missed += missed
             late_s = now - self.deadline
         self.lateness[bisect_left(LATENESS_EDGES_S, late_s)] += 1
         return late_s, missed if missed < 65535 else 65535
 
-    def _measure(self, now):
-        """The time step of this tick, s."""
-        period = self.params.tick_s
-        dt_s = now - self._before if self.blackbox.next_tick else period
-        self._before = now
-        step_s = clamp_step(dt_s, period)
-        self.clamped += step_s != dt_s
-        return step_s
-
-    def _control(self, dt_s):
-        """Both wheels' duty cycles in %, as written. Raises MotorFault."""
-        left, right = self._sides
-        duties = (
-            self._drive(left, self.params.polarity_left, dt_s),
-            self._drive(right, self.params.polarity_right, dt_s),
-        )
-        if self.safety.state == FAULT:
-            self._stop_motors()  # again, for one that did not obey
-        return duties
-
-    def _drive(self, side, polarity, dt_s):
+    def _drive(self, side, polarity, tick, dt_s):
         """One wheel's tick, from its angle to its duty cycle in %. Raises MotorFault."""
         wheel, motor, travel = side
         wheel.phi = phi = polarity * motor.angle_rad()
@@ -170,28 +189,17 @@ class Loop(object):
             wheel.rest()
             return 0
         params = self.params
-        wheel.step(self.blackbox.next_tick, dt_s, params, self._kick)
-        duty = limit_duty(params.duty_scale * wheel.torque, params.max_duty_pct)
+        torque = wheel.step(tick, dt_s, params, self._kick)
+        duty = limit_duty(params.duty_scale * torque, params.max_duty_pct)
         motor.write_duty(polarity * duty)
         return duty
 
-    def _record(self, now, dt_s, late_s, missed, duties):
-        tick = self.blackbox.next_tick
+    def _kick_code(self, tick):
+        """The code of the kick that acts, for the record. Forgets a kick that ends now."""
         kick = self._kick
-        mode = 0
-        if kick is not None:
-            mode = 1 + MODES.index(kick.mode)
-            if not kick.acts_at(tick + 1):
-                self._kick = None
-        (left, _, _), (right, _, _) = self._sides
-        left_duty, right_duty = duties
-        self.blackbox.append(
-            (now - self.epoch, dt_s, late_s, missed, self.safety.state, mode)
-            + (left.phi, left.x1, left.x2, left.force, left.torque, left_duty)
-            + (right.phi, right.x1, right.x2, right.force, right.torque, right_duty)
-        )
-        if tick % BATTERY_TICKS == 0:
-            self._watch_power()
+        if not kick.acts_at(tick + 1):
+            self._kick = None
+        return 1 + MODES.index(kick.mode)
 
     def _watch_power(self):
         """Read the battery: warn when it is low, stop when it is empty, compensate if wanted."""

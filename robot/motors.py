@@ -91,13 +91,9 @@ class Battery:
 class MonotonicClock:
     """Real time. A virtual clock has the same two methods and advances when it is waited for."""
 
-    def now(self):
-        """The time on a clock that never jumps.
-
-        Returns:
-            The time, s.
-        """
-        return time.monotonic()
+    # The time on a clock that never jumps, s. Not a method: a tick asks twice, and a call costs the
+    # brick 40 us.
+    now = staticmethod(time.monotonic)
 
     def wait(self, deadline, serve):
         """Return at a time, and serve links until then.

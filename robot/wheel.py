@@ -43,20 +43,19 @@ class Wheel(object):
             The torque M, in (-1, 1).
         """
         a, tau_s, k = params.a, params.tau_s, params.k
-        actual_1, actual_2 = rod_1, rod_2 = seen_1, seen_2 = actual_positions(self.phi)
+        phi, x1, x2 = self.phi, self.x1, self.x2
+        actual_1, actual_2 = rod_1, rod_2 = seen_1, seen_2 = actual_positions(phi)
         if params.rod_lag_s and self.phi_before is not None:
             rod_1, rod_2 = actual_positions(
-                lagging_angle(self.phi, self.phi_before, dt_s, params.rod_lag_s)
+                lagging_angle(phi, self.phi_before, dt_s, params.rod_lag_s)
             )
         if kick is not None and self.side in kick.wheels:
             numbers = kick.numbers(self.index)
-            self.x1, self.x2, a, tau_s, k, beta, shift_rad = apply_kick(
-                numbers, tick, self.x1, self.x2, a, tau_s, k
-            )
-            seen_1, seen_2 = seen_positions(self.phi, beta, shift_rad)
-        self.x1, self.x2, self.force, self.torque = step_wheel(
-            self.x1,
-            self.x2,
+            x1, x2, a, tau_s, k, beta, shift_rad = apply_kick(numbers, tick, x1, x2, a, tau_s, k)
+            seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
+        x1, x2, force, torque = step_wheel(
+            x1,
+            x2,
             actual_1,
             actual_2,
             rod_1,
@@ -69,8 +68,9 @@ class Wheel(object):
             k,
             params.rods,
         )
-        self.phi_before = self.phi
-        return self.torque
+        self.x1, self.x2, self.force, self.torque = x1, x2, force, torque
+        self.phi_before = phi
+        return torque
 
     def rest(self):
         """A tick without control: the potentials stay, no force acts."""

@@ -8,12 +8,12 @@ import sys
 import time
 
 from robot import __main__ as program
-from robot.loop import Loop
+from robot.blackbox import BlackBox
 
 HANG_S = 0.6
 
 _due = []
-_record = Loop._record
+_append = BlackBox.append
 
 
 def _hang():
@@ -24,14 +24,14 @@ def _crash():
     raise ZeroDivisionError("injected")
 
 
-def _faulty_record(self, *arguments):
+def _faulty_append(self, fields):
     while _due:
         _due.pop()()
-    _record(self, *arguments)
+    _append(self, fields)
 
 
 if __name__ == "__main__":
-    Loop._record = _faulty_record
+    BlackBox.append = _faulty_append
     signal.signal(signal.SIGUSR1, lambda number, frame: _due.append(_hang))
     signal.signal(signal.SIGUSR2, lambda number, frame: _due.append(_crash))
     sys.exit(program.main())

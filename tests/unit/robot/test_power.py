@@ -124,7 +124,7 @@ def test_a_battery_of_unknown_limits_never_stops_the_robot():
 
 def test_duties_make_up_for_the_voltage_only_if_wanted_and_within_the_limit(monkeypatch):
     def duties(compensation, torque):
-        monkeypatch.setattr(Wheel, "step", lambda wheel, *_: setattr(wheel, "torque", torque))
+        monkeypatch.setattr(Wheel, "step", lambda *_: torque)
         rig = Rig(battery=Cells(6.25))
         rig.loop.set_params({"battery_compensation": compensation, "max_duty_pct": 50})
         rig.loop.start()
