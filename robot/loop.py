@@ -136,26 +136,9 @@ class Loop(object):
         kick_code = 0 if self._kick is None else self._kick_code(tick)
         left, right = left.wheel, right.wheel
         self.blackbox.append(
-            (
-                now - self.epoch,
-                step_s,
-                late_s,
-                missed,
-                self.safety.state,
-                kick_code,
-                left.phi,
-                left.x1,
-                left.x2,
-                left.force,
-                left.torque,
-                left_duty,
-                right.phi,
-                right.x1,
-                right.x2,
-                right.force,
-                right.torque,
-                right_duty,
-            )
+            (now - self.epoch, step_s, late_s, missed, self.safety.state, kick_code)
+            + (left.phi, left.x1, left.x2, left.force, left.torque, left_duty)
+            + (right.phi, right.x1, right.x2, right.force, right.torque, right_duty)
         )
         if tick % BATTERY_TICKS == 0:
             self._watch_power()
