@@ -112,7 +112,7 @@ class Peer(object):
         self.out += self.session.refuse(code, message, hint, **more)
 
     def send(self, now):
-        """Send what the link takes now.
+        """Send what the link takes now, records too if it is to get any.
 
         Args:
             now: The robot's clock (s).
@@ -130,6 +130,17 @@ class Peer(object):
                 self.streaming = False
             else:
                 self.out += frame
+        return self.flush(now)
+
+    def flush(self, now):
+        """Send what the link takes now of what waits already.
+
+        Args:
+            now: The robot's clock (s).
+
+        Returns:
+            Whether the link is still open.
+        """
         if self.out:
             try:
                 del self.out[: os.write(self.fd, self.out)]

@@ -36,6 +36,7 @@ RETRY_S = 60
 LINE_RETRY_S = 1.0
 # Nobody pauses for this long within a frame: what looks like the beginning of one was noise.
 LINE_SILENCE_S = 0.2
+_LOST = select.EPOLLHUP | select.EPOLLERR
 
 
 class _Line(object):
@@ -61,6 +62,7 @@ class Server(object):
         self._records_s = records_s
         self.boot = new_id()
         self._loop = loop
+        self._now = loop.clock.now
         self._token = token
         self._listener = None
         self._poll = select.epoll()
@@ -114,7 +116,7 @@ class Server(object):
             The Peer at its other end.
         """
         session = Session(self._loop, self._token, self.boot)
-        peer = Peer(link, session, self._loop.clock.now(), lasting, self._records_s)
+        peer = Peer(link, session, self._now(), lasting, self._records_s)
         self._peers.append(peer)
         self._by_fd[peer.fd] = peer
         self._poll.register(peer.fd, peer.events())
@@ -133,7 +135,7 @@ class Server(object):
         """Send everybody what is left, as far as the links take it, and close them."""
         for peer in list(self._peers):
             peer.streaming = True
-            peer.send(self._loop.clock.now())
+            peer.send(self._now())
             self._drop(peer)
         if self._listener is not None:
             self._listener.close()
@@ -146,8 +148,7 @@ class Server(object):
         Args:
             timeout_s: How long to wait for more (s).
         """
-        clock = self._loop.clock
-        now = clock.now()
+        now = self._now()
         until = now + timeout_s
         for line in self._lines:
             if line.peer is None and now >= line.next_try:
@@ -155,16 +156,18 @@ class Server(object):
         if now >= self._sweep_due:
             self._sweep_due = now + SWEEP_S
             self._sweep(now)
-        if self._turns.tick != self._loop.blackbox.next_tick:
-            self._turns.tick = self._loop.blackbox.next_tick
+        tick = self._loop.blackbox.next_tick
+        if self._turns.tick != tick:
+            self._turns.tick = tick
             self._choose_readers(now)
         more = True
         while more:
             # Everybody is heard again and again, so that a stop is obeyed before the next tick.
             accepted = self._hear(until)
-            more = self._work(until) or (accepted and clock.now() <= until)
-        left_s = until - clock.now()
-        if timeout_s > 0.0 and left_s > 0.0:
+            worked = self._turns.queue and self._work(until)
+            more = worked or (accepted and self._now() <= until)
+        left_s = until - self._now() if timeout_s > 0.0 else 0.0
+        if left_s > 0.0:
             # An epoll object waits for whole milliseconds only.
             select.select((self._poll.fileno(),), (), (), left_s)
 
@@ -173,34 +176,35 @@ class Server(object):
 
         If there is more to read than time, those who have waited longest come first.
         """
-        clock = self._loop.clock
         ready = self._poll.poll(0)
         if not ready and not self._lines:
             return False
-        now = clock.now()
+        now = self._now()
         until = max(until, now + HEARING_S)
         accepted = False
         if len(ready) > 1:
             ready.sort(key=self._heard)
         for fd, mask in ready:
-            if clock.now() > until:
+            if now > until:
                 break
             peer = self._by_fd.get(fd)
             if peer is None:
                 peer = self._accept()
-                accepted = accepted or peer is not None
-            if peer is None:
-                continue
-            lost = mask & (select.EPOLLHUP | select.EPOLLERR)
-            if (peer.reads or lost) and not (peer.read(now) and self._obey_stop(peer, now)):
+                if peer is None:
+                    continue
+                accepted = True
+            if (peer.reads or mask & _LOST) and not (
+                peer.read(now) and self._answer_at_once(peer, now)
+            ):
                 self._drop(peer)
             elif peer.due:
                 self._watch(peer)  # it has to wait: hear no more of it until then
             elif peer.ready or peer.out:
                 self._turns.call(peer)
+            if len(ready) > 1:
+                now = self._now()
         for line in self._lines:
-            if line.peer is not None:
-                self._skip_noise(line.peer, now)
+            self._skip_noise(line.peer, now)
         return accepted
 
     def _heard(self, event):
@@ -208,13 +212,20 @@ class Server(object):
         peer = self._by_fd.get(event[0])
         return -1.0 if peer is None else peer.heard
 
-    def _obey_stop(self, peer, now):
-        """Obey a stop at once. One that changes nothing waits for its turn, as all else.
+    def _answer_at_once(self, peer, now):
+        """Obey a stop, and answer a beat, without a turn. Returns whether the link is still open.
 
-        Returns whether the link is still open.
+        A stop that changes nothing waits for its turn, as all else.
         """
-        moving = self._loop.safety.state in (RUNNING, HELD)
-        if moving and peer.frame is not None and peer.frame[0] == wire.STOP:
+        if peer.frame is not None and peer.frame[0] == wire.BEAT and peer.session.trusted:
+            (kind, payload), peer.frame = peer.frame, None
+            peer.out += peer.session.receive(kind, payload)
+            peer.look()
+            if not peer.flush(now):
+                return False
+        if peer.frame is None or peer.frame[0] != wire.STOP:
+            return True
+        if self._loop.safety.state in (RUNNING, HELD):
             self._answer(peer)
             return peer.send(now)
         return True
@@ -224,9 +235,7 @@ class Server(object):
 
         Returns whether there was any turn.
         """
-        if not self._turns.waiting:
-            return False
-        begin = now = self._loop.clock.now()
+        begin = now = self._now()
         peer = self._turns.next(until)
         worked = peer is not None
         while peer is not None:
@@ -245,7 +254,7 @@ class Server(object):
             self._watch(peer)
         else:
             self._drop(peer)
-        now = self._loop.clock.now()
+        now = self._now()
         # A machine that was asleep says nothing about the next turn.
         self._turns.end(answers, min(now - begin, 2.0 * self._loop.params.tick_s))
         return now
@@ -324,7 +333,7 @@ class Server(object):
             "try again in {} s".format(RETRY_S),
             retry_s=RETRY_S,
         )
-        stranger.send(self._loop.clock.now())
+        stranger.send(self._now())
         self._drop(stranger)
 
     def _open(self, line, now):
@@ -336,11 +345,11 @@ class Server(object):
 
     def _skip_noise(self, peer, now):
         """Skip what looks like the beginning of a frame if it has not gone on for too long."""
-        if peer.due or now - peer.heard <= LINE_SILENCE_S:
+        if peer is None or peer.due or now - peer.heard <= LINE_SILENCE_S:
             return
         peer.decoder.skip()
         peer.look()
-        self._obey_stop(peer, now)
+        self._answer_at_once(peer, now)
         if peer.ready or peer.out:
             self._turns.call(peer)
 

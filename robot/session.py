@@ -40,6 +40,8 @@ _NOT_FOR_SCREENS = (
     ("\ufff0", "\uffff"),
     ("\U000e0000", "\U0010ffff"),
 )
+# What nearly every beat is answered by.
+_NOBODY_TOOK_OVER = wire.encode_json(wire.BEAT, {"taken_over_by": None})
 SEE_PROTOCOL = "see PROTOCOL.md for what the robot understands"
 
 
@@ -133,8 +135,9 @@ class Session(object):
         Returns:
             The frames that answer it, as bytes.
         """
-        identity = None
         try:
+            if kind == wire.BEAT and self.trusted:
+                return self._beat(self._unseal(payload))
             if kind == wire.HELLO:
                 return self._hello(wire.load(payload))
             if kind == wire.STOP:
@@ -143,28 +146,33 @@ class Session(object):
                 raise wire.BadMessage("there was no hello before it")
             if kind == wire.AUTH:
                 return self._authenticate(wire.load(payload))
-            if kind == wire.COMMAND:
-                if not self.trusted:
-                    return self.refuse(
-                        "token",
-                        "commands need the robot's token",
-                        "without it you may only look, and stop the robot",
-                    )
-                payload = self._unseal(payload)
-            elif kind != wire.ASK:
-                raise wire.BadMessage("frames of type {} come from the robot only".format(kind))
-            message = wire.load(payload)
-            identity = _identity(message)
-            answer = {
-                "result": commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
-            }
-        except Refused as refusal:
-            answer = {"error": refusal.as_dict()}
+            return self._carry_out(kind, payload)
         except (
             wire.BadMessage,
             RecursionError,
         ) as error:  # what is nested too deeply to be shown in a refusal
             return self.refuse("broken", str(error), SEE_PROTOCOL)
+
+    def _carry_out(self, kind, payload):
+        """Do what a request says, and answer it. Raises BadMessage if it is none."""
+        if kind in (wire.COMMAND, wire.BEAT):
+            if not self.trusted:
+                return self.refuse(
+                    "token",
+                    "commands need the robot's token",
+                    "without it you may only look, and stop the robot",
+                )
+            payload = self._unseal(payload)
+        elif kind != wire.ASK:
+            raise wire.BadMessage("frames of type {} come from the robot only".format(kind))
+        message = wire.load(payload)
+        identity = _identity(message)
+        try:
+            answer = {
+                "result": commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
+            }
+        except Refused as refusal:
+            answer = {"error": refusal.as_dict()}
         return wire.encode_json(wire.REPLY, dict(answer, id=identity))
 
     def refuse(self, code, message, hint, **more):
@@ -273,9 +281,19 @@ class Session(object):
         robot_proof = binascii.hexlify(self._handshake.robot_proof).decode("ascii")
         return wire.encode_json(wire.AUTH, {"proof": robot_proof})
 
+    def _beat(self, payload):
+        """Answer a sign of life by who has taken over."""
+        if payload:
+            raise wire.BadMessage("a beat carries nothing but its seal")
+        winner = self._loop.lease.taken_over_by(self.client)
+        if winner is None:
+            return _NOBODY_TOOK_OVER
+        return wire.encode_json(wire.BEAT, {"taken_over_by": winner})
+
     def _unseal(self, payload):
         self._counter, payload = wire.unseal(self._handshake.key, self._counter, payload)
-        self._loop.lease.heard(self.client, self._loop.clock.now())
+        loop = self._loop
+        loop.lease.heard(self.client, loop.clock.now())
         return payload
 
     def subscribe(self, tick):

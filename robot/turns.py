@@ -19,12 +19,13 @@ class Turns(object):
 
     Attributes:
         tick: The tick before which this pause is.
+        queue: The peers that wait for their turn, in order.
     """
 
     def __init__(self, clock):
         self.tick = -1
-        self._clock = clock
-        self._queue = deque()
+        self._now = clock.now
+        self.queue = deque()
         # What turns took lately (s): those that only send, and those that answer a frame.
         self._longest_s = [0.0, 0.0]
         # In which pause others, and the first ones, had their latest turn.
@@ -41,12 +42,12 @@ class Turns(object):
         if peer.due:
             if not first:
                 return
-            self._queue.remove(peer)
+            self.queue.remove(peer)
         peer.due = True
         if first:
-            self._queue.appendleft(peer)
+            self.queue.appendleft(peer)
         else:
-            self._queue.append(peer)
+            self.queue.append(peer)
 
     def forget(self, peer):
         """Give a peer no turn.
@@ -55,12 +56,7 @@ class Turns(object):
             peer: A robot.peer.Peer.
         """
         if peer.due:
-            self._queue.remove(peer)
-
-    @property
-    def waiting(self):
-        """Whether any peer waits for its turn."""
-        return bool(self._queue)
+            self.queue.remove(peer)
 
     def next(self, until):
         """Begin the next turn, if there is time.
@@ -71,9 +67,9 @@ class Turns(object):
         Returns:
             The peer that has it, or None.
         """
-        if not self._queue or not self._has_time(self._queue[0], until):
+        if not self.queue or not self._has_time(self.queue[0], until):
             return None
-        peer = self._queue.popleft()
+        peer = self.queue.popleft()
         peer.due = False
         self._latest[peer.first] = self.tick
         return peer
@@ -90,4 +86,4 @@ class Turns(object):
     def _has_time(self, peer, until):
         if self.tick - self._latest[peer.first] >= (1 if peer.first else 2):
             return True
-        return self._clock.now() + self._longest_s[peer.frame is not None] <= until
+        return self._now() + self._longest_s[peer.frame is not None] <= until

@@ -7,7 +7,7 @@ import struct
 import zlib
 from functools import lru_cache
 
-PROTOCOL = (1, 2)
+PROTOCOL = (1, 3)
 # Where robots listen: KICK on a telephone's keys.
 PORT = 5425
 
@@ -17,7 +17,8 @@ _CHECK = struct.Struct(">I")
 _SAMPLES = struct.Struct(">I")
 _SEAL = struct.Struct(">Q16s")
 _LENGTH = struct.Struct(">I")
-_COUNTER = struct.Struct(">Q")
+_SEALED = struct.Struct(">IQI")
+_COUNTER_BYTES = 8
 MAX_PAYLOAD = 4096
 MAX_SAMPLES = MAX_PAYLOAD - _SAMPLES.size
 OVERHEAD = _HEADER.size + _CHECK.size
@@ -26,13 +27,17 @@ OVERHEAD = _HEADER.size + _CHECK.size
 MAX_FALSE_STARTS = 16
 
 # Frame types. A number is never given to another type.
-HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP = range(1, 9)
-TYPES = (HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP)
+HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP, BEAT = range(1, 10)
+TYPES = (HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP, BEAT)
 
 NONCE_BYTES = 16
 TOKEN_BYTES = 32
 # The robot's token, and the keys of the sessions that seal commands.
 KEYS_KEPT = 8
+# What HMAC makes of a key, see RFC 2104.
+_BLOCK_BYTES = 64
+_INNER = bytes(byte ^ 0x36 for byte in range(256))
+_OUTER = bytes(byte ^ 0x5C for byte in range(256))
 
 
 def _no_constant(name):
@@ -182,24 +187,25 @@ class Decoder(object):
         Returns:
             (type, payload), or None until more is fed.
         """
-        if not self._buffer:
+        buffer = self._buffer
+        if not buffer:
             return None  # as after nearly each frame
         for _ in range(MAX_FALSE_STARTS):
-            self._discard_to_sync()
-            if len(self._buffer) < _HEADER.size:
+            if not buffer.startswith(SYNC):
+                self._discard_to_sync()
+            if len(buffer) < _HEADER.size:
                 return None
-            _, kind, length = _HEADER.unpack_from(self._buffer)
+            _, kind, length = _HEADER.unpack_from(buffer)
             if kind in TYPES and length <= MAX_PAYLOAD:
-                end = _HEADER.size + length
-                if len(self._buffer) < end + _CHECK.size:
+                end = length + _HEADER.size
+                if len(buffer) < length + OVERHEAD:
                     return None
-                (check,) = _CHECK.unpack_from(self._buffer, end)
-                body = bytes(self._buffer[:end])
-                if check == zlib.crc32(body) & 0xFFFFFFFF:
-                    del self._buffer[: end + _CHECK.size]
+                body = bytes(buffer[:end])
+                if _CHECK.unpack_from(buffer, end)[0] == zlib.crc32(body) & 0xFFFFFFFF:
+                    del buffer[: length + OVERHEAD]
                     return kind, body[_HEADER.size :]
             self._discard(1)
-        self._discard(len(self._buffer))
+        self._discard(len(buffer))
         return None
 
     def _discard_to_sync(self):
@@ -218,21 +224,29 @@ def digest(key, *parts):
     """HMAC-SHA256 of parts, each behind its length, so that no two lists of parts look alike.
 
     Args:
-        key: Bytes.
+        key: Bytes, at most 64 of them.
         parts: Bytes, any number of them.
 
     Returns:
         32 bytes.
     """
-    code = _keyed(key).copy()
-    code.update(b"".join([_LENGTH.pack(len(part)) + part for part in parts]))
-    return code.digest()
+    return _hmac(key, b"".join([_LENGTH.pack(len(part)) + part for part in parts]))
+
+
+def _hmac(key, message):
+    """HMAC-SHA256. Not by the module `hmac`, which takes in the key anew for each message."""
+    inner, outer = _keyed(key)
+    inner, outer = inner.copy(), outer.copy()
+    inner.update(message)
+    outer.update(inner.digest())
+    return outer.digest()
 
 
 @lru_cache(maxsize=KEYS_KEPT)
 def _keyed(key):
-    """An HMAC that has taken in the key: half of the work, and the same for each message."""
-    return hmac.new(key, digestmod=hashlib.sha256)
+    """Both hashes of an HMAC, inner and outer, that have taken in the key."""
+    block = key.ljust(_BLOCK_BYTES, b"\0")
+    return hashlib.sha256(block.translate(_INNER)), hashlib.sha256(block.translate(_OUTER))
 
 
 class Handshake(object):
@@ -269,12 +283,12 @@ def same(one, other):
 
 
 def seal(key, counter, payload):
-    """Seal a command.
+    """Seal a command, or a beat.
 
     Args:
         key: The session's key.
-        counter: A number above that of the command before.
-        payload: The command's JSON, bytes.
+        counter: A number above that of what was sealed before.
+        payload: The command's JSON, bytes; empty for a beat.
 
     Returns:
         The payload behind its counter and its MAC, bytes.
@@ -283,11 +297,11 @@ def seal(key, counter, payload):
 
 
 def unseal(key, counter, payload):
-    """Open a sealed command.
+    """Open a sealed command, or a beat.
 
     Args:
         key: The session's key.
-        counter: The counter of the command before.
+        counter: The counter of what was opened before.
         payload: What `seal` has made, bytes.
 
     Returns:
@@ -300,7 +314,7 @@ def unseal(key, counter, payload):
         raise BadMessage("too short to be sealed")
     number, mac = _SEAL.unpack_from(payload)
     body = payload[_SEAL.size :]
-    if not same(mac, _mac(key, number, body)):
+    if not hmac.compare_digest(mac, _mac(key, number, body)):
         raise BadMessage("the MAC is wrong")
     if number <= counter:
         raise BadMessage("the counter {} was used before".format(number))
@@ -308,4 +322,5 @@ def unseal(key, counter, payload):
 
 
 def _mac(key, counter, payload):
-    return digest(key, _COUNTER.pack(counter), payload)[:16]
+    """The first half of `digest` of the counter and the payload."""
+    return _hmac(key, _SEALED.pack(_COUNTER_BYTES, counter, len(payload)) + payload)[:16]

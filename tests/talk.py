@@ -40,6 +40,11 @@ class Client:
         """The result of a sealed command."""
         return self._exchange(*self.talk.request(do, arguments, sealed=True))
 
+    def beat(self):
+        """Show the robot that this host is alive. Returns who has taken over from it."""
+        self.give(self.talk.beat())
+        return self.talk.taken_over_by
+
     def stop(self):
         """The result of a stop frame."""
         self.give(wire.encode(wire.STOP, b""))

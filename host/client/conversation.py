@@ -113,6 +113,14 @@ class Conversation:
             self._counter = counter
         return number, _bytes(frame)
 
+    def beat(self) -> bytes:
+        """A sign of life for a robot that this host controls; an older one gets it as a request."""
+        if self.hello["protocol"] < [1, 3]:
+            return self.request("heartbeat", {}, sealed=True)[1]
+        self._counter += 1
+        sealed = wire.seal(self._handshake.key, self._counter, b"")
+        return _bytes(wire.encode(wire.BEAT, sealed))
+
     def answer(self, number: int) -> dict[str, Any] | None:
         """The result that answers request `number`, None if it has not come.
 
@@ -181,6 +189,8 @@ class Conversation:
                     "check its address and the token file",
                 )
             self.trusted = True
+        elif kind == wire.BEAT and self.hello:  # an earlier user of the line had others
+            self._hear_of_takeover(message)
         elif kind == wire.REPLY:
             number, outcome = message["id"], "error" if "error" in message else "result"
             reply = {outcome: {**message[outcome]}}

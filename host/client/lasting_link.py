@@ -230,7 +230,7 @@ class LastingLink:
     def _send_what_is_due(self, now: float) -> None:
         if self._control.held and now >= self._heartbeat_due and self.attended():
             self._heartbeat_due = now + HEARTBEAT_S
-            self._send(self._talk.request("heartbeat", {}, sealed=True)[1])
+            self._send(self._talk.beat())
         tick = self.stream.tick_to_ask_for(now)
         if tick is not None:
             self._send(self._talk.request("subscribe", {"from": tick}, sealed=False)[1])

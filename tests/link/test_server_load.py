@@ -41,7 +41,7 @@ def test_ten_thousand_connections_in_a_row(desk):
         assert len(desk.server._peers) <= MOST
         if number % 10 == 0:
             desk.run()
-            controller.send(controller.talk.request("heartbeat", {}, sealed=True)[1])
+            controller.send(controller.talk.beat())
             controller.read()
     for link in staying:
         link.close()
@@ -259,15 +259,18 @@ def test_who_controls_has_a_turn_in_every_pause_and_all_others_have_theirs(slow_
         assert watcher.talk._answers
 
 
-def test_a_stop_is_obeyed_before_the_next_tick_although_no_time_is_left(slow_desk):
+@pytest.mark.parametrize("behind_a_beat", [False, True])
+def test_a_stop_is_obeyed_before_the_next_tick_although_no_time_is_left(slow_desk, behind_a_beat):
     desk = slow_desk
     watchers = [desk.connect(token=None, name=f"watcher {number}").greet() for number in range(9)]
     desk.frame_s = 0.045
     for watcher in watchers:
         watcher.send(watcher.talk.request("status", {}, sealed=False)[1] * 30)
+    host = desk.connect()
+    if behind_a_beat:
+        host.greet()
     desk.run(3)
-    stranger = desk.connect()
-    stranger.send(STOP)
+    host.send((host.talk.beat() if behind_a_beat else b"") + STOP)
     tick = desk.loop.blackbox.next_tick
     desk.run()
     assert STATES[desk.records_from(tick)[0].state] == "stopped"
@@ -285,7 +288,7 @@ def test_many_watchers_share_the_turns_and_get_every_record(desk):
     for tick in range(200):
         sizes = [len(peer.stream) for peer in (driver, *watchers)]
         if tick % 3 == 0:
-            driver.send(driver.talk.request("heartbeat", {}, sealed=True)[1])
+            driver.send(driver.talk.beat())
         desk.run()
         time.sleep(0.0005)
         assert all(peer.read() for peer in (driver, *watchers))

@@ -43,7 +43,7 @@ def test_a_stop_frame_needs_no_hello_no_token_and_no_sense(rig):
     assert not session.closing
 
 
-@pytest.mark.parametrize("kind", [wire.ASK, wire.AUTH, wire.COMMAND])
+@pytest.mark.parametrize("kind", [wire.ASK, wire.AUTH, wire.COMMAND, wire.BEAT])
 def test_before_the_hello_nothing_is_understood(rig, kind):
     session = Session(rig.loop, TOKEN, "boot")
     before = rig.fingerprint()
@@ -84,17 +84,19 @@ def test_a_second_controller_is_refused_until_the_first_lets_go(rig, client):
 def test_others_words_do_not_keep_a_lease(rig, client):
     second = Client(rig.loop, name="second").greet()
     for _ in range(20):
-        second.tell("heartbeat")
+        second.beat()
         client.ask("status")
         rig.run(1)
     assert client.ask("status")["controller"] is None
     assert rig.last.state == 3
 
 
-def test_a_heartbeat_keeps_it(rig, client):
+@pytest.mark.parametrize("how", ["beat", "heartbeat"])
+def test_a_beat_keeps_it_and_so_does_an_older_hosts_heartbeat(rig, client, how):
+    show_life = client.beat if how == "beat" else lambda: client.tell("heartbeat")
     for _ in range(20):
         rig.run(10)
-        client.tell("heartbeat")
+        show_life()
     assert client.ask("status")["controller"] == "tester"
 
 
@@ -105,11 +107,14 @@ def test_a_robot_is_taken_over_as_it_runs_and_the_loser_is_told(rig, client):
     assert (STATES[rig.loop.safety.state], rig.loop.safety.reason) == ("running", "started")
     assert rig.events[-1]["reason"] == "'teacher' has taken over from 'tester'"
     assert client.tell("heartbeat")["taken_over_by"] == "teacher"
+    client.talk.taken_over_by = None
+    assert client.beat() == "teacher"
+    assert teacher.beat() is None
     for attempt in ("lease", "start", "stop"):
         assert "'teacher' has taken over" in refused("lease", client.tell, attempt).message
     for _ in range(20):
-        client.tell("heartbeat")
-        teacher.tell("heartbeat")
+        client.beat()
+        teacher.beat()
         rig.run(1)
     assert STATES[rig.last.state] == "running"
     status = client.ask("status")

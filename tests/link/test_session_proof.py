@@ -123,10 +123,11 @@ def sealed_frames(client, do, **arguments):
     return frame
 
 
+@pytest.mark.parametrize("kind", [wire.COMMAND, wire.BEAT])
 @pytest.mark.parametrize("how", ["again", "older", "flipped", "short", "other session"])
-def test_a_command_that_is_not_freshly_sealed_ends_the_conversation(rig, client, how):
+def test_what_is_not_freshly_sealed_ends_the_conversation(rig, client, how, kind):
     older = sealed_frames(client, "start")
-    frame = sealed_frames(client, "heartbeat")
+    frame = sealed_frames(client, "heartbeat") if kind == wire.COMMAND else client.talk.beat()
     other = Client(rig.loop, client="tester").greet()
     client.give(frame)
     before = rig.fingerprint()
@@ -138,6 +139,20 @@ def test_a_command_that_is_not_freshly_sealed_ends_the_conversation(rig, client,
         "short": payload[:10],
         "other session": whole(sealed_frames(other, "stop"))[0][1],
     }[how]
-    assert reply(client.session.receive(wire.COMMAND, payload))["error"]["code"] == "broken"
+    assert reply(client.session.receive(kind, payload))["error"]["code"] == "broken"
     assert client.session.closing
     assert rig.fingerprint() == before
+
+
+def test_a_beat_is_no_way_to_command(rig, client):
+    before = rig.fingerprint()
+    ((_, payload),) = whole(sealed_frames(client, "stop"))
+    assert reply(client.session.receive(wire.BEAT, payload))["error"]["code"] == "broken"
+    assert client.session.closing
+    assert rig.fingerprint() == before
+
+
+def test_a_beat_without_the_token_is_refused(rig):
+    observer = Client(rig.loop, token=None).greet()
+    assert reply(observer.session.receive(wire.BEAT, bytes(24)))["error"]["code"] == "token"
+    assert observer.session.closing

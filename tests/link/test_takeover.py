@@ -144,7 +144,7 @@ def test_who_has_no_token_cannot_take_over(link, teacher):
 
 
 class Older(RigLink):
-    """A robot of protocol 1.1, which knows no takeover and does not identify itself."""
+    """A robot of protocol 1.1, which knows neither takeovers, nor beats, nor itself."""
 
     def __init__(self, monkeypatch):
         super().__init__()
@@ -167,6 +167,7 @@ class Older(RigLink):
                 return hello(message)
 
         self._monkeypatch.setattr(peer.session, "_hello", older)
+        self._monkeypatch.setattr(peer.session, "_beat", None)
 
 
 def test_an_older_robot_is_driven_as_ever_and_refuses_what_it_does_not_know(monkeypatch):

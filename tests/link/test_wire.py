@@ -132,7 +132,7 @@ def test_a_wrong_checksum_is_no_frame(payload, kind):
 
 
 @pytest.mark.parametrize(
-    "header", [b"\x00\x00\x00", b"\x09\x00\x00", b"\x01\x10\x01", b"\xff\xff\xff"]
+    "header", [b"\x00\x00\x00", b"\x0a\x00\x00", b"\x01\x10\x01", b"\xff\xff\xff"]
 )
 def test_an_unknown_type_or_length_is_no_frame_whatever_its_checksum(header):
     body = wire.SYNC + header + bytes(int.from_bytes(header[1:], "big"))
