@@ -11,9 +11,13 @@ import tempfile
 import time
 from collections import Counter
 from contextlib import suppress
+from math import nan, sqrt
 from pathlib import Path
 from random import Random
 from unittest import mock
+
+import numpy as np
+from scipy.stats import t
 
 from host.errors import KickctlError
 from host.logs.log import Log
@@ -26,6 +30,7 @@ HOUR_S = 3600.0
 # What the robot remembers of its past grows until it is full: the journal, 2000 events of less than
 # a kilobyte each.
 REMEMBERED_KB = 2000
+BLOCKS = 12
 KICKS = (
     {"mode": "membrane"},
     {"mode": "position"},
@@ -70,23 +75,19 @@ class Vitals:
             (time.monotonic(), pages * os.sysconf("SC_PAGE_SIZE") // 1024, open_files(self._pid))
         )
 
-    @property
-    def slope(self):
-        """Growth of the memory in kB/h by least squares, without the first quarter (first uses)."""
-        late = self.samples[len(self.samples) // 4 :]
-        times, sizes = [time_s for time_s, _, _ in late], [kilobytes for _, kilobytes, _ in late]
-        mean_s, mean_kb = sum(times) / len(times), sum(sizes) / len(sizes)
-        squares = sum((time_s - mean_s) ** 2 for time_s in times)
-        return (
-            HOUR_S
-            * sum(
-                (time_s - mean_s) * (size - mean_kb)
-                for time_s, size in zip(times, sizes, strict=True)
-            )
-            / squares
-            if squares
-            else 0.0
-        )
+    def growth(self):
+        """(slope, half of its 95 % interval) of the memory in kB/h, without the first quarter.
+
+        What is used for the first time grows there. Samples that follow one another are nearly the
+        same, so the line goes through the means of blocks of them.
+        """
+        late = np.array(self.samples[len(self.samples) // 4 :])[:, :2]
+        if len(late) < BLOCKS:
+            return nan, nan
+        times, sizes = np.transpose([block.mean(axis=0) for block in np.array_split(late, BLOCKS)])
+        (slope, _), covariance = np.polyfit(times - times.mean(), sizes, 1, cov=True)
+        error = sqrt(covariance[0, 0])
+        return HOUR_S * slope, HOUR_S * error * t.ppf(0.975, BLOCKS - 2)
 
 
 def kick(live, chance):
@@ -212,6 +213,7 @@ def main():
             status = live.robot.status()
         wrong = list(verdicts(tally, vitals, Log.load(path)))
     sizes = [size for _, size, _ in vitals.samples]
+    slope, half = vitals.growth()
     print("actions: " + ", ".join(f"{name} {count}" for name, count in done.most_common()))
     print("events: " + ", ".join(f"{name} {count}" for name, count in tally.events.most_common()))
     print(
@@ -219,8 +221,8 @@ def main():
         f" missed {status['missed']}"
     )
     print(
-        f"memory: {sizes[0]} kB at the start, {sizes[-1]} at the end, {max(sizes)} at most;"
-        f" {vitals.slope:.0f} kB/h"
+        f"memory: {sizes[0]} kB at the start, {sizes[-1]} at the end, {max(sizes)} at most; it grew"
+        f" by {slope:.0f} kB/h (95 % interval: {slope - half:.0f} to {slope + half:.0f})"
     )
     print(
         "open files:"
