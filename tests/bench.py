@@ -1,28 +1,18 @@
 """`make bench`: how fast the things are that have to be fast, as ratios and rates of one run."""
 
-import itertools
-import multiprocessing
 import os
-import random
-import re
 import socket
-import statistics
-import subprocess
 import sys
-import tempfile
 import time
 from math import cos, exp, sin, tanh
-from pathlib import Path
 
 from tests.bench_drawings import drawings
 from tests.bench_io import reads_and_writes
+from tests.bench_jitter import collector, schedules
 from tests.bench_lab import lab_page
 from tests.bench_starts import starts
 from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell, stop_of_all
 from tests.bench_storm import many_hosts
-
-REAL_TIME_S = 30.0
-KICKS = 40
 
 
 def main() -> None:
@@ -35,7 +25,8 @@ def main() -> None:
         virtual_time,
         batch,
         bodies,
-        real_time,
+        schedules,
+        collector,
         stop_beside_a_blocked_request,
         stop_from_a_shell,
         stop_of_all,
@@ -206,111 +197,6 @@ def bodies() -> None:
                 f" {steps * step_s / ours:.0f} times real time; {min(plain_s) / ours:.2f} of"
                 " MuJoCo's bare stepping" + (" (goals: 15, 0.5)" if cars > 1 else " (goal: 0.5)")
             )
-
-
-def real_time() -> None:
-    """How late ticks begin on the desk robot, and how long a kick takes to its tick."""
-    all_cores = os.sched_getaffinity(0)
-    for cores, busy, priority in itertools.product(
-        (all_cores, {min(all_cores)}), (False, True), (True, False)
-    ):
-        title = f"{len(cores)} core{'s' * (len(cores) > 1)}, {'all loaded' if busy else 'idle'}"
-        title += f", with{'' if priority else 'out'} real-time priority"
-        burners = [
-            multiprocessing.Process(target=_burn, daemon=True) for _ in range(busy * len(cores))
-        ]
-        try:
-            for burner in burners:
-                burner.start()
-                os.sched_setaffinity(burner.pid, cores)
-            late, kicks, periods = _desk_robot(cores, priority)
-        except _NoPriority as reason:
-            print(f"real time, {title}: not tried: {reason}", flush=True)
-            continue
-        finally:
-            for burner in burners:
-                burner.terminate()
-        late.sort()
-        shown = ", ".join(
-            f"{name} {1000 * late[min(len(late) - 1, int(part * len(late)))]:.2f}"
-            for name, part in _PARTS
-        )
-        print(
-            f"real time, {title}: ticks begin late by {shown} ms ({len(late)} ticks, {periods}"
-            " deadlines missed)",
-            flush=True,
-        )
-        print(
-            "  kick, from command to the begin of its tick: median"
-            f" {1000 * statistics.median(kicks):.1f} ms, at most {1000 * max(kicks):.1f} ms"
-            f" ({len(kicks)} kicks; the tick is 30 ms)",
-            flush=True,
-        )
-
-
-_PARTS = (("median", 0.5), ("p99", 0.99), ("p99.9", 0.999))
-
-
-def _burn() -> None:
-    while True:
-        pass
-
-
-class _NoPriority(Exception):
-    """This user may have no real-time priority."""
-
-
-def _desk_robot(cores, priority):
-    """How late each tick began, how long each kick took to its tick, and missed deadlines, in s."""
-    from host.client.robot import connect
-    from host.logs.log import Log
-
-    with tempfile.TemporaryDirectory() as folder:
-        token = str(Path(folder) / "token")
-        command = [
-            sys.executable,
-            "-m",
-            "sim_motor",
-            "--port",
-            "0",
-            "--seed",
-            "1",
-            "--token",
-            token,
-        ]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as brick:
-            try:
-                os.sched_setaffinity(brick.pid, cores)
-                uri = re.search(r"tcp://\S+", brick.stdout.readline())[0]
-                with connect(uri, token=token) as robot:
-                    if priority and not robot.status()["real_time"]:
-                        raise _NoPriority("run it as root, or raise `ulimit -r`")
-                    if not priority:
-                        os.sched_setscheduler(brick.pid, os.SCHED_OTHER, os.sched_param(0))
-                    robot.set(link_loss_s=10.0)  # this host may have to wait for its turn
-                    log = Log(robot.info())
-                    robot.add_tap(log)
-                    robot.wait(1.0)
-                    kicks = [_kick_latency(robot, log) for _ in range(KICKS)]
-                    first = len(log)
-                    robot.wait(REAL_TIME_S)
-            finally:
-                brick.terminate()
-    records = log.records[first:]
-    return [record.late_s for record in records], kicks, sum(record.missed for record in records)
-
-
-def _kick_latency(robot, log) -> float:
-    """From sending a kick to the begin of its tick, s, by this machine's clock."""
-    asked = time.monotonic()
-    clock_s = robot.status()["clock_s"]
-    sent = time.monotonic()
-    offset = (asked + sent) / 2 - clock_s
-    tick = robot.kick("membrane")
-    robot.wait(5.0, until=lambda: log.records[-1].tick >= tick)
-    begin_s = next(record.t_s for record in reversed(log.records) if record.tick == tick)
-    time.sleep(0.2 + random.uniform(0.0, 0.03))  # at any moment between two ticks
-    return begin_s + offset - sent
 
 
 if __name__ == "__main__":
