@@ -87,6 +87,7 @@ def test_the_answer_is_a_table_and_json_has_the_same(kickctl):
         ("lyapunov", "--f", "0"),
         ("lyapunov-line", "--f", "0"),
         ("section", "--a", "0"),
+        ("edge", "--k", "1"),
         ("tick", "--f", "0"),
     ],
 )

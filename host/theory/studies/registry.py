@@ -190,6 +190,11 @@ TABLE = {
             Option("points", 240, 16, 4000, "number of points on each axis"),
         ),
     ),
+    "edge": Entry(
+        "the least push of the potentials or the speed that reverses a rolling wheel, over phase"
+        " and direction, and the edge state between rolling forward and backward",
+        (A, TAU, K._replace(default=8.0), F, I),
+    ),
     "tick": Entry(
         "what the length of a tick and the motor's latency do to the lines: the sampled wheel as"
         " a map",
