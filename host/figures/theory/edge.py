@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
@@ -78,8 +77,7 @@ def _draw_map(figure: Figure, axes: Axes, plane: list[MapRow]) -> None:
         yticks=range(0, 361, 90),
     )
     axes.set_facecolor("lightgrey")
-    patch = Patch(facecolor="lightgrey", edgecolor="dimgrey", label="none that was tried")
-    axes.legend(handles=[patch], loc="lower right", fontsize=11, frameon=True)
+    axes.set_title("grey: no jump that was tried reverses", fontsize=12)
 
 
 def _draw_phases(axes: Axes, plane: list[MapRow]) -> None:
