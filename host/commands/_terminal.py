@@ -218,13 +218,23 @@ def _lines(summary: dict[str, Any]) -> Iterator[str]:
         for name, value in _single_values(summary["numbers"]):
             yield f"{name} {f'{value:.10g}' if isinstance(value, float) else value}"
     for kind, path in (
-        ("table", summary["table"]),
+        ("table", _tables(summary)),
         ("numbers", summary["summary"]),
         *(("figure", path) for path in summary["figures"][:1]),
         *(("file", path) for path in summary["files"]),
     ):
         if path is not None:
             yield f"{kind} {path}"
+
+
+def _tables(summary: dict[str, Any]) -> str | None:
+    """The paths of a run's tables in one, as a shell has it: FOLDER/NAME-{KIND,KIND}.csv."""
+    paths: list[str] = summary["tables"]
+    if len(paths) < 2:
+        return next(iter(paths), None)
+    stem = f"{summary['folder']}/{summary['experiment']}-"
+    kinds = (path.removeprefix(stem).removesuffix(".csv") for path in paths)
+    return f"{stem}{{{','.join(kinds)}}}.csv"
 
 
 def answer_run(
@@ -277,7 +287,7 @@ def finish(options: argparse.Namespace, summary: dict[str, Any], result: dict[st
         print_result("\n".join(_lines(summary)), essentials)
     for words in summary["unwritten"].values():
         say(f"kickctl: {words}")
-    missing = [name for name in ("table", "summary") if summary[name] is None]
+    missing = [name for name in ("table", "summary") if name in summary["unwritten"]]
     if missing:
         raise NotDone(f"not written: {' and '.join(missing)}", "the same command tries it again")
     if exit_status(summary["claims"]):

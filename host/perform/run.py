@@ -18,8 +18,10 @@ from host.perform.catalogue import BODY, STUDY, drawing, find
 from host.perform.robots import robots
 from host.perform.sweep import FAILURES, Sweep, forgiving
 from host.runs.cluster import require_scheduler
+from host.runs.columns import kinds_of
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
+from host.runs.results import Results
 from host.runs.runner import do_cells, finish, open_study, simulate
 from host.runs.sweep import axes, in_all, points
 from host.util.arguments import need_function, need_path, need_seed, need_text
@@ -45,7 +47,7 @@ def perform(
     say: Callable[[str], None] = lambda words: None,
     ask: Callable[[float], None] = lambda seconds: None,
     **arguments: Any,
-) -> dict[str, Any]:
+) -> Results:
     """Run an experiment or a study of the model, or resume it if it was interrupted.
 
     Args:
@@ -64,15 +66,15 @@ def perform(
             one run at all of these points.
 
     Returns:
-        The summary, which is also in summary.json in the run's folder.
+        The summary, which is also in summary.json in the run's folder; its `tables` are the run's
+        tables as arrays.
 
     Raises:
         KickctlError: The run ended early. The cells that are complete are kept.
     """
     found = find(need_text("name", name, "the name of an experiment or study"))
     seed, out = need_seed(seed), Path(need_path("out", out))
-    if token is not None:
-        token = need_path("token", token)
+    token = None if token is None else need_path("token", token)
     if scheduler is not None:
         need_text("scheduler", scheduler, "the address of a Dask scheduler, as text")
     need_function("say", say, "a function that takes a text")
@@ -133,10 +135,11 @@ def perform(
         # files that compute nothing.
         about = {**settings, "commit": commit()}
         if sweep is None:
-            return finish(name, rows, found.work.report(rows, setting), found.draw, study, about)
+            findings, kinds = found.work.report(rows, setting), kinds_of(found.work)
+            return finish(name, rows, findings, found.draw, study, about, kinds)
         rows = sweep.table(rows, setting)
-        draw = drawing("host.figures.sweep")
-        return finish("sweep", rows, sweep.report(rows, setting), draw, study, about)
+        draw, kinds = drawing("host.figures.sweep"), sweep.kinds
+        return finish("sweep", rows, sweep.report(rows, setting), draw, study, about, kinds)
 
 
 def _require_cluster(scheduler: str, *, batch: bool) -> None:

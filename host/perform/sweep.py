@@ -14,6 +14,7 @@ from host.errors import KickctlError, NotDone, RobotFault, WrongUse
 from host.logs.log import Log
 from host.perform.catalogue import find
 from host.runs.answers import Answer
+from host.runs.columns import Column, Kind, columns_of
 from host.runs.contract import POINT, Cell, Findings, Options, Row, Setting
 from host.runs.runner import Outcome, Work
 from host.runs.sweep import (
@@ -49,6 +50,17 @@ class Sweep:
         self.simulate: Callable[[Cell, Setting], list[Row]] | None = (
             None if self._work.simulate is None else partial(_simulate, name)
         )
+
+    @property
+    def kinds(self) -> list[Kind]:
+        """The one kind of rows of the sweep's table."""
+        swept = [
+            Column(axis["name"], axis["unit"], "an option that is swept") for axis in self._swept
+        ]
+        names = (column.name for column in (*swept, *columns_of(Quantity)))
+        return [
+            Kind("", "A quantity at a point.", (*swept, *columns_of(Quantity)), frozenset(names))
+        ]
 
     def cells(self, options: Options, *, batch: bool) -> list[Cell]:
         """The cells of all points. Raises WrongUse, of the first point, if no point has any."""

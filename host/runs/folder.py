@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse
+from host.runs.columns import Kind
 from host.runs.contract import Cell, Row
 from host.util.whole_files import whole_file, write_text
 
@@ -107,10 +108,18 @@ class Study:
         """The reasons why some tries did not count."""
         return [reason for done in self._done.values() for reason in done.spoiled]
 
-    def write_table(self, name: str, rows: list[Row]) -> Path:
-        """Write the rows as CSV, one line each."""
+    def write_table(self, name: str, rows: list[Row], kind: Kind | None = None) -> Path:
+        """Write rows as CSV, one line each.
+
+        Args:
+            name: The file's name, without its ending.
+            rows: The rows.
+            kind: What they are; it says the order of columns, else the rows do.
+        """
         path = self.folder / f"{name}.csv"
         columns = list(dict.fromkeys(column for row in rows for column in row))
+        if kind is not None:
+            columns = [column.name for column in kind.columns if column.name in columns]
         with whole_file(path) as draft, draft.open("w", encoding="utf-8", newline="") as out:
             writer = csv.DictWriter(out, columns)
             writer.writeheader()

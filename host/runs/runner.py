@@ -11,8 +11,10 @@ from typing import Any, TypeVar
 
 from host.errors import FigureInterrupted, KickctlError, mark_kept
 from host.runs.answers import as_data
+from host.runs.columns import Kind, by_kind
 from host.runs.contract import Cell, Findings, Row, Setting
 from host.runs.folder import Study
+from host.runs.results import Results
 from host.util.progress import progress
 
 T = TypeVar("T")
@@ -121,8 +123,11 @@ def finish(
     draw: Draw,
     study: Study,
     about: dict[str, Any],
-) -> dict[str, Any]:
-    """Write the table, the figure and the summary, as far as disk and matplotlib allow.
+    kinds: list[Kind],
+) -> Results:
+    """Write the tables, the figure and the summary, as far as disk and matplotlib allow.
+
+    Rows of several kinds have a table each, NAME-KIND.csv. columns.csv explains all columns.
 
     Args:
         name: The run's name.
@@ -131,9 +136,10 @@ def finish(
         draw: Draws the figure.
         study: The run's folder.
         about: The run's settings.
+        kinds: The kinds of rows, from the data dictionary; none if it does not have them.
 
     Returns:
-        The summary. Under "unwritten" it says which files are missing, and why.
+        The summary, with the rows. Under "unwritten" it says which files are missing, and why.
 
     Raises:
         FigureInterrupted: ^C came while the figure was drawn; all else is written.
@@ -150,11 +156,11 @@ def finish(
             unwritten[file] = f"{file} failed with {type(error).__name__}: {error}"
         return otherwise
 
+    none: list[Path] = []
     logs = study.folder / "logs"
     texts = findings.files.items()
     kept = [attempt(file, partial(study.write, file, text), None) for file, text in texts]
-    table = attempt("table", lambda: study.write_table(name, rows), None)
-    none: list[Path] = []
+    tables = attempt("table", lambda: _write_tables(name, rows, kinds, study), none)
     interrupted = False
     figures = none
     try:
@@ -163,24 +169,47 @@ def finish(
         interrupted = True
         unwritten["figure"] = "figure: interrupted while it was drawn"
     path = study.folder / "summary.json"
-    summary = {
-        **about,
-        "claims": [claim.as_dict() for claim in findings.claims],
-        "answers": as_data(findings.answers),
-        "numbers": findings.numbers,
-        "trials": len(rows),
-        "spoiled": study.spoiled(),
-        "folder": str(study.folder),
-        "table": table and str(table),
-        "figures": [str(path) for path in figures],
-        "files": [str(path) for path in kept if path],
-        "logs": str(logs) if logs.exists() else None,
-        "summary": str(path),
-        "unwritten": unwritten,
-    }
+    summary = Results(
+        rows,
+        kinds,
+        {
+            **about,
+            "claims": [claim.as_dict() for claim in findings.claims],
+            "answers": as_data(findings.answers),
+            "numbers": findings.numbers,
+            "trials": len(rows),
+            "spoiled": study.spoiled(),
+            "folder": str(study.folder),
+            "tables": [str(path) for path in tables],
+            "figures": [str(path) for path in figures],
+            "files": [str(path) for path in kept if path],
+            "logs": str(logs) if logs.exists() else None,
+            "summary": str(path),
+            "unwritten": unwritten,
+        },
+    )
     text = json.dumps(summary, indent=1, allow_nan=False) + "\n"
     if attempt("summary", lambda: study.write(path.name, text), None) is None:
         summary["summary"] = None
     if interrupted:
         raise FigureInterrupted(summary)
     return summary
+
+
+def _write_tables(name: str, rows: list[Row], kinds: list[Kind], study: Study) -> list[Path]:
+    """Write a table for each kind of rows, and one that explains their columns."""
+    if not kinds:
+        return [study.write_table(name, rows)]
+    found = by_kind(rows, kinds)
+    written = [
+        study.write_table(f"{name}-{kind.name}" if len(kinds) > 1 else name, found[kind.name], kind)
+        for kind in kinds
+        if kind.name in found
+    ]
+    explained = [
+        {"table": path.name, **column._asdict()}
+        for path, kind in zip(written, (own for own in kinds if own.name in found), strict=True)
+        for column in kind.columns
+    ]
+    study.write_table("columns", explained)
+    return written

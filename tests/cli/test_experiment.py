@@ -133,7 +133,8 @@ def test_a_killed_process_goes_on_where_it_was(kickctl, tmp_path):
     assert status in (0, 1), err
     whole = json.loads(out)
     assert resumed["numbers"] == whole["numbers"]
-    assert Path(resumed["table"]).read_bytes() == Path(whole["table"]).read_bytes()
+    for path, other in zip(resumed["tables"], whole["tables"], strict=True):
+        assert Path(path).read_bytes() == Path(other).read_bytes()
 
 
 def size(folder):
@@ -147,7 +148,7 @@ def test_reliability_ends_with_its_claims_and_files(kickctl):
     assert [claim["id"] for claim in summary["claims"]] == ["R8", "R9", "R10"]
     assert all(claim["holds"] for claim in summary["claims"])
     assert summary["seed"] == 1
-    rows = Path(summary["table"]).read_text().splitlines()
+    rows = Path(summary["tables"][0]).read_text().splitlines()
     assert len(rows) == 1 + summary["trials"] == 1 + 31 * 2 * 25
     assert all(Path(figure).stat().st_size > 10000 for figure in summary["figures"])
     assert json.loads((Path(summary["folder"]) / "summary.json").read_text()) == summary

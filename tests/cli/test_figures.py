@@ -115,7 +115,7 @@ def test_a_run_is_answered_without_its_files(kickctl, monkeypatch):
     status, out, err = kickctl("theory", "hopf", "--json")
     answer = json.loads(out)
     assert status == 1
-    assert answer["table"] is None
+    assert answer["tables"] == []
     assert [claim["id"] for claim in answer["claims"]] == ["M3"]
     assert "No space left" in answer["unwritten"]["table"]
 

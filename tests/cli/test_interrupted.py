@@ -50,7 +50,7 @@ def test_while_the_figure_of_a_run_is_drawn_its_results_are_answered(kickctl, mo
     assert answer["interrupted"] is True
     assert "interrupted while it was drawn" in answer["unwritten"]["figure"]
     assert answer["figures"] == []
-    assert Path(answer["table"]).exists()
+    assert all(Path(path).exists() for path in answer["tables"])
     assert json.loads(Path(answer["summary"]).read_text())["claims"] == answer["claims"]
     assert answer["error"]["kept"] in err
     words = kickctl(*line.split(), "--seed", "1")

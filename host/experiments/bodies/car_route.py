@@ -38,7 +38,10 @@ KINDS = (REST, SWING, SPIN, ROLL, LOST)
 class Cell(TypedDict):
     """All starts of one car.
 
-    a: gain of its neurons (1). tau: their time constant (s). k: spring constant of its rods (N).
+    Attributes:
+        a: gain of its neurons (1).
+        tau: their time constant (s).
+        k: spring constant of its rods (N).
     """
 
     a: float
@@ -49,8 +52,10 @@ class Cell(TypedDict):
 class Start(TypedDict):
     """What came of one start.
 
-    number: 0 is pushed off, the others have random phases. kind: one of KINDS. omega_rad_s: mean
-    |omega| of the wheels in the last LATE_S.
+    Attributes:
+        number: 0 is pushed off, the others have random phases.
+        kind: one of KINDS.
+        omega_rad_s: mean |omega| of the wheels in the last LATE_S s (rad/s).
     """
 
     number: int
@@ -65,8 +70,10 @@ class Row(Cell, Start):
 class Route(Cell):
     """All starts of one car.
 
-    kinds: how many starts ended in each kind of motion. rolling_rad_s: the speeds of those that
-    roll. formula_rad_s: the formula's speed; None below its onset.
+    Attributes:
+        kinds: how many starts ended in each kind of motion.
+        rolling_rad_s: the speeds of those that roll.
+        formula_rad_s: the formula's speed; None below its onset.
     """
 
     kinds: dict[str, int]
@@ -77,8 +84,9 @@ class Route(Cell):
 class Numbers(TypedDict):
     """What the experiment found.
 
-    route: an entry for each cell. largest_deviation_from_formula: of the rolling speeds, as a part
-    of the formula's (1).
+    Attributes:
+        route: an entry for each cell.
+        largest_deviation_from_formula: of the rolling speeds, as a part of the formula's (1).
     """
 
     route: list[Route]

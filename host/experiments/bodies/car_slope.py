@@ -35,7 +35,9 @@ SQUARE_M = 0.5
 class Cell(TypedDict):
     """One car.
 
-    angle: of the slopes (rad). number: of its random heading at the start.
+    Attributes:
+        angle: of the slopes (rad).
+        number: of its random heading at the start.
     """
 
     angle: float
@@ -45,11 +47,17 @@ class Cell(TypedDict):
 class Drive(TypedDict):
     """The whole drive.
 
-    inside: whether the car stayed on the floor and slopes. flipped: whether it fell over. reach_m:
-    how far it got from the middle, along x or y (m). lean_rad: how far it leaned at most (rad).
-    reversals: how often it reversed. path_m: length of its path (m). travelled: part of the time in
-    which it travelled. spun: part of the time in which its wheels turned opposite ways. last_s:
-    when it last travelled (s). squares: how many squares of the floor it was in.
+    Attributes:
+        inside: whether the car stayed on the floor and slopes.
+        flipped: whether it fell over.
+        reach_m: how far it got from the middle, along x or y (m).
+        lean_rad: how far it leaned at most (rad).
+        reversals: how often it reversed.
+        path_m: length of its path (m).
+        travelled: part of the time in which it travelled (1).
+        spun: part of the time in which its wheels turned opposite ways (1).
+        last_s: when it last travelled (s).
+        squares: how many squares of the floor it was in.
     """
 
     inside: bool

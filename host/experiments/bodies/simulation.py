@@ -34,7 +34,13 @@ EDGE_M = 6.0
 
 
 class Position(TypedDict):
-    """Where a body, or a part of it, is at one time: t_s (s), x_m and y_m (m)."""
+    """Where a body, or a part of it, is at one time.
+
+    Attributes:
+        t_s: time (s).
+        x_m: x (m).
+        y_m: y (m).
+    """
 
     t_s: float
     x_m: float
@@ -44,9 +50,12 @@ class Position(TypedDict):
 class BodyRun(NamedTuple):
     """What a body did.
 
-    course: its motion. joints: angles in rad, (times, joints), first all that yaw. head: the first
-    car's x (m), y (m) and yaw (rad), (times, 3). unstable_s: when the simulation became unstable,
-    or None; everything here is from before that time.
+    Attributes:
+        course: its motion.
+        joints: angles in rad, (times, joints), first all that yaw.
+        head: the first car's x (m), y (m) and yaw (rad), (times, 3).
+        unstable_s: when the simulation became unstable, or None; everything here is from before
+            that time.
     """
 
     course: Course

@@ -39,8 +39,10 @@ EVERY_S, LATE = 0.1, 0.5
 class Fault(TypedDict):
     """What is wrong with a train.
 
-    part: the kind of fault. wheel: the faulty wheel; None if all radii differ. percent: by how much
-    its k differs, or by how much radii differ at most.
+    Attributes:
+        part: the kind of fault.
+        wheel: the faulty wheel; None if all radii differ.
+        percent: by how much its k differs, or by how much radii differ at most (%).
     """
 
     part: Part
@@ -51,7 +53,8 @@ class Fault(TypedDict):
 class Cell(Fault):
     """One train.
 
-    number: of its random start, a slight bend, and of its wheels' radii.
+    Attributes:
+        number: of its random start, a slight bend, and of its wheels' radii.
     """
 
     number: int
@@ -60,9 +63,12 @@ class Cell(Fault):
 class Run(TypedDict):
     """The second half of a run.
 
-    order: mean order parameter. speed_m_s: speed along the path (m/s). turning_rad_s: how fast the
-    train turns, to the left above 0 (rad/s). omega_rad_s: mean |omega| of all wheels (rad/s);
-    own_rad_s: of the faulty wheel, or None.
+    Attributes:
+        order: mean order parameter (1).
+        speed_m_s: speed along the path (m/s).
+        turning_rad_s: how fast the train turns, to the left above 0 (rad/s).
+        omega_rad_s: mean |omega| of all wheels (rad/s).
+        own_rad_s: mean |omega| of the faulty wheel (rad/s); None if there is none.
     """
 
     order: float
@@ -88,8 +94,10 @@ Row = RunRow | PositionRow
 class FaultNumbers(Fault):
     """All runs of trains with one fault.
 
-    Means over them, or the value of each; see `Run`. own_of_all: |omega| of the faulty wheel as a
-    part of all wheels'.
+    Means over them, or the value of each; see `Run`.
+
+    Attributes:
+        own_of_all: |omega| of the faulty wheel as a part of all wheels'.
     """
 
     runs: int

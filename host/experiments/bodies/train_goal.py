@@ -45,7 +45,9 @@ ROUNDS = 2
 class Cell(TypedDict):
     """One train on its way to a goal.
 
-    goal: number of the goal. way: one of WAYS.
+    Attributes:
+        goal: number of the goal.
+        way: one of WAYS.
     """
 
     goal: int
@@ -55,11 +57,15 @@ class Cell(TypedDict):
 class Trip(TypedDict):
     """What the train did, as seen from its pose at the start.
 
-    goal_m: where the goal is (m ahead, m to the left). reached_s: when the train was there (s), or
-    None. nearest_m: how near it came (m). choices: what it chose, every KICK_S, as in CHOICES.
-    course: (m ahead, m to the left, rad to the left), every LOOK_S. effects: what it learned that a
-    choice does in KICK_S, by last choice and choice, as (m ahead, m to the left, rad to the left);
-    None if it did not plan.
+    Attributes:
+        goal_m: where the goal is, ahead and to the left (m).
+        reached_s: when the train was there (s), or None.
+        nearest_m: how near it came (m).
+        choices: what it chose, every KICK_S s, as the choice's number.
+        course: its places, ahead and to the left (m), and its heading to the left (rad), every
+            LOOK_S s.
+        effects: what it learned that a choice does in KICK_S s, by last choice and choice:
+            ahead and to the left (m), and to the left (rad); None if it did not plan.
     """
 
     goal_m: list[float]
@@ -77,9 +83,13 @@ class Row(Cell, Trip):
 class WayNumbers(TypedDict):
     """All trains that were kicked in one way.
 
-    goals: how many there were; reached: how many trains came there; interval: of that rate (95 %).
-    median_s: when they came there (s), or None. median_nearest_m: how near all trains came (m).
-    mean_kicks: how often a train was kicked.
+    Attributes:
+        goals: how many there were.
+        reached: how many trains came there.
+        interval: of that rate (95 %).
+        median_s: when they came there (s), or None.
+        median_nearest_m: how near all trains came (m).
+        mean_kicks: how often a train was kicked.
     """
 
     way: str
@@ -94,7 +104,9 @@ class WayNumbers(TypedDict):
 class Effect(TypedDict):
     """What a choice does in KICK_S, mean over all trains that learned it.
 
-    after, choice: 'on' (no kick), 'left' or 'right'.
+    Attributes:
+        after: 'on' (no kick), 'left' or 'right'.
+        choice: 'on' (no kick), 'left' or 'right'.
     """
 
     after: str

@@ -36,8 +36,10 @@ REVERSED, STOPS, GOES_ON, MIXED = "reversed", "stopped", "goes on", "wheels disa
 class Cell(TypedDict):
     """All trials of one kick.
 
-    mode: membrane or position. wheels: how many are kicked. seconds: how long; None for the
-    membrane inversion, which acts at once.
+    Attributes:
+        mode: membrane or position.
+        wheels: how many are kicked.
+        seconds: how long (s); None for the membrane inversion, which acts at once.
     """
 
     mode: str
@@ -48,9 +50,12 @@ class Cell(TypedDict):
 class Trial(TypedDict):
     """One trial.
 
-    trial: its number. before_rad_s, end_rad_s, after_rad_s: mean omega of the wheels (rad/s) before
-    the kick, when it ends, and WATCH_S later. outcome: 'reversed', 'stopped', 'goes on' or 'wheels
-    disagree'.
+    Attributes:
+        trial: its number.
+        before_rad_s: mean omega of the wheels before the kick (rad/s).
+        end_rad_s: the same when the kick ends (rad/s).
+        after_rad_s: the same WATCH_S s later (rad/s).
+        outcome: 'reversed', 'stopped', 'goes on' or 'wheels disagree'.
     """
 
     trial: int
@@ -67,8 +72,11 @@ class Row(Cell, Trial):
 class KickNumbers(Cell):
     """All trials of one kick.
 
-    reversed: how many reversed the train; interval: of that rate (95 %). outcomes: how many came to
-    each outcome. end_of_before: median of end_rad_s / before_rad_s.
+    Attributes:
+        reversed: how many reversed the train.
+        interval: of that rate (95 %).
+        outcomes: how many came to each outcome.
+        end_of_before: median of end_rad_s / before_rad_s.
     """
 
     trials: int
@@ -81,8 +89,9 @@ class KickNumbers(Cell):
 class Numbers(TypedDict):
     """What the experiment found.
 
-    fewest_wheels_that_reversed: of all kicks that ever reversed the train. surest: the kick that
-    reverses it most often. Both are None if no kick reverses it.
+    Attributes:
+        fewest_wheels_that_reversed: of all kicks that ever reversed the train.
+        surest: the kick that reverses it most often. Both are None if no kick reverses it.
     """
 
     preset: str

@@ -27,7 +27,9 @@ EVERY_S = 0.1
 class Train(TypedDict):
     """One kind of train.
 
-    preset: its name. k: spring constant of its rods (N).
+    Attributes:
+        preset: its name.
+        k: spring constant of its rods (N).
     """
 
     preset: str
@@ -35,7 +37,11 @@ class Train(TypedDict):
 
 
 class Kind(Train):
-    """One kind of train on slopes of one angle (rad)."""
+    """One kind of train on slopes of one angle.
+
+    Attributes:
+        angle: of the slopes (rad).
+    """
 
     angle: float
 
@@ -43,7 +49,8 @@ class Kind(Train):
 class Cell(Kind):
     """One train.
 
-    number: of its random phases and heading at the start.
+    Attributes:
+        number: of its random phases and heading at the start.
     """
 
     number: int
@@ -52,10 +59,13 @@ class Cell(Kind):
 class Run(TypedDict):
     """The whole run.
 
-    reversals: how often the train reversed. coherent: part of the time after start-up in which the
-    order parameter is above ORDERED; None if the train never moved. reach_m: how far its middle got
-    from the floor's, along x or y (m). inside: whether it stayed on the floor and slopes. flipped:
-    whether a car fell over.
+    Attributes:
+        reversals: how often the train reversed.
+        coherent: part of the time after start-up in which the order parameter is above ORDERED
+            (1); None if the train never moved.
+        reach_m: how far its middle got from the floor's, along x or y (m).
+        inside: whether it stayed on the floor and slopes.
+        flipped: whether a car fell over.
     """
 
     reversals: int
@@ -81,7 +91,8 @@ Row = RunRow | PositionRow
 class KindNumbers(Kind):
     """All runs of one kind: means over them, and how many of them stayed inside or fell over.
 
-    reach_m: the largest.
+    Attributes:
+        reach_m: the largest.
     """
 
     runs: int

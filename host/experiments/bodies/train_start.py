@@ -25,7 +25,9 @@ LEAST_S, LEAST_TRAINS = 15.0, 10
 class Cell(TypedDict):
     """One train.
 
-    preset: its name. number: of its random start.
+    Attributes:
+        preset: its name.
+        number: of its random start.
     """
 
     preset: str
@@ -35,7 +37,10 @@ class Cell(TypedDict):
 class Sample(TypedDict):
     """The train at one time.
 
-    t_s: time (s). order: order parameter of the wheels, 0 to 1. omega_rad_s: their mean omega.
+    Attributes:
+        t_s: time (s).
+        order: order parameter of the wheels, from 0 to 1 (1).
+        omega_rad_s: their mean omega (rad/s).
     """
 
     t_s: float
@@ -50,8 +55,12 @@ class Row(Cell, Sample):
 class Start(TypedDict):
     """How one train started.
 
-    preset, number: its cell. order: mean order parameter in the last JUDGED_S. direction: then, 1
-    forward, -1 backward, 0 at rest. ordered_s: the time (s) from which on it is ordered, or None.
+    Attributes:
+        preset: its cell.
+        number: its cell.
+        order: mean order parameter in the last JUDGED_S.
+        direction: then, 1 forward, -1 backward, 0 at rest.
+        ordered_s: the time (s) from which on it is ordered, or None.
     """
 
     preset: str
@@ -64,9 +73,14 @@ class Start(TypedDict):
 class Numbers(TypedDict):
     """The trains of one preset.
 
-    trains: how many there are. ordered, forward, backward: how many of them end ordered, and in
-    which direction. lowest_order: of all trains. ordered_s_median, ordered_s_latest: the time (s)
-    from which on they are ordered; None if no train is.
+    Attributes:
+        trains: how many there are.
+        ordered: how many of them end ordered, and in which direction.
+        forward: how many of them end ordered, and in which direction.
+        backward: how many of them end ordered, and in which direction.
+        lowest_order: of all trains.
+        ordered_s_median: the time (s) from which on they are ordered; None if no train is.
+        ordered_s_latest: the time (s) from which on they are ordered; None if no train is.
     """
 
     trains: int

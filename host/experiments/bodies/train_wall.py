@@ -39,7 +39,9 @@ STUCK, RUNS, LOST = "stuck", "runs", "could not be followed"
 class Train(TypedDict):
     """One kind of train.
 
-    preset: its name. drag: of the wheels (N s/rad); None is the preset's.
+    Attributes:
+        preset: its name.
+        drag: of the wheels (N s/rad); None is the preset's.
     """
 
     preset: str
@@ -49,14 +51,19 @@ class Train(TypedDict):
 class Kind(Train):
     """One kind of train between one kind of walls.
 
-    bouncy: whether the walls throw the train back.
+    Attributes:
+        bouncy: whether the walls throw the train back.
     """
 
     bouncy: bool
 
 
 class DrivenKind(Kind):
-    """One kind of train between one kind of walls, with a controller or a constant torque."""
+    """One kind of train between one kind of walls.
+
+    Attributes:
+        controller: whether a controller drives the train; otherwise a constant torque does.
+    """
 
     controller: bool
 
@@ -64,7 +71,8 @@ class DrivenKind(Kind):
 class Cell(DrivenKind):
     """One train.
 
-    number: of its wheels' random phases at the start.
+    Attributes:
+        number: of its wheels' random phases at the start.
     """
 
     number: int
@@ -73,9 +81,11 @@ class Cell(DrivenKind):
 class Run(TypedDict):
     """The whole run.
 
-    reversals_s: when most wheels reversed (s). whole: how many of these times all wheels went one
-    way soon after. aside_m: how far the train is along the walls in the end (m). ended: 'stuck',
-    'runs' or 'could not be followed'.
+    Attributes:
+        reversals_s: when most wheels reversed (s).
+        whole: how many of these times all wheels went one way soon after.
+        aside_m: how far the train is along the walls in the end (m).
+        ended: 'stuck', 'runs' or 'could not be followed'.
     """
 
     reversals_s: list[float]
@@ -85,7 +95,13 @@ class Run(TypedDict):
 
 
 class Moment(TypedDict):
-    """The train at one time: t_s (s), its middle's x_m (m), its wheels' mean omega_rad_s."""
+    """The train at one time.
+
+    Attributes:
+        t_s: time (s).
+        x_m: x of its middle (m).
+        omega_rad_s: mean omega of its wheels (rad/s).
+    """
 
     t_s: float
     x_m: float
@@ -115,9 +131,12 @@ class ConstantTorque(TypedDict):
 class KindNumbers(Kind):
     """All runs of one kind.
 
-    reversals: of the whole train, for each run. not_whole: how many other reversals there were in
-    all. ended: how many runs ended in each way. aside_m: for each run (m). leg_s_median: median
-    time between reversals (s), or None.
+    Attributes:
+        reversals: of the whole train, for each run.
+        not_whole: how many other reversals there were in all.
+        ended: how many runs ended in each way.
+        aside_m: for each run (m).
+        leg_s_median: median time between reversals (s), or None.
     """
 
     reversals: list[int]

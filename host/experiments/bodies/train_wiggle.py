@@ -36,8 +36,11 @@ Part = Literal["wiggle", "friction", "bent"]
 class AuthorsRun(TypedDict):
     """What the authors' program did in 60 s.
 
-    std_deg: standard deviation of each yaw joint (degrees). hz: their frequency (Hz). peak_rad_s,
-    late_rad_s: highest and late speed of the wheels (rad/s).
+    Attributes:
+        std_deg: standard deviation of each yaw joint (degrees).
+        hz: their frequency (Hz).
+        peak_rad_s: highest and late speed of the wheels (rad/s).
+        late_rad_s: highest and late speed of the wheels (rad/s).
     """
 
     std_deg: list[float]
@@ -49,7 +52,9 @@ class AuthorsRun(TypedDict):
 class Train(TypedDict):
     """One kind of train.
 
-    preset: its name. drag: of wheels, N s/rad (snake2019), or of bodies, N s/m (paper).
+    Attributes:
+        preset: its name.
+        drag: of wheels (N s/rad) for snake2019, of bodies (N s/m) for paper.
     """
 
     preset: str
@@ -59,8 +64,10 @@ class Train(TypedDict):
 class Cell(Train):
     """One train.
 
-    part: what it is run for. bent: how much its joints are bent at the start (rad, standard
-    deviation). friction: of its tyres, for part 'friction' only; else the preset's.
+    Attributes:
+        part: what it is run for.
+        bent: how much its joints are bent at the start, as a standard deviation (rad).
+        friction: of its tyres (1), for part 'friction' only; else the preset's.
     """
 
     part: Part
@@ -69,7 +76,12 @@ class Cell(Train):
 
 
 class Speeds(TypedDict):
-    """The wheels' mean speed (rad/s): its peak, and its mean in the second half of the run."""
+    """The wheels' mean speed.
+
+    Attributes:
+        peak_rad_s: its peak (rad/s).
+        late_rad_s: its mean in the second half of the run (rad/s).
+    """
 
     peak_rad_s: float
     late_rad_s: float
@@ -78,9 +90,12 @@ class Speeds(TypedDict):
 class Wiggle(TypedDict):
     """How one joint wiggles in the second half of the run.
 
-    joint: its number from the head, from 1 on. std_deg: standard deviation of its yaw (degrees).
-    hz: frequency (Hz); None if the train does not wiggle. lag_deg: its phase minus that of the
-    joint before (degrees, below 0 is later); None for the first.
+    Attributes:
+        joint: its number from the head, from 1 on.
+        std_deg: standard deviation of its yaw (degrees).
+        hz: frequency (Hz); None if the train does not wiggle.
+        lag_deg: its phase minus that of the joint before (degrees, below 0 is later); None for
+            the first.
     """
 
     joint: int
@@ -90,7 +105,13 @@ class Wiggle(TypedDict):
 
 
 class JointAngle(TypedDict):
-    """One joint at one time: joint (number from 1 on), t_s (s), deg (yaw in degrees)."""
+    """One joint at one time.
+
+    Attributes:
+        joint: its number from the head, from 1 on.
+        t_s: time (s).
+        deg: yaw (degrees).
+    """
 
     joint: int
     t_s: float
@@ -118,8 +139,11 @@ Row = SpeedsRow | WiggleRow | JointAngleRow
 class TrainNumbers(Train, Speeds):
     """One train of part 'wiggle'.
 
-    std_deg: of each joint. lag_deg: of each but the first. hz: of the last. authors: what the
-    authors' program did with this drag, or None.
+    Attributes:
+        std_deg: of each joint.
+        lag_deg: of each but the first.
+        hz: of the last.
+        authors: what the authors' program did with this drag, or None.
     """
 
     std_deg: list[float]
@@ -131,7 +155,9 @@ class TrainNumbers(Train, Speeds):
 class FrictionNumbers(TypedDict):
     """One train of part 'friction'.
 
-    hz, std_deg: of the last joint.
+    Attributes:
+        hz: of the last joint.
+        std_deg: of the last joint.
     """
 
     friction: float
@@ -143,8 +169,9 @@ class FrictionNumbers(TypedDict):
 class Numbers(TypedDict):
     """What the experiment found.
 
-    bent_rad_peak_late_rad_s: for each train of part 'bent', how much it is bent (rad), and its
-    highest and late speed (rad/s).
+    Attributes:
+        bent_rad_peak_late_rad_s: for each train of part 'bent', how much it is bent (rad), and
+            its highest and late speed (rad/s).
     """
 
     trains: list[TrainNumbers]

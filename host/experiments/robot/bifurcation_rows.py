@@ -22,7 +22,12 @@ class SweepCell(TypedDict):
 
 
 class FoldCell(TypedDict):
-    """k goes down until both wheels rest; motion and trial as in SweepCell."""
+    """k goes down until both wheels rest.
+
+    Attributes:
+        motion: forward or backward.
+        trial: number of the repetition, from 0.
+    """
 
     part: Literal["fold"]
     motion: str

@@ -19,7 +19,11 @@ CHECK: Kind = "check"
 
 
 class Cell(TypedDict):
-    """The one drive; `drive` is 1."""
+    """The one drive.
+
+    Attributes:
+        drive: 1.
+    """
 
     drive: int
 

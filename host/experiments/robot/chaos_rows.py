@@ -16,21 +16,33 @@ from host.experiments.robot.switching import SWITCHES, Array, switches
 
 
 class SeriesCell(TypedDict):
-    """One wheel, tick by tick; on a robot, both of its wheels."""
+    """One wheel, tick by tick; on a robot, both of its wheels.
+
+    Attributes:
+        condition: name of the condition.
+    """
 
     part: Literal["series"]
     condition: str
 
 
 class LivesCell(TypedDict):
-    """Many wheels, each until it stops switching."""
+    """Many wheels, each until it stops switching.
+
+    Attributes:
+        condition: name of the condition.
+    """
 
     part: Literal["lives"]
     condition: str
 
 
 class SpeedCell(TypedDict):
-    """Some wheels in steady motion at k = 8, tau = 0.25 s."""
+    """Some wheels in steady motion at k = 8, tau = 0.25 s.
+
+    Attributes:
+        condition: name of the condition.
+    """
 
     part: Literal["speed"]
     condition: str
@@ -40,6 +52,7 @@ class TwinsCell(TypedDict):
     """Pairs of runs that differ by a jump of the potential x1.
 
     Attributes:
+        condition: name of the condition.
         jump: how far x1 jumps (1).
     """
 
@@ -97,7 +110,7 @@ class Ending(TypedDict):
 
     Attributes:
         until_s: time of its last switch (s); 0 if it never switched.
-        end: what it did in the end: switching.SWITCHES, ROLLS or RESTS.
+        end: what it did in the end: switches, rolls or rests.
     """
 
     until_s: float
@@ -154,8 +167,8 @@ class ModelRun(Ending):
     """One run of the model.
 
     Attributes:
-        moment: moment of inertia I in the model's units.
-        friction: friction f in the model's units.
+        moment: moment of inertia I (s^2).
+        friction: friction f (s).
     """
 
     moment: float

@@ -46,13 +46,24 @@ SPEED_M_S = 0.286
 
 
 class Cell(TypedDict):
-    """All robots with one way of moving, a value of WAYS."""
+    """All robots with one way of moving.
+
+    Attributes:
+        way: one of WAYS.
+    """
 
     way: str
 
 
 class Place(TypedDict):
-    """Where the centre of one robot is at one time: x and y from the middle of the floor (m)."""
+    """Where the centre of one robot is at one time.
+
+    Attributes:
+        number: number of the robot, from 0.
+        t_s: time (s).
+        x_m: x from the middle of the floor (m).
+        y_m: y from the middle of the floor (m).
+    """
 
     number: int
     t_s: float

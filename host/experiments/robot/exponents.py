@@ -38,7 +38,12 @@ _POTENTIALS = [CHANNELS.index("x1"), CHANNELS.index("x2")]
 
 
 class Cell(TypedDict):
-    """A key of WHOSE, and a value of TAUS_S: the neurons' time constant (s)."""
+    """Exponents at one time constant.
+
+    Attributes:
+        whose: one of WHOSE.
+        tau_s: the neurons' time constant (s).
+    """
 
     whose: str
     tau_s: float

@@ -37,7 +37,13 @@ Cell = ChunkCell | TrialCell
 
 
 class Row(kick_map.Row):
-    """A row of the map, with the columns of its cell, ChunkCell or TrialCell."""
+    """A row of the map: a kick, and what it did.
+
+    Attributes:
+        chunk: number of the chunk of simulated kicks, from 0; none on a robot.
+        kicks: how many kicks the chunk has; none on a robot.
+        trial: number of the round on a robot, from 0; none in a simulation.
+    """
 
     chunk: NotRequired[int]
     kicks: NotRequired[int]

@@ -71,7 +71,13 @@ ENDS = (STRAIGHT, TURNS, RESTS, CHAOTIC)
 
 
 class Cell(TypedDict):
-    """One kick: a key of KICKS, its ticks (0 for no kick), a value of AFTERWARDS."""
+    """One kick.
+
+    Attributes:
+        kick: one of KICKS.
+        ticks: length of the kick in ticks; 0 for no kick.
+        afterwards: what is done after the kick: one of AFTERWARDS.
+    """
 
     kick: str
     ticks: int
@@ -85,7 +91,7 @@ class Outcome(TypedDict):
         left_rad_s: speed of the left wheel when the kick began (rad/s).
         right_rad_s: that of the right wheel (rad/s).
         phase_rad: the left wheel's angle then, modulo 2 pi (rad).
-        end: a value of ENDS.
+        end: one of ENDS.
         kept: whether both wheels turn in the end as they did at the kick.
     """
 
@@ -112,7 +118,8 @@ class Share(Cell):
 class Kept(TypedDict):
     """How many robots turn both wheels in the end as they did at the kick, of those in one speed.
 
-    fast: whether both wheels were at least FAST_RAD_S fast when the kick began.
+    Attributes:
+        fast: whether both wheels were at least FAST_RAD_S fast when the kick began.
     """
 
     kick: str

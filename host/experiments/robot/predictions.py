@@ -47,7 +47,11 @@ Wheel = Literal["left", "right"]
 
 
 class Cell(TypedDict):
-    """A kick; `kick` is its number, from 0."""
+    """A kick.
+
+    Attributes:
+        kick: number of the kick, from 0.
+    """
 
     kick: int
 

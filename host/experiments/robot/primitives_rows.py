@@ -9,7 +9,7 @@ class RoundCell(TypedDict):
     """One round of all transitions.
 
     Attributes:
-        trial: number of the round, from 0; likewise in the other cells.
+        trial: number of the round, from 0.
     """
 
     part: Literal["round"]
@@ -17,7 +17,11 @@ class RoundCell(TypedDict):
 
 
 class StartCell(TypedDict):
-    """One start from random potentials."""
+    """One start from random potentials.
+
+    Attributes:
+        trial: number of the start, from 0.
+    """
 
     part: Literal["start"]
     trial: int
@@ -28,6 +32,7 @@ class RestCell(TypedDict):
 
     Attributes:
         k: spring constant (1).
+        trial: number of the try, from 0.
     """
 
     part: Literal["rest"]

@@ -39,7 +39,11 @@ Wheel = Literal["left", "right"]
 
 
 class Cell(TypedDict):
-    """A start; `start` is its number, from 0."""
+    """A start.
+
+    Attributes:
+        start: number of the start, from 0.
+    """
 
     start: int
 

@@ -65,8 +65,12 @@ class Tick(TypedDict):
         t_s: time since the first of the two kicks (s).
         kicked: whether a kick acted in this tick.
         relative_rad: relative phase of the wheels (rad).
-        left_x1: membrane potential of the left wheel's first neuron (1); the others alike.
-        left_torque: relative torque M of the left wheel (1); the right one alike.
+        left_x1: membrane potential of the left wheel's first neuron (1).
+        left_x2: membrane potential of the left wheel's second neuron (1).
+        left_torque: relative torque M of the left wheel (1).
+        right_x1: membrane potential of the right wheel's first neuron (1).
+        right_x2: membrane potential of the right wheel's second neuron (1).
+        right_torque: relative torque M of the right wheel (1).
     """
 
     kind: Literal["tick"]

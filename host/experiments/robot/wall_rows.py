@@ -70,7 +70,7 @@ class Hit(TypedDict):
     """How one hit went. None stands for what did not happen.
 
     Attributes:
-        ended: BOUNCED, or how else the hit ended: a word of wall_hits.
+        ended: bounced, or how else the hit ended, in words.
         reversed: whether the robot reversed.
         before: mean torque M of both wheels just before the wall (1).
         after: mean torque M of both wheels at the end (1).
@@ -87,7 +87,11 @@ class Hit(TypedDict):
 
 
 class NumberedHit(Hit):
-    """A hit with its number, from 0."""
+    """A hit with its number.
+
+    Attributes:
+        hit: number of the hit, from 0.
+    """
 
     hit: int
 
@@ -110,7 +114,17 @@ class Tick(TypedDict):
 
 @final
 class HitRow(NumberedHit):
-    """A hit with its cell's columns; of those, a real robot's cell has only k."""
+    """A hit with its cell's columns; of those, a real robot's cell has only k.
+
+    Attributes:
+        k: spring constant (1).
+        grip: friction of the wheels' tyres on the floor (1).
+        bumper: width of the robot's front (m).
+        axle: stiffness of the wheels' axles at the rim (N/m); None for rigid ones.
+        battery_v: open-circuit voltage of the battery (V); None for its nominal one.
+        part: claim, the condition of the claim; map, others.
+        hits: how many hits its cell has.
+    """
 
     k: float
     grip: NotRequired[float]

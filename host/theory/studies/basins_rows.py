@@ -52,7 +52,13 @@ class KicksCell(TypedDict):
 
 
 class SureCell(TypedDict):
-    """The lengths of one kind of quenched kick that reverse the continuous wheel at every phase."""
+    """The lengths of one kind of quenched kick that reverse the continuous wheel at every phase.
+
+    Attributes:
+        model: continuous.
+        mode: the kick's mode, see robot/kicks.py.
+        sign: sign of a phase kick's shift; 0 for kicks without one.
+    """
 
     part: Literal["sure"]
     model: ModelName
@@ -61,7 +67,11 @@ class SureCell(TypedDict):
 
 
 class CheckCell(TypedDict):
-    """Some starts, computed by other means."""
+    """Some starts, computed by other means.
+
+    Attributes:
+        model: continuous or sampled.
+    """
 
     part: Literal["check"]
     model: ModelName
@@ -73,7 +83,7 @@ class Start(TypedDict):
     Attributes:
         phi: angle at the start (rad).
         omega: angular velocity at the start (rad/s).
-        outcome: what the wheel does in the end, one of OUTCOMES.
+        outcome: what the wheel does in the end.
         quarters: number of the well that the wheel ends in, in quarter turns from phi = 0, full
             turns included; None if it ends in none, and without springs, which make the wells.
     """
@@ -90,7 +100,7 @@ class Kick(TypedDict):
     Attributes:
         length_s: length of the kick (s); 0 for a kick without a length.
         phase_deg: phase of rolling at which it comes: the angle within a quarter turn (degrees).
-        outcome: what the wheel does in the end, one of OUTCOMES.
+        outcome: what the wheel does in the end.
     """
 
     length_s: float

@@ -27,7 +27,7 @@ from host.theory.studies.branch_merging import (
     period_law,
 )
 from host.theory.studies.branch_rows import CyclePart, Part
-from host.theory.studies.branch_tables import BranchEndRow, BranchRow, MergingRow, SpecialRow
+from host.theory.studies.branch_tables import BranchRow, EndRow, MergingRow, SpecialRow
 from host.theory.studies.registry import PAPER
 
 # Far above the onset of locomotion, where the constant-velocity formula is claimed.
@@ -195,7 +195,7 @@ def _ends(rows: list[BranchRow], along: str) -> list[dict[str, object]]:
     return found
 
 
-def _limit(rows: list[BranchRow], end: BranchEndRow) -> float:
+def _limit(rows: list[BranchRow], end: EndRow) -> float:
     """The value to which a branch goes: its last cycle is only near a merging or a Hopf point."""
     limits: list[float] = []
     if end["type"] == "merging":

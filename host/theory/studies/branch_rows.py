@@ -37,6 +37,7 @@ class Rest(TypedDict):
     """A fixpoint at one value of the constant.
 
     Attributes:
+        value: of the constant that is followed (in its unit).
         phi: angle (rad).
         stable: whether every small disturbance dies out.
         eigenvalues: the leading one first (1/s).
@@ -55,6 +56,7 @@ class HopfPoint(TypedDict):
     """A Hopf bifurcation of the fixpoint at phi = 0.
 
     Attributes:
+        value: of the constant that is followed (in its unit).
         period: of the cycles that are born (s).
         omega_mean: their mean speed, 0 (rad/s).
         amplitude: their amplitude, 0 (rad).
@@ -78,10 +80,11 @@ class MergingPoint(TypedDict):
     """A merging: a heteroclinic connection of neighbouring saddles.
 
     Attributes:
+        value: of the constant that is followed (in its unit).
         omega_mean: mean speed of the cycles that end here, 0 (rad/s).
         multipliers: none.
-        saddle_quantity: sum of the two leading real parts (1/s); negative if cycles close to the
-            merging are stable.
+        saddle_quantity: sum of the two leading real parts (1/s); negative if cycles close to
+            the merging are stable.
         eigenvalues: of the saddle, the leading one first (1/s).
         passes_above: whether wheels roll above the merging, not below.
         off_by: relative difference to the same with another start and shorter steps.
@@ -102,6 +105,7 @@ class CycleColumns(TypedDict):
     """A cycle, stable or not.
 
     Attributes:
+        value: of the constant that is followed (in its unit).
         x1: potential at phi = 0 (1).
         x2: potential at phi = 0 (1).
         omega: angular velocity at phi = 0 (rad/s).
@@ -115,8 +119,8 @@ class CycleColumns(TypedDict):
         stable: whether all multipliers are inside the unit circle.
         reduced_multipliers: of the reduced map (see host.theory.analysis.cycles).
         multipliers: Floquet multipliers of the whole period, without the trivial one.
-        off_by: error of the product of the reduced multipliers; in a row of a bifurcation, relative
-            difference of its value if located with shorter steps.
+        off_by: error of the product of the reduced multipliers; in a row of a bifurcation,
+            relative difference of its value if located with shorter steps.
     """
 
     value: float
@@ -152,6 +156,7 @@ class CyclePoint(CycleColumns):
 
     Attributes:
         way: the direction in which the branch is followed.
+        type: fold, pitchfork or Neimark-Sacker.
     """
 
     way: Way
@@ -165,6 +170,7 @@ class BranchEnd(TypedDict):
     Attributes:
         way: the direction in which the branch is followed.
         type: why it ends (see host.theory.analysis.bifurcations).
+        value: of the constant that is followed (in its unit).
         period: of the last cycle (s).
     """
 
@@ -180,6 +186,7 @@ class FormulaEdge(TypedDict):
 
     Attributes:
         way: the direction in which the branch is followed.
+        value: of the constant that is followed (in its unit).
     """
 
     way: Way
@@ -204,6 +211,7 @@ class SteppedCycle(TypedDict):
 
     Attributes:
         way: the direction in which the branch is followed.
+        value: of the constant that is followed (in its unit).
         period: of the cycle (s).
         omega_mean: mean of omega (rad/s).
         omega_std: standard deviation of omega (rad/s).
@@ -255,13 +263,15 @@ class Turned(TypedDict):
     """Potentials of a turning wheel at one angle.
 
     Attributes:
-        k: spring constant.
+        k: spring constant (1).
         omega_mean: speed at which it is turned (rad/s).
         phi: angle (rad).
-        x1: potential by the formula (1); x2 likewise.
-        x1_numeric: potential by integration (1); x2_numeric likewise.
-        x1_rolling: potential of the wheel that rolls by itself (1), None if it does not;
-            x2_rolling likewise.
+        x1: potential of the first neuron by the formula (1).
+        x1_numeric: the same by integration (1).
+        x1_rolling: that of the wheel that rolls by itself (1); None if it does not.
+        x2: potential of the second neuron by the formula (1).
+        x2_numeric: the same by integration (1).
+        x2_rolling: that of the wheel that rolls by itself (1); None if it does not.
     """
 
     kind: Literal["turning"]

@@ -47,7 +47,7 @@ class CyclePointRow(BranchCell, CyclePoint):
     """A row of kind `special`, of a cycle."""
 
 
-class BranchEndRow(BranchCell, BranchEnd):
+class EndRow(BranchCell, BranchEnd):
     """A row of kind `end`."""
 
 
@@ -82,7 +82,7 @@ BranchRow = (
     | MergingRow
     | CycleRow
     | CyclePointRow
-    | BranchEndRow
+    | EndRow
     | FormulaEdgeRow
     | NoBranchRow
     | SteppedCycleRow
@@ -159,7 +159,7 @@ def cycles_along(rows: Iterable[BranchRow], part: CyclePart, way: Way) -> list[C
     return [row for row in cycles_of(rows, part) if row["way"] == way]
 
 
-def ends(rows: Iterable[BranchRow]) -> list[BranchEndRow | NoBranchRow]:
+def ends(rows: Iterable[BranchRow]) -> list[EndRow | NoBranchRow]:
     """The ends of all branches."""
     return [row for row in rows if row["kind"] == "end"]
 

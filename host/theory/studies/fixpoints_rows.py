@@ -28,9 +28,14 @@ class Rest(TypedDict):
         phi: angle, n pi / 4 (rad).
         kind: saddle, or stable or unstable node or focus.
         stable: whether every small disturbance dies out.
-        re_0: real part of the leading eigenvalue (1/s); re_1 to re_3 of the others, in descending
-            order.
-        im_0: imaginary part of the leading eigenvalue (rad/s); im_1 to im_3 of the others.
+        re_0: real part of the leading eigenvalue (1/s).
+        im_0: imaginary part of the leading eigenvalue (rad/s).
+        re_1: real part of the second eigenvalue, in descending order (1/s).
+        im_1: imaginary part of the second eigenvalue (rad/s).
+        re_2: real part of the third eigenvalue, in descending order (1/s).
+        im_2: imaginary part of the third eigenvalue (rad/s).
+        re_3: real part of the fourth eigenvalue, in descending order (1/s).
+        im_3: imaginary part of the fourth eigenvalue (rad/s).
         jacobian_off_by: greatest difference between the Jacobian and central differences (SI).
         growth_off_by: difference between re_0 and the growth in a time course (1/s).
     """

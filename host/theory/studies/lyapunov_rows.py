@@ -37,6 +37,7 @@ class GridCell(TypedDict):
     """Attractors and largest exponents along k (line) or over the plane (k, tau).
 
     Attributes:
+        part: line or plane.
         first: number of the first k of a line, or of the first tau of the plane.
     """
 
@@ -78,8 +79,11 @@ class Block(TypedDict):
         omega_std: standard deviation of omega after the measurement (rad/s).
         block: number of the block.
         along_flow: whether exponent_1 is that along the flow.
-        exponent_1: Lyapunov exponent (1/s): the one along the flow, 0 in the long run; of a wheel
-            that rests, the largest. exponent_2 to exponent_4: the others, in descending order.
+        exponent_1: Lyapunov exponent along the flow, 0 in the long run; of a wheel that rests,
+            the largest (1/s).
+        exponent_2: the largest of the other exponents (1/s).
+        exponent_3: the next exponent (1/s).
+        exponent_4: the least exponent (1/s).
         by_pairs: largest exponent, from pairs of close wheels (1/s).
     """
 

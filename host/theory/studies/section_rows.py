@@ -107,9 +107,9 @@ class Frequency(TypedDict):
         period: in crossings, as above.
         resolution: distance of frequencies at which powers are densities; 0 for the harmonics of a
             cycle (Hz).
-        frequency: (Hz).
+        frequency: of the power (Hz).
         potentials: power of x1 and x2 together; a density in 1/Hz.
-        omega_power: power of omega ((rad/s)^2); a density in (rad/s)^2/Hz.
+        omega_power: power of omega (rad^2/s^2); a density in rad^2/s^2/Hz.
     """
 
     kind: MotionKind

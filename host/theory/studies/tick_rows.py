@@ -23,28 +23,48 @@ class LimitCell(TypedDict):
 
 
 class GrowthCell(TypedDict):
-    """Growth rates along k."""
+    """Growth rates along k.
+
+    Attributes:
+        order: new, the torque follows from the new potentials; old, from those of the tick
+            before; continuous, without ticks.
+    """
 
     part: Literal["growth"]
     order: Order | Continuous
 
 
 class PointCell(TypedDict):
-    """Thresholds at the study's own tick and latency."""
+    """Thresholds at the study's own tick and latency.
+
+    Attributes:
+        order: new, the torque follows from the new potentials; old, from those of the tick
+            before.
+    """
 
     part: Literal["point"]
     order: Order
 
 
 class ShortCell(TypedDict):
-    """k_c at ticks that approach zero, without latency."""
+    """k_c at ticks that approach zero, without latency.
+
+    Attributes:
+        order: new, the torque follows from the new potentials; old, from those of the tick
+            before.
+    """
 
     part: Literal["short"]
     order: Order
 
 
 class CheckCell(TypedDict):
-    """Other methods, at the study's own tick and latency."""
+    """Other methods, at the study's own tick and latency.
+
+    Attributes:
+        order: new, the torque follows from the new potentials; old, from those of the tick
+            before.
+    """
 
     part: Literal["check"]
     order: Order
@@ -54,6 +74,8 @@ class TickCell(TypedDict):
     """One order, with another tick.
 
     Attributes:
+        order: new, the torque follows from the new potentials; old, from those of the tick
+            before.
         tick_s: length of the tick (s).
     """
 
@@ -66,6 +88,8 @@ class LatencyCell(TypedDict):
     """One order, with another latency.
 
     Attributes:
+        order: new, the torque follows from the new potentials; old, from those of the tick
+            before.
         latency_s: how long after the start of its tick a torque acts (s).
     """
 
@@ -80,7 +104,7 @@ class Motion(TypedDict):
     Attributes:
         k_rolls: spring constant at which swinging turns into rolling as k rises.
         k_stops: spring constant at which rolling ends as k falls.
-        hz: turns per second at k = RUNNING_K (Hz).
+        hz: turns per second at k = 8 (Hz).
     """
 
     k_rolls: float | None

@@ -38,7 +38,7 @@ def run(tmp_path_factory):
 def test_a_run_has_a_kick_of_each_mode_and_a_row_for_each_wheel(run):
     folder, summary = run
     assert summary["claims"] == []
-    table = next(folder.glob("*/*.csv")).read_text().splitlines()
+    table = next(folder.glob("*/predictions.csv")).read_text().splitlines()
     names = table[0].split(",")
     rows = [dict(zip(names, line.split(","), strict=True)) for line in table[1:]]
     assert [(one["mode"], one["wheel"]) for one in rows] == [

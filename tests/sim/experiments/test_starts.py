@@ -153,7 +153,7 @@ def test_a_run_ends_with_a_table_a_figure_and_no_claims(tmp_path):
     summary = perform("starts", starts=3, seed=2, out=tmp_path)
     assert summary["claims"] == []
     assert summary["numbers"]["starts"] == 3
-    table = next(tmp_path.glob("*/*.csv")).read_text().splitlines()
+    table = next(tmp_path.glob("*/starts.csv")).read_text().splitlines()
     assert table[0].split(",") == ["start", "wheel", "phi_deg", "ahead_deg", "direction"]
     assert len(table) == 7
     assert next(tmp_path.glob("*/*.png")).stat().st_size > 20_000

@@ -31,7 +31,7 @@ def test_each_point_has_the_numbers_of_a_run_of_its_own(tmp_path):
         ]
     assert swept["numbers"]["swept"] == [{"name": "tau", "unit": "s", "values": [1.0, 0.25]}]
     assert swept["claims"] == []
-    with Path(swept["table"]).open(encoding="utf-8") as file:
+    with Path(swept["tables"][0]).open(encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     assert list(table[0]) == ["tau", "quantity", "value", "error", "unit", "word", "failed"]
     assert table == [
