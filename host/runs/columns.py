@@ -11,7 +11,16 @@ import inspect
 import re
 import sys
 from collections.abc import Iterable, Iterator
-from typing import Any, Literal, NamedTuple, get_args, get_origin, get_type_hints, is_typeddict
+from typing import (
+    Any,
+    Literal,
+    NamedTuple,
+    NotRequired,
+    get_args,
+    get_origin,
+    get_type_hints,
+    is_typeddict,
+)
 
 from host.runs.contract import Experiment, Row
 
@@ -104,7 +113,8 @@ def _kind(row: type) -> Kind:
     # A class without fields of its own joins a cell and what was measured in it.
     about = row if vars(row)["__annotations__"].keys() - _inherited(row) else _bases(row)[-1]
     meaning = (inspect.getdoc(about) or "").partition("\n")[0]
-    required: frozenset[str] = row.__required_keys__  # type: ignore[attr-defined]
+    hints = get_type_hints(row, include_extras=True).items()
+    required = frozenset(field for field, hint in hints if get_origin(hint) is not NotRequired)
     return Kind(name, meaning, tuple(columns_of(row)), required)
 
 
