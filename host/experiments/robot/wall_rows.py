@@ -48,7 +48,11 @@ class OneHit(HitsCell):
 
 
 class SeriesCell(Condition):
-    """A simulated robot that bounces to and fro for a while. k: spring constant (1)."""
+    """A simulated robot that bounces to and fro for a while.
+
+    Attributes:
+        k: spring constant (1).
+    """
 
     k: float
     part: Literal["series"]
