@@ -42,9 +42,12 @@ class Unwritable:
         raise OSError
 
 
+FAILURES = [(line, errno.ENOSPC) for line in DONE]
+FAILURES += [("start --seed 1", number) for number in (errno.EPIPE, errno.EIO)]
+
+
 @pytest.mark.parametrize("json_too", [(), ("--json",)], ids=["words", "json"])
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EPIPE, errno.EIO])
-@pytest.mark.parametrize("line", DONE)
+@pytest.mark.parametrize(("line", "number"), FAILURES)
 def test_what_was_done_is_said_where_it_can_be(kickctl, monkeypatch, line, number, json_too):
     with monkeypatch.context() as patch:
         patch.setattr(sys, "stdout", Unwritable(number))
