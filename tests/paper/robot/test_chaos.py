@@ -141,7 +141,7 @@ def test_the_brick_as_it_is_stops_switching_within_a_minute():
 def test_wheels_on_bodies_whose_rods_are_older_go_on_switching():
     """All of them, and their exponents are above that of noise; without the lag they do not."""
     tick_s = Params().tick_s
-    for record in runs(OLDER, 20, 300.0):
+    for record in runs(OLDER, 8, 300.0):
         assert ending(record[:, PHI], tick_s)[1] == SWITCHES
         exponent, _ = from_series(record[:, FORCE], tick_s, APART_S)
         assert exponent.interval[0] > of_noise()
