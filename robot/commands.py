@@ -1,8 +1,9 @@
 """The table of the robot's commands: what anyone may ask, and what the host with the lease may."""
 
 from collections import OrderedDict, namedtuple
+from functools import lru_cache
 
-from robot import params, record
+from robot import params, record, wire
 from robot.errors import Refused
 from robot.loop import LATENESS_EDGES_S
 from robot.words import person
@@ -10,18 +11,23 @@ from robot.words import person
 Command = namedtuple("Command", "name sealed arguments doc run")
 
 
+@lru_cache(maxsize=1)
+def _params_in_force(values):
+    """The part of the status that seldom changes, as JSON: bytes."""
+    return wire.dump({"params": OrderedDict(zip(params.TABLE, values))})
+
+
 def _status(loop, session, message):
-    safety = loop.safety
-    return {
+    safety, lease, now = loop.safety, loop.lease, loop.clock.now()
+    varying = {
         "state": record.STATES[safety.state],
         "reason": safety.reason,
         "tick": loop.blackbox.next_tick,
-        "clock_s": loop.clock.now() - loop.epoch,
+        "clock_s": now - loop.epoch,
         "oldest_tick": loop.blackbox.oldest_tick,
         "battery_v": loop.battery_v,
-        "controller": None if loop.lease.holder is None else loop.lease.name,
-        "controller_held_s": loop.lease.held_s(loop.clock.now()),
-        "params": loop.params.values(),
+        "controller": None if lease.holder is None else lease.name,
+        "controller_held_s": lease.held_s(now),
         "missed": loop.missed,
         "overruns": loop.overruns,
         "clamped": loop.clamped,
@@ -29,6 +35,7 @@ def _status(loop, session, message):
         "memory_locked": loop.memory_locked,
         "lateness": {"edges_s": LATENESS_EDGES_S, "counts": loop.lateness},
     }
+    return wire.join(wire.dump(varying), _params_in_force(params.IN_FORCE(loop.params)))
 
 
 def _describe(loop, session, message):
@@ -207,7 +214,7 @@ def execute(loop, session, message, sealed):
         sealed: Whether the request came with a valid MAC.
 
     Returns:
-        The result, a dictionary.
+        The result as JSON, bytes.
 
     Raises:
         Refused: Nothing was done, and nothing has changed.
@@ -225,10 +232,11 @@ def execute(loop, session, message, sealed):
             "prove that you have the robot's token first",
         )
     for key in message:
-        if key not in ("id", "do") + row.arguments:
+        if key not in {"id", "do"} and key not in row.arguments:
             raise Refused(
                 "usage",
                 "'{}' takes no '{}'".format(name, key),
                 "it takes " + (", ".join(row.arguments) or "nothing"),
             )
-    return row.run(loop, session, message)
+    result = row.run(loop, session, message)
+    return result if isinstance(result, bytes) else wire.dump(result)

@@ -5,6 +5,7 @@ Checks, command line, documentation and dashboards all use this one table.
 
 from collections import OrderedDict, namedtuple
 from math import isfinite
+from operator import attrgetter
 
 from robot.errors import Refused
 
@@ -75,6 +76,8 @@ _ROWS = (
     ),
 )
 TABLE = OrderedDict((row.name, row) for row in _ROWS)
+# The values that a Params has, as a tuple in the order of the table.
+IN_FORCE = attrgetter(*TABLE)
 
 
 def describe():
@@ -205,7 +208,7 @@ class Params(object):
         Returns:
             An OrderedDict from name to value, in the order of the table.
         """
-        return OrderedDict((name, getattr(self, name)) for name in TABLE)
+        return OrderedDict(zip(TABLE, IN_FORCE(self)))
 
     def check(self, changes, at_rest=True):
         """Check changes without making them.

@@ -5,7 +5,9 @@ The order of it is in PROTOCOL.md.
 
 import binascii
 import os
+import re
 import sys
+from functools import lru_cache
 
 from robot import __version__, commands, wire
 from robot.errors import Refused
@@ -42,6 +44,8 @@ _NOT_FOR_SCREENS = (
 )
 # What nearly every beat is answered by.
 _NOBODY_TOOK_OVER = wire.encode_json(wire.BEAT, {"taken_over_by": None})
+# A name that stays as it is, as nearly all of them.
+_PLAIN_NAME = re.compile(r"[ -&(-~]{0,40}\Z").match
 SEE_PROTOCOL = "see PROTOCOL.md for what the robot understands"
 
 
@@ -50,8 +54,27 @@ def new_id():
     return binascii.hexlify(os.urandom(wire.NONCE_BYTES)).decode("ascii")
 
 
+@lru_cache(maxsize=1)
+def _about(boot, seed, motor):
+    """What every hello of this run of the program says, as JSON: bytes."""
+    facts = {
+        "protocol": wire.PROTOCOL,
+        "software": __version__,
+        "sources": _SOURCES,
+        "boot": boot,
+        "seed": seed,
+        "machine": _MACHINE,
+        "motor": motor,
+    }
+    if _HARDWARE_ID:
+        facts.update(hardware_id=_HARDWARE_ID)
+    return wire.dump(facts)
+
+
 def _printable(name):
     """A peer's name, cut to a decent length and without anything that a screen would obey."""
+    if _PLAIN_NAME(name):
+        return name
     # People are shown names in single quotes, which a name must not seem to end.
     letters = [
         letter
@@ -168,12 +191,10 @@ class Session(object):
         message = wire.load(payload)
         identity = _identity(message)
         try:
-            answer = {
-                "result": commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
-            }
+            result = commands.execute(self._loop, self, message, sealed=kind == wire.COMMAND)
         except Refused as refusal:
-            answer = {"error": refusal.as_dict()}
-        return wire.encode_json(wire.REPLY, dict(answer, id=identity))
+            return wire.encode_json(wire.REPLY, {"id": identity, "error": refusal.as_dict()})
+        return wire.encode(wire.REPLY, b'{"id":%d,"result":%s}' % (identity, result))
 
     def refuse(self, code, message, hint, **more):
         """End the conversation.
@@ -235,30 +256,19 @@ class Session(object):
         own_nonce = new_id()
         self._host_nonce, self._own_nonce = nonce, binascii.unhexlify(own_nonce)
         loop = self._loop
+        lease, box, now = loop.lease, loop.blackbox, loop.clock.now()
         answer = {
-            "protocol": wire.PROTOCOL,
-            "software": __version__,
-            "sources": _SOURCES,
-            "boot": self._boot,
             "nonce": own_nonce,
-            "seed": loop.seed,
+            "host_nonce": binascii.hexlify(nonce).decode("ascii"),
+            "tick": box.next_tick,
+            "oldest_tick": box.oldest_tick,
+            "clock_s": now - loop.epoch,
+            "controller": None if lease.holder is None else lease.name,
+            "controller_held_s": lease.held_s(now),
+            "taken_over_by": lease.taken_over_by(client),
         }
-        answer.update(host_nonce=binascii.hexlify(nonce).decode("ascii"))
-        answer.update(
-            tick=loop.blackbox.next_tick,
-            oldest_tick=loop.blackbox.oldest_tick,
-            clock_s=loop.clock.now() - loop.epoch,
-        )
-        lease = loop.lease
-        answer.update(
-            controller=None if lease.holder is None else lease.name,
-            controller_held_s=lease.held_s(loop.clock.now()),
-            taken_over_by=lease.taken_over_by(client),
-        )
-        answer.update(machine=_MACHINE, motor=loop.motor)
-        if _HARDWARE_ID:
-            answer.update(hardware_id=_HARDWARE_ID)
-        return wire.encode_json(wire.HELLO, answer)
+        about = _about(self._boot, loop.seed, loop.motor)
+        return wire.encode(wire.HELLO, wire.join(about, wire.dump(answer)))
 
     def _authenticate(self, message):
         try:

@@ -107,6 +107,19 @@ def dump(message):
     return _TO_JSON(message).encode("ascii")
 
 
+def join(first, second):
+    """Make one JSON object of two.
+
+    Args:
+        first: A JSON object with at least one field, bytes.
+        second: Another one, with other fields.
+
+    Returns:
+        An object with all fields, bytes.
+    """
+    return first[:-1] + b"," + second[1:]
+
+
 def encode_samples(number, records):
     """Make a frame of records.
 
@@ -230,7 +243,11 @@ def digest(key, *parts):
     Returns:
         32 bytes.
     """
-    return _hmac(key, b"".join([_LENGTH.pack(len(part)) + part for part in parts]))
+    return _hmac(key, _parts(*parts))
+
+
+def _parts(*parts):
+    return b"".join([_LENGTH.pack(len(part)) + part for part in parts])
 
 
 def _hmac(key, message):
@@ -249,6 +266,10 @@ def _keyed(key):
     return hashlib.sha256(block.translate(_INNER)), hashlib.sha256(block.translate(_OUTER))
 
 
+# `digest` takes these in before the nonces.
+_HOST, _ROBOT, _SESSION = _parts(b"host"), _parts(b"robot"), _parts(b"session")
+
+
 class Handshake(object):
     """What both ends compute from the token and the two nonces.
 
@@ -264,9 +285,10 @@ class Handshake(object):
     """
 
     def __init__(self, token, host_nonce, robot_nonce):
-        self.host_proof = digest(token, b"host", host_nonce, robot_nonce)
-        self.robot_proof = digest(token, b"robot", host_nonce, robot_nonce)
-        self.key = digest(token, b"session", host_nonce, robot_nonce)
+        nonces = _parts(host_nonce, robot_nonce)
+        self.host_proof = _hmac(token, _HOST + nonces)
+        self.robot_proof = _hmac(token, _ROBOT + nonces)
+        self.key = _hmac(token, _SESSION + nonces)
 
 
 def same(one, other):

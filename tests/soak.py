@@ -222,7 +222,7 @@ def main():
     )
     print(
         f"memory: {sizes[0]} kB at the start, {sizes[-1]} at the end, {max(sizes)} at most; it grew"
-        f" by {slope:.0f} kB/h (95 % interval: {slope - half:.0f} to {slope + half:.0f})"
+        f" by {slope:z.0f} kB/h (95 % interval: {slope - half:z.0f} to {slope + half:z.0f})"
     )
     print(
         "open files:"

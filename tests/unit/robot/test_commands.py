@@ -18,7 +18,8 @@ def session():
 
 
 def execute(session, do, sealed=True, **arguments):
-    return commands.execute(session._loop, session, dict(arguments, id=1, do=do), sealed)
+    request = dict(arguments, id=1, do=do)
+    return wire.load(commands.execute(session._loop, session, request, sealed))
 
 
 def refusal(session, do, **arguments):
