@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from host.errors import WrongUse
 
 # Options whose values may begin with a minus sign and still be no plain numbers.
-_SIGNED = ("--shift", "--value", "--delta")
+_SIGNED = ("--shift", "--value", "--delta", "--window")
 
 
 class Parser(argparse.ArgumentParser):

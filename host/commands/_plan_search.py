@@ -109,9 +109,11 @@ def _blocks(rows: list[dict[str, Any]], period_rad: float) -> Iterator[str]:
             yield f"    reversed {_share(odds)}; sure at no phase"
             continue
         first, last = row["window_rad"]
+        timed = ""
         if last - first >= period_rad:
             yield f"    at any phase: reversed {_share(odds)}"
         else:
+            timed = f" --wheel left --window {degrees(first):.0f},{degrees(last):.0f}"
             yield (
                 f"    at a phase from {degrees(first):.0f}° to {degrees(last):.0f}°: reversed"
                 f" {_share(row['in_window'])}; at any phase {_share(odds)}"
@@ -121,7 +123,7 @@ def _blocks(rows: list[dict[str, Any]], period_rad: float) -> Iterator[str]:
             for name, (low, high) in row["may_be_off"].items()
         )
         yield f"    still does with {ends}"
-        yield f"    kickctl kick{_as_options(row['kick'])}"
+        yield f"    kickctl kick{_as_options(row['kick'])}{timed}"
 
 
 def _name(kick: dict[str, Any]) -> str:

@@ -1,8 +1,10 @@
 """kickctl kick."""
 
+from __future__ import annotations
+
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from host.commands._options import add_take_over
 from host.commands._outputs import path_argument
@@ -10,7 +12,7 @@ from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
-from host.util.numbers import Number
+from host.util.numbers import Number, parse_number
 from robot.errors import Refused
 from robot.kick_requests import CHANGED, parse
 from robot.kicks import (
@@ -26,6 +28,10 @@ from robot.kicks import (
 )
 from robot.params import Params
 
+if TYPE_CHECKING:
+    from host.client.robot import Robot
+
+FULL_TURN_DEG = 360.0
 HELP = "kick the robot, and say whether it reversed"
 
 
@@ -86,6 +92,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="jump: how far the potential jumps; potentials have no unit",
     )
     parser.add_argument(
+        "--window",
+        type=_window,
+        metavar="FROM,TO",
+        help=(
+            "wait until the wheel's angle is between these (degrees), as `kickctl plan --search`"
+            " gives them; a wheel looks the same after 90 degrees, with one rod after 180"
+        ),
+    )
+    parser.add_argument(
         "--now",
         action="store_true",
         help="kick at once, without waiting until the wheels have settled",
@@ -107,6 +122,11 @@ def run(options: argparse.Namespace) -> int:
 
     details = _details(options)
     ticks = _check(options.mode, options.wheel, details)
+    if options.window and options.wheel == "both":
+        raise WrongUse(
+            "--window is for one wheel, as both are never at the same angle",
+            "add --wheel left or --wheel right",
+        )
     with robot_of(options, moves=True, sends="kick") as robot:
         require_running(robot)
         require_control(robot)
@@ -116,6 +136,8 @@ def run(options: argparse.Namespace) -> int:
                     "the wheels did not settle",
                     "are the parameters those of a steady motion? --now kicks without waiting",
                 )
+            if options.window:
+                _await_window(robot, options.wheel, options.window)
             outcome = kick_and_watch(
                 robot, recording.log, options.mode, wheel=options.wheel, **details
             )
@@ -138,6 +160,33 @@ def in_one_line(result: dict[str, Any]) -> str:
     done = "reversed" if result["reversed"] else "did not reverse"
     before, after = (", ".join(result[key].values()) for key in ("before", "after"))
     return f"{done}: {before} before the kick, {after} after it; log {result['log']}"
+
+
+def _window(text: str) -> tuple[float, float]:
+    """The two angles of a window, degrees. Raises argparse.ArgumentTypeError."""
+    parts = (parse_number(part.strip()) for part in text.split(","))
+    ends = [end for end in parts if end is not None]
+    if len(ends) != 2 or text.count(",") != 1 or not 0.0 < ends[1] - ends[0] < FULL_TURN_DEG:
+        raise argparse.ArgumentTypeError(
+            f"cannot be '{text}'; give two angles in degrees, the first one smaller, as in 60,84"
+        )
+    return ends[0], ends[1]
+
+
+def _await_window(robot: Robot, side: str, window: tuple[float, float]) -> None:
+    """Wait until the wheel is in the window in the next tick. Raises NotDone."""
+    from math import radians
+
+    from host.kicking.kick_map import period_rad
+    from host.kicking.primitives import await_phase
+
+    first, last = map(radians, window)
+    period = period_rad(robot.status()["params"]["rods"])
+    if not await_phase(robot, side, lambda phi: (phi - first) % period <= last - first):
+        raise NotDone(
+            f"the {side} wheel did not come to an angle from {window[0]:g}° to {window[1]:g}°",
+            "does it roll? kickctl drive forward makes it roll; or kick without --window",
+        )
 
 
 def _details(options: argparse.Namespace) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from math import degrees, radians
+from math import degrees, pi, radians
 from typing import Any, TypedDict
 
 import numpy as np
@@ -94,6 +94,11 @@ def phase_bin(phi_rad: float) -> int:
 def bin_edges_rad(number: int) -> tuple[float, float]:
     """The angles between which a bin lies."""
     return radians(number * _BIN_DEG - 0.5), radians((number + 1) * _BIN_DEG - 0.5)
+
+
+def period_rad(rods: int) -> float:
+    """The turn (rad) after which a robot's wheel looks the same."""
+    return pi / 2 if rods == 2 else pi
 
 
 def lengths(tick_s: float) -> list[int]:

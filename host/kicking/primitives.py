@@ -12,6 +12,7 @@ rest; k then stays low.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from host.client.robot import Robot
@@ -165,7 +166,7 @@ def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
     """Kick both wheels at once if they have the same plan, at any phase; else kick the first."""
     side, chosen = next(iter(plans.items()))
     if chosen.window_rad is not None:
-        _await_moment(robot, side, chosen)
+        await_phase(robot, side, chosen.meets)
     elif len(plans) == 2 and all(
         own.window_rad is None and own.request() == chosen.request() for own in plans.values()
     ):
@@ -173,13 +174,14 @@ def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
     return kick_and_watch(robot, log, wheel=side, **chosen.request())
 
 
-def _await_moment(robot: Robot, side: str, chosen: Plan) -> None:
-    """Wait until the wheel will be in the plan's window in the next tick, but not for ever.
+def await_phase(robot: Robot, side: str, meets: Callable[[float], bool]) -> bool:
+    """Wait until a wheel will have an angle (rad) in the next tick that `meets` takes.
 
-    A kick at any moment is better than none.
+    Returns whether that came within MOMENT_PATIENCE_S. For a plan, a kick at any moment is better
+    than none.
     """
     robot.lease()  # to take it together with the kick would cost a tick
-    robot.wait(MOMENT_PATIENCE_S, until=lambda: chosen.meets(sum(course(robot, side))))
+    return robot.wait(MOMENT_PATIENCE_S, until=lambda: meets(sum(course(robot, side))))
 
 
 def course(robot: Robot, side: str) -> tuple[float, float]:

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import pi
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from host.kicking.kick_map import settle_ticks, watch_ticks
+from host.kicking.kick_map import period_rad, settle_ticks, watch_ticks
 from robot.kick_requests import parse
 from robot.params import Params
 from sim_motor.batch import Start, random_start, run
@@ -72,7 +71,7 @@ class RollingWheels:
     @property
     def period_rad(self) -> float:
         """The turn after which a wheel looks the same, rad."""
-        return pi / 2 if self.params.rods == 2 else pi
+        return period_rad(self.params.rods)
 
     def kicked(self, request: Mapping[str, Any]) -> tuple[Array, NDArray[np.bool_]]:
         """What a kick does to them.

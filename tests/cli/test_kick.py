@@ -4,6 +4,7 @@ import csv
 import io
 import json
 from itertools import pairwise
+from math import degrees
 
 import pytest
 
@@ -286,6 +287,10 @@ def test_a_waveform_from_a_file_reverses_and_its_log_replays_bit_for_bit(kickctl
         (("--waveform", "big.txt"), "value 2 of the waveform of k: k cannot be 101.0"),
         (("--waveform", "big.txt", "--mode", "phase"), "param does not belong to a phase kick"),
         (("--waveform", "big.txt", "--ticks", "2"), "says its own length"),
+        (("--mode", "membrane", "--window", "60,84"), "--window is for one wheel"),
+        (("--mode", "membrane", "--window", "84,60"), "cannot be '84,60'"),
+        (("--mode", "membrane", "--window=60,84,"), "cannot be '60,84,'"),
+        (("--mode", "membrane", "--window", "-10,x"), "cannot be '-10,x'"),
     ],
 )
 def test_a_kick_without_a_form_and_a_wrong_waveform_are_refused_first(kickctl, arguments, words):
@@ -293,3 +298,24 @@ def test_a_kick_without_a_form_and_a_wrong_waveform_are_refused_first(kickctl, a
     status, out, err = kickctl("kick", *arguments)
     assert (status, out) == (2, "")
     assert words in err
+
+
+def test_a_kick_waits_for_its_window_of_angles(kickctl):
+    """The least pulse of `plan --search` reverses in its window, and not at other angles."""
+    kick = ("kick", "--mode", "pulse", "--param", "shift_rad", "--value", "1.16583")
+    kick += ("--ticks", "7", "--shape", "smooth", "--wheel", "left", "--seed", "1", "--json")
+    for window, status in (("76,100", 0), ("30,54", 1)):
+        done, out, _ = kickctl(*kick, "--window", window)
+        result = json.loads(out)
+        records = Log.load(kickctl.folder / result["log"]).records
+        begin = next(record for record in records if record.tick == result["applied_tick"])
+        first, last = map(float, window.split(","))
+        assert (degrees(begin.left_phi_rad) - first) % 90 <= last - first
+        assert (done, result["before"]["left"]) == (status, "forward")
+
+
+def test_a_wheel_that_rests_does_not_come_to_an_angle(kickctl):
+    window = ("--wheel", "left", "--window", "10,20", "--now")
+    status, out, err = kickctl("kick", "--mode", "phase", *window, "--set", "k=0.01", "--seed", "1")
+    assert (status, out) == (1, "")
+    assert "did not come to an angle from 10° to 20°" in err
