@@ -88,6 +88,8 @@ def test_the_answer_is_a_table_and_json_has_the_same(kickctl):
         ("lyapunov-line", "--f", "0"),
         ("section", "--a", "0"),
         ("edge", "--k", "1"),
+        ("orbit", "--from", "3", "--to", "2"),
+        ("orbit", "--over", "f", "--from", "0"),
         ("tick", "--f", "0"),
     ],
 )

@@ -15,8 +15,8 @@ COLOUR: dict[MotionKind, str] = {
     "chaotic": COLOURS[1],
     "quasi-periodic": COLOURS[2],
 }
-_LETTERS = {"tau": r"$\tau$", "a": "$a$", "k": "$k$", "f": "$f$", "I": "$I$"}
-_UNITS = {"tau": " s", "f": " s", "I": " s²"}
+LETTERS = {"tau": r"$\tau$", "a": "$a$", "k": "$k$", "f": "$f$", "I": "$I$"}
+UNITS = {"tau": " s", "f": " s", "I": " s²"}
 
 
 def handles(kinds: set[MotionKind]) -> list[Line2D]:
@@ -32,6 +32,6 @@ def write_constants(figure: Figure, constants: dict[str, float]) -> None:
     """Write the constants of a wheel into the figure's lower right corner, below all panels."""
     figure.set_layout_engine("constrained", rect=(0.0, 0.03, 1.0, 0.97))
     words = ", ".join(
-        f"{_LETTERS[name]} = {value:g}{_UNITS.get(name, '')}" for name, value in constants.items()
+        f"{LETTERS[name]} = {value:g}{UNITS.get(name, '')}" for name, value in constants.items()
     )
     figure.text(0.995, 0.005, words, ha="right", va="bottom", fontsize=11)

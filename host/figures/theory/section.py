@@ -23,11 +23,12 @@ from host.theory.studies.section_rows import (
     spectrum_of,
 )
 
+Coordinate = Literal["section_omega", "section_phi"]
 Signal = Literal["potentials", "omega_power"]
-# The coordinate along the section, and the section's equation.
-_LABELS: dict[Surface, tuple[str, str]] = {
-    "phi": (r"$\omega$ (rad/s)", r"$\sin 2\varphi = 0$"),
-    "omega": (r"$\varphi$ (rad)", r"$\omega = 0$"),
+# The coordinate along the section, its label, and the section's equation.
+SECTIONS: dict[Surface, tuple[Coordinate, str, str]] = {
+    "phi": ("section_omega", r"$\omega$ (rad/s)", r"$\sin 2\varphi = 0$"),
+    "omega": ("section_phi", r"$\varphi$ (rad)", r"$\omega = 0$"),
 }
 # Powers are shown down to this part of the greatest; an axis is at least so long.
 _LEAST, _SHORTEST = 1e-7, 0.02
@@ -52,7 +53,7 @@ def draw(rows: list[SectionRow], findings: Findings) -> Figure:
                 axes.axvline(hertz, color="black", linestyle=":", linewidth=1.2, label="rotation")
                 axes.legend(loc="upper right")
         figure.suptitle(
-            f"Poincaré section {_LABELS[numbers['on']][1]}, up to the symmetries", fontsize=16
+            f"Poincaré section {SECTIONS[numbers['on']][2]}, up to the symmetries", fontsize=16
         )
         write_constants(figure, numbers["constants"])
     return figure
@@ -60,8 +61,7 @@ def draw(rows: list[SectionRow], findings: Findings) -> Figure:
 
 def _draw_points(section: Axes, returns: Axes, rows: list[CrossingRow], numbers: Numbers) -> None:
     """The points of all wheels on the section, and each with the next one."""
-    label, _ = _LABELS[numbers["on"]]
-    name = "section_omega" if numbers["on"] == "phi" else "section_phi"
+    name, label, _ = SECTIONS[numbers["on"]]
     for _, group in groupby(rows, key=lambda row: (row["batch"], row["wheel"])):
         own = list(group)
         along, across = _column(own, name), _column(own, "section_x2")

@@ -14,18 +14,24 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from host.theory.analysis.attractors import KINDS, NEAR_ZERO, STILL, Kind
+from host.theory.analysis.attractors import KINDS, STILL, Kind
 from host.theory.engine.crossings import Surface
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, numpy_rates
 
 MotionKind = Literal[Kind, "quasi-periodic"]
 REST, BACK, ROLL, CHAOS = KINDS
 TORUS: MotionKind = "quasi-periodic"
-# Points are the same if they differ by less than this, potentials in 1 and speeds in units of the
-# greatest one.
-SAME = 1e-6
-# The longest period that is looked for, in crossings.
-LONGEST = 64
+# Points are the same if they differ by less than SAME, potentials in 1 and speeds in units of the
+# greatest one; those of a period differ from each other by more than APART. In between, a wheel
+# still settles.
+SAME, APART = 1e-6, 1e-3
+# What still settles comes closer by this factor while it is watched.
+CLOSER = 0.8
+# A wheel that does not repeat itself is chaotic if its largest exponent is above this (1/s).
+GROWS = 0.01
+# The longest period that is looked for, and the fewest pairs of points by which a wheel is known to
+# repeat itself: one that has settled, and one that still settles.
+LONGEST, FEWEST, FEWEST_SETTLING = 64, 2, 16
 
 
 class Points(NamedTuple):
@@ -86,12 +92,12 @@ class Repeat(NamedTuple):
     off_by: float
 
 
-def repeat(found: Points, within: float = SAME) -> Repeat | None:
+def repeat(found: Points, *, settling: bool = False) -> Repeat | None:
     """How a motion repeats itself at its end.
 
     Args:
         found: Its points.
-        within: Points are the same if they differ by less than this.
+        settling: Whether points are the same, too, that come closer and are APART at most.
 
     Returns:
         The shortest period, of at most LONGEST crossings and a half of all; None if there is none.
@@ -99,18 +105,28 @@ def repeat(found: Points, within: float = SAME) -> Repeat | None:
     fastest = max(float(np.abs(found.states[:, OMEGA]).max(initial=0.0)), STILL)
     scaled = found.states / [1.0, 1.0, 1.0, fastest]
     for length in range(1, min(LONGEST, len(scaled) // 2) + 1):
-        last, before = scaled[-length:], scaled[-2 * length : -length]
-        off_by = float(np.abs(last - before).max())
-        if off_by < within:
-            quarters = int(found.quarters[-1] - found.quarters[-1 - length])
-            seconds = float(found.times_s[-1] - found.times_s[-1 - length])
-            # The symmetry that has brought the wheel back is a mirror, or so many quarter turns.
-            if found.mirrored[-1] != found.mirrored[-1 - length]:
-                times, quarters = 2, 0
-            else:
-                times = 4 // gcd(4, quarters % 4)
-            return Repeat(length, times * seconds, times * quarters, off_by)
+        pairs = max(length, FEWEST_SETTLING if settling else FEWEST)
+        if length + pairs > len(scaled):
+            return None
+        differences = np.abs(scaled[length:] - scaled[:-length]).max(axis=1)
+        off_by = float(differences[-pairs:].max())
+        comes_closer = settling and off_by < CLOSER * differences[:pairs].max()
+        if off_by < SAME or (off_by < APART and comes_closer):
+            return _repeat(found, length, off_by)
+        if off_by < APART:
+            return None
     return None
+
+
+def _repeat(found: Points, length: int, off_by: float) -> Repeat:
+    quarters = int(found.quarters[-1] - found.quarters[-1 - length])
+    seconds = float(found.times_s[-1] - found.times_s[-1 - length])
+    # The symmetry that has brought the wheel back is a mirror, or so many quarter turns.
+    if found.mirrored[-1] != found.mirrored[-1 - length]:
+        times, quarters = 2, 0
+    else:
+        times = 4 // gcd(4, quarters % 4)
+    return Repeat(length, times * seconds, times * quarters, off_by)
 
 
 class Motion(NamedTuple):
@@ -125,23 +141,28 @@ class Motion(NamedTuple):
     repeat: Repeat | None
 
 
-def motion(found: Points, ended: Array, within: float = SAME) -> Motion | None:
+def motion(found: Points, ended: Array, *, settling: bool = False) -> Motion | None:
     """What a wheel does, as far as its points show it.
 
     Args:
         found: Its points on the section.
         ended: The state after them, (4,).
-        within: Points are the same if they differ by less than this.
+        settling: As in `repeat`.
 
     Returns:
         The motion; None if it does not repeat itself (see `irregular`).
     """
     if not len(found.times_s):
         return Motion(REST if abs(ended[OMEGA]) < STILL else ROLL, None)
-    cycle = repeat(found, within)
+    sizes = np.abs(found.states[:, [PHI, OMEGA]]).max(axis=1)
+    if sizes[-1] < STILL:
+        return Motion(REST, None) if sizes[-1] <= sizes[0] else None
+    cycle = repeat(found, settling=settling)
+    if settling and cycle and cycle.crossings == 1 and sizes[-1] < CLOSER * sizes[0]:
+        return None  # it may come to rest
     return cycle and Motion(ROLL if cycle.quarters else BACK, cycle)
 
 
 def irregular(exponent: float) -> Motion:
     """The motion of a wheel that does not repeat itself, by its largest exponent, 1/s."""
-    return Motion(CHAOS if exponent > NEAR_ZERO else TORUS, None)
+    return Motion(CHAOS if exponent > GROWS else TORUS, None)

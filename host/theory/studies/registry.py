@@ -13,6 +13,7 @@ TAU = Option("tau", 0.25, 1e-6, 1e3, "time constant of the membrane potentials, 
 K = Option("k", 1.85, 0.0, 1e4, "spring constant of the rods, without unit")
 F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel, s (its torque has no unit)")
 I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel, s^2 (its torque has no unit)")  # noqa: E741
+LETTERS = ("k", "tau", "a", "f", "I")
 # The paper's constants, for which its claims are made.
 PAPER = {option.name: option.default for option in (A, TAU, F, I)}
 # The Poincare section (host.theory.analysis.sections).
@@ -53,9 +54,7 @@ TABLE = {
             ),
             F,
             I,
-            Option(
-                "along", "k", 0.0, 0.0, "the constant that is followed", ("k", "tau", "a", "f", "I")
-            ),
+            Option("along", "k", 0.0, 0.0, "the constant that is followed", LETTERS),
             Option(
                 "to",
                 None,
@@ -175,6 +174,37 @@ TABLE = {
                 1e4,
                 "how long to follow each of eight wheels after it has settled, s",
             ),
+        ),
+    ),
+    "orbit": Entry(
+        "orbit diagram over a constant, up and down: points on a Poincare section, windows by"
+        " their period, and where attractors coexist. Takes about a minute",
+        (
+            A,
+            TAU._replace(default=1.0),
+            K._replace(default=15.0),
+            F,
+            I,
+            ON,
+            Option("over", "k", 0.0, 0.0, "the constant that is varied", LETTERS),
+            Option(
+                "from",
+                None,
+                1e-9,
+                1e4,
+                "least value, in the unit of the constant (default: a twentieth of the greatest)",
+            ),
+            Option(
+                "to",
+                None,
+                1e-9,
+                1e4,
+                (
+                    "greatest value, in the unit of the constant (default: 20 for k, four times its"
+                    " value for others)"
+                ),
+            ),
+            Option("values", 240, 2, 4000, "number of values of the constant"),
         ),
     ),
     "basins": Entry(

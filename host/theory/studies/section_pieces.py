@@ -13,9 +13,11 @@ from host.theory.analysis.spectrum import largest_exponents
 from host.theory.engine.crossings import Surface, crossings
 from host.theory.model.wheel import Array, Wheel
 from host.theory.studies.section_rows import MotionColumns
+from sim_motor.compiled import on_one_core
 
-# How long the largest exponent of wheels that do not repeat themselves is measured, s.
-EXPONENT_S = 200.0
+# How long the largest exponent of wheels that do not repeat themselves is measured, s, with steps
+# that are fine enough for it (host.theory.engine.ensemble).
+EXPONENT_S, FINENESS = 150.0, 0.6
 
 
 class Settled(NamedTuple):
@@ -64,25 +66,26 @@ def follow_wheels(
 
 def motions_of(wheels: list[Wheel], settled: list[Settled]) -> list[MotionColumns]:
     """What wheels do in the end, with the exponents of those that do not repeat themselves."""
-    odd = [number for number, one in enumerate(settled) if one.motion is None]
-    exponents = {}
+    whats = [one.motion or motion(one.points, one.ended, settling=True) for one in settled]
+    odd = [number for number, what in enumerate(whats) if what is None]
+    exponents: dict[int, float] = {}
     if odd:
         states = np.array([settled[number].ended for number in odd]).T
         parameters = np.array([wheels[number] for number in odd]).T
         moving = np.ones(len(odd), dtype=bool)
-        found = largest_exponents(states, parameters, EXPONENT_S, moving)
+        with on_one_core():
+            found = largest_exponents(states, parameters, EXPONENT_S, moving, FINENESS)
         exponents = dict(zip(odd, found.tolist(), strict=True))
     rows: list[MotionColumns] = []
-    for number, one in enumerate(settled):
-        exponent = exponents.get(number)
-        what = one.motion or irregular(exponents[number])
+    for number, known in enumerate(whats):
+        what = known or irregular(exponents[number])
         cycle = what.repeat
         rows.append(
             {
                 "kind": what.kind,
                 "period": (cycle.crossings or None) if cycle else None,
                 "period_s": cycle.period_s if cycle else None,
-                "exponent": exponent,
+                "exponent": exponents.get(number),
             }
         )
     return rows

@@ -1,0 +1,69 @@
+"""The orbit diagram: points on the section over a constant, as it rises and as it falls."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from host.figures.style import SIZE, styled
+from host.figures.theory.motions import COLOUR, LETTERS, UNITS, handles, write_constants
+from host.figures.theory.section import SECTIONS, Coordinate
+from host.runs.contract import Findings
+from host.theory.analysis.attractors import KINDS, REST
+from host.theory.studies.orbit_report import SHOWN, Numbers, Window
+from host.theory.studies.orbit_rows import WAYS, OrbitRow
+
+
+def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
+    """The figure of the study's rows."""
+    numbers: Numbers = findings.numbers
+    over, (column, label, equation) = numbers["over"], SECTIONS[numbers["on"]]
+    with styled():
+        figure = Figure(**{**SIZE, "figsize": (12.8, 7.2), "dpi": 125})
+        panels = figure.subplots(2, 1, sharex=True, sharey=True)
+        for axes, way, words in zip(panels, WAYS, ("rises", "falls"), strict=True):
+            _draw(axes, [row for row in rows if row["way"] == way], column)
+            _name_windows(axes, [own for own in numbers["windows"] if own["way"] == way])
+            axes.set_ylabel(label)
+            axes.set_title(f"{LETTERS[over]} {words}", fontsize=13, loc="left")
+        values = [row["value"] for row in rows]
+        panels[1].set_xlim(min(values), max(values))
+        panels[1].set_xlabel(LETTERS[over] + (f" ({UNITS[over].strip()})" if over in UNITS else ""))
+        panels[0].legend(handles=handles({row["kind"] for row in rows}), loc="upper left")
+        figure.suptitle(
+            f"Orbit diagram on the Poincaré section {equation}, up to the symmetries", fontsize=16
+        )
+        write_constants(figure, numbers["constants"])
+    return figure
+
+
+def _draw(axes: Axes, rows: list[OrbitRow], column: Coordinate) -> None:
+    """The points; those of a wheel at rest are at 0."""
+    for kind, colour in COLOUR.items():
+        for repeats, size in ((True, 5.0), (False, 2.0)):
+            own = [row for row in rows if row["kind"] == kind and bool(row["period"]) == repeats]
+            axes.plot(
+                [row["value"] for row in own],
+                np.array([0.0 if kind == KINDS[REST] else row.get(column) for row in own], float),
+                ".",
+                color=colour,
+                markersize=size,
+                markeredgewidth=0,
+            )
+
+
+def _name_windows(axes: Axes, windows: list[Window]) -> None:
+    """Write the period of each window above it."""
+    for own in windows:
+        if own["period"] and own["values"] >= SHOWN:
+            axes.text(
+                (own["from"] + own["to"]) / 2,
+                1.0,
+                str(own["period"]),
+                transform=axes.get_xaxis_transform(),
+                ha="center",
+                va="bottom",
+                fontsize=11,
+                color=COLOUR[own["kind"]],
+            )
