@@ -58,7 +58,10 @@ class _Kept(NullCache):
         if content is None:
             return None
         target_context.refresh()
-        parts = pickle.loads(content)  # noqa: S301 - this user's own file
+        try:
+            parts = pickle.loads(content)  # noqa: S301 - this user's own file
+        except ImportError:  # its module is no file, as that of a function that a program has built
+            return None
         return CompileResult._rebuild(target_context, *parts)  # noqa: SLF001 - as numba's cache
 
     def save_overload(self, sig: Any, data: Any) -> None:

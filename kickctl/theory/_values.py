@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
+from host.theory.model.laws import has_symmetries
 from host.theory.model.wheel import Array, Wheel
 from host.util.arguments import wrong
 
@@ -77,6 +78,16 @@ def need_ascending(name: str, values: object, wanted: str, least: float = -np.in
     if found[0] < least or (np.diff(found) <= 0.0).any():
         raise wrong(name, values, wanted)
     return found
+
+
+def need_symmetric(wheel: Wheel, what: str) -> None:
+    """Raise WrongUse for a wheel that lacks a symmetry of the paper's."""
+    if not has_symmetries(wheel):
+        raise WrongUse(
+            f"{what} are computed with the symmetries of the paper's wheel, which this one lacks",
+            "give two rods, x_t(-x) = -x_t(x), and mechanics that give the opposite acceleration"
+            " for the opposite torque and omega",
+        )
 
 
 def need_smooth(wheel: Wheel, what: str) -> None:

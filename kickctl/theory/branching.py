@@ -15,7 +15,7 @@ from host.theory.studies import branch as study
 from host.theory.studies.branch_rows import Cycle, CyclePoint, HopfPoint, MergingPoint, Part
 from host.theory.studies.registry import TABLE
 from host.util.arguments import wrong
-from kickctl.theory._values import Result, need_smooth, need_wheel
+from kickctl.theory._values import Result, need_smooth, need_symmetric, need_wheel
 
 _FAMILIES: dict[Part, str] = {"fixpoints": "rest", "merging": "saddles", "FB": "FB", "LLM": "LLM"}
 
@@ -106,9 +106,9 @@ def branch(wheel: Wheel, along: str = "k", to: float | None = None) -> Branches:
     """
     wheel = need_wheel(wheel)
     need_smooth(wheel, "branches")
-    constants = {name: value for name, value in wheel._asdict().items() if name != "dry_friction"}
-    given = {**constants, "along": along, "to": to, "dry": 0.0}
-    options = complete_options("branch", TABLE["branch"], given)
+    need_symmetric(wheel, "branches")
+    given = {**wheel.options(), "along": along, "to": to, "dry": 0.0}
+    options = complete_options("branch", TABLE["branch"], given) | {"own": wheel.own}
     if isinstance(options["to"], list):
         raise wrong("to", to, "one number: the greatest value of the constant")
     study.cells(options)

@@ -23,7 +23,7 @@ from host.theory.studies import basins as study
 from host.theory.studies.basins_rows import CONTINUOUS, LENGTHS_S
 from host.theory.studies.phase_diagram import PUSH
 from host.util.arguments import need_whole, wrong
-from kickctl.theory._values import Result, need_ascending, need_smooth, need_wheel
+from kickctl.theory._values import Result, need_ascending, need_smooth, need_symmetric, need_wheel
 
 _LENGTHS = "lengths (s) that begin with 0 and ascend"
 
@@ -209,6 +209,7 @@ def kicks(
     """
     wheel = need_wheel(wheel)
     need_smooth(wheel, "kicks")
+    need_symmetric(wheel, "kicks")
     modes = {own for own, _ in KICKS}
     if mode not in modes:
         raise wrong("mode", mode, "one of " + ", ".join(sorted(modes)))

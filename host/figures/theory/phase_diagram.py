@@ -15,7 +15,7 @@ from host.figures.style import SIZE, styled
 from host.runs.contract import Findings
 from host.theory.analysis.hopf import critical_k, estimate
 from host.theory.analysis.phases import Phase
-from host.theory.model.wheel import Array, Wheel
+from host.theory.model.wheel import Array, Wheel, wheel_of
 from host.theory.studies.phase_diagram_report import Numbers
 from host.theory.studies.phase_diagram_rows import (
     Panel,
@@ -40,8 +40,7 @@ def draw(rows: list[PhaseDiagramRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     diagram = points(rows)
     numbers: Numbers = findings.numbers
-    constants = numbers["constants"]
-    wheel = Wheel(a=constants["a"], f=constants["f"], I=constants["I"])
+    wheel = wheel_of(numbers["constants"])
     with styled():
         figure = Figure(**{**SIZE, "figsize": (12.5, 6.4)})
         panels = figure.subplots(1, 2, sharey=True)

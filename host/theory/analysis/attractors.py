@@ -7,14 +7,16 @@ periodic or quasi-periodic, and slowly if it is chaotic (Das, Sander, Yorke et a
 
 from __future__ import annotations
 
+from functools import cache
 from math import pi
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from host.theory.engine.elementary import sin, vectorised
-from host.theory.engine.ensemble import FINE, advance, wheel_rates
+from host.theory.engine.ensemble import FINE, advance, rates_under
+from host.theory.model.laws import Law, law_of
 from host.theory.model.wheel import OMEGA, Array
 
 Kind = Literal["at rest", "forth-and-back", "rolling", "chaotic"]
@@ -88,22 +90,27 @@ def kinds_by_exponents(watched: Watched, exponents: Array) -> NDArray[np.int64]:
     return np.where(moves & grows, CHAOS, regular)
 
 
-@vectorised
-def _windowed_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of wheels, and of weighted averages over a window.
+@cache
+def _windowed_rates(law: Law) -> Any:
+    """The compiled rates of wheels, and of weighted averages over a window.
 
     Rows 0 to 3 are the wheel, row 4 is the part of the window that is over, row 5 its rate; rows 6
     to 8 are the averages.
     """
-    wheel_rates(states[:4], parameters, out[:4])
-    for i in range(states.shape[1]):
-        wave, double = sin(pi * states[4, i]), sin(2.0 * states[2, i])
-        weight = states[5, i] * wave * wave * wave * wave * wave * wave / _MEAN_SIN_6
-        out[4, i] = states[5, i]
-        out[5, i] = 0.0
-        out[6, i] = weight * states[3, i]
-        out[7, i] = weight * states[3, i] * states[3, i]
-        out[8, i] = weight * double * double
+    own_rates = rates_under(law)
+
+    def windowed_rates(states: Array, parameters: Array, out: Array) -> None:
+        own_rates(states[:4], parameters, out[:4])
+        for i in range(states.shape[1]):
+            wave, double = sin(pi * states[4, i]), sin(2.0 * states[2, i])
+            weight = states[5, i] * wave * wave * wave * wave * wave * wave / _MEAN_SIN_6
+            out[4, i] = states[5, i]
+            out[5, i] = 0.0
+            out[6, i] = weight * states[3, i]
+            out[7, i] = weight * states[3, i] * states[3, i]
+            out[8, i] = weight * double * double
+
+    return vectorised(windowed_rates)
 
 
 def window(
@@ -113,7 +120,7 @@ def window(
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         seconds: Length of the window, s.
         fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
 
@@ -126,7 +133,8 @@ def window(
     """
     extra = np.zeros((5, states.shape[1]))
     extra[1] = 1.0 / seconds
-    ended = advance(np.vstack([states, extra]), parameters, seconds, fineness, _windowed_rates)
+    own_rates = _windowed_rates(law_of(parameters))
+    ended = advance(np.vstack([states, extra]), parameters, seconds, fineness, own_rates)
     return ended[6:], ended[: OMEGA + 1]
 
 
@@ -135,7 +143,7 @@ def watch(states: Array, parameters: Array, seconds: float, fineness: float = FI
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         seconds: Length of both windows together, s.
         fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
 

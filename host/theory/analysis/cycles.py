@@ -18,8 +18,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 from host.errors import NotDone, WrongUse
 from host.theory.analysis.continuation import Point
-from host.theory.engine.flow import FINENESS, plain, run, steps_for, varied
-from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, numpy_rates, rates
+from host.theory.engine.flow import FINENESS, plain_under, run, steps_for, varied
+from host.theory.model.laws import law_of, rates_of
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 
 # The coordinates on the section phi = 0.
 SECTION = [0, 1, OMEGA]
@@ -111,7 +112,11 @@ class Shooting:
             ) from stiff
         states = np.hstack([np.array([[x1], [x2], [0.0], [omega]]), np.eye(4), np.zeros((4, 1))])
         found: Array = run(
-            varied(Wheel._fields.index(self.along)), states, tuple(wheel), seconds, count
+            varied(Wheel._fields.index(self.along), law_of(wheel)),
+            states,
+            tuple(wheel),
+            seconds,
+            count,
         )
         return found
 
@@ -120,17 +125,18 @@ class Shooting:
         path = self.path(point.unknowns)[:, :, 0]
         step_s = float(point.unknowns[3]) / (len(path) - 1)
         before = max(0, int(path[:, OMEGA].argmin()) - 1)
-        wheel, states = tuple(self.wheel_at(point.unknowns)), path[before, :, None]
-        close = run(plain, states, wheel, 2 * step_s, _CLOSE_UP)[:, :, 0]
-        slopes = numpy_rates(*close.T, *wheel)[OMEGA]
+        wheel, states = self.wheel_at(point.unknowns), path[before, :, None]
+        own_rates = plain_under(law_of(wheel))
+        close = run(own_rates, states, tuple(wheel), 2 * step_s, _CLOSE_UP)[:, :, 0]
+        slopes = [rates_of(wheel)(*state, *wheel)[OMEGA] for state in close.tolist()]
         times = np.linspace(0.0, 2 * step_s, len(close))
         course = CubicHermiteSpline(times, close[:, OMEGA], slopes)
         turns = course.derivative().roots(extrapolate=False)
         return float(min(*close[[0, -1], OMEGA], *course(turns)))
 
     def _rates(self, state: Array, unknowns: Array) -> Array:
-        x1, x2, phi, omega = state.tolist()
-        return np.array(rates(x1, x2, phi, omega, *self.wheel_at(unknowns)))
+        wheel = self.wheel_at(unknowns)
+        return np.array(rates_of(wheel)(*state.tolist(), *wheel))
 
     def __call__(self, unknowns: Array) -> tuple[Array, Array]:
         """The residual of the reduced map, and its Jacobian.
@@ -200,7 +206,9 @@ def settle_in_rotation(wheel: Wheel, state: Array) -> tuple[Array, float]:
     at, now_s, crossings = np.array(state, dtype=np.float64), 0.0, 0
     section, since_s = np.full(4, np.inf), 0.0
     for _ in range(_MOST_CHUNKS):
-        path = run(plain, at[:, None], tuple(wheel), _CHUNK * step_s, _CHUNK)[:, :, 0]
+        path = run(plain_under(law_of(wheel)), at[:, None], tuple(wheel), _CHUNK * step_s, _CHUNK)[
+            :, :, 0
+        ]
         quarters = np.floor(path[:, PHI] / ROTATION.turn)
         for index in np.flatnonzero(np.diff(quarters) > 0):
             rest_of_step = ROTATION.turn * quarters[index + 1] - path[index, PHI]

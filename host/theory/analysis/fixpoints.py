@@ -1,25 +1,32 @@
 """The eight angles at which a wheel can rest (eq. trivial_fixpoints), and their eigenvalues.
 
 There are no others: at rest the rods balance if g(cos phi) = g(sin phi), or if one of the two is 0;
-g(u) = x_t(u) / u is even and falls with |u|.
+g(u) = x_t(u) / u is even and falls with |u|. A bounded torque is 0 where the force is. A wheel with
+one rod or with functions of the user rests elsewhere; there the angles are found by numbers.
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import e, pi
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from host.errors import WrongUse
+from host.theory.model.laws import law_of, rates_of
 from host.theory.model.symbolic import jacobian_at
-from host.theory.model.wheel import Array, Wheel, rates, resting
+from host.theory.model.wheel import OMEGA, Array, Wheel, resting
 
 NDComplex = NDArray[np.complex128]
 Kind = Literal["saddle", "stable focus", "stable node", "unstable focus", "unstable node"]
 
 ANGLES = tuple(n * pi / 4 for n in range(8))
+# In a search the turn is divided into this many intervals, of which the first begins a little
+# before 0: no fixpoint for reasons of symmetry is at an end of one.
+_INTERVALS, _BEFORE = 1440, 1e-3
 # A time course starts NEAR the fixpoint (relative), and grows or shrinks by FACTOR.
 NEAR, FACTOR = 1e-6, e
 
@@ -60,10 +67,10 @@ class Fixpoint(NamedTuple):
 
 
 def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
-    """The fixpoint at one of ANGLES.
+    """The fixpoint at an angle at which the wheel can rest.
 
     Args:
-        phi: The angle, rad.
+        phi: The angle, rad, one of `angles`.
         wheel: The wheel; with dry friction, one that begins to roll forward.
 
     Returns:
@@ -84,8 +91,28 @@ def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
     return Fixpoint(phi, state, values[order].astype(complex), vectors[:, order].astype(complex))
 
 
+def angles(wheel: Wheel) -> tuple[float, ...]:
+    """The angles (rad) at which a wheel can rest, ascending from 0."""
+    law = law_of(wheel)
+    if not (law.one_rod or law.own):
+        return ANGLES
+    own_rates, constants = rates_of(wheel), list(wheel)
+
+    def push(phi: float) -> float:
+        return float(own_rates(*resting(np.array([phi]))[:, 0].tolist(), *constants)[OMEGA])
+
+    ends = np.linspace(-_BEFORE, 2 * pi - _BEFORE, _INTERVALS + 1)
+    pushes = [push(phi) for phi in ends.tolist()]
+    found = [
+        brentq(push, *interval, xtol=1e-15)
+        for interval, (one, other) in zip(pairwise(ends.tolist()), pairwise(pushes), strict=True)
+        if one * other < 0.0
+    ]
+    return tuple(0.0 if abs(phi) < NEAR else float(phi) for phi in found)
+
+
 def fixpoints(wheel: Wheel) -> list[Fixpoint]:
-    """All eight fixpoints, in the order of their angles.
+    """All fixpoints, in the order of their angles; the paper's are eight.
 
     >>> [point.kind for point in fixpoints(Wheel(k=1.4))][:2]
     ['stable focus', 'saddle']
@@ -99,7 +126,7 @@ def fixpoints(wheel: Wheel) -> list[Fixpoint]:
     Raises:
         WrongUse: The rods do not pull: the wheel can rest at any angle.
     """
-    return [fixpoint(phi, wheel) for phi in ANGLES]
+    return [fixpoint(phi, wheel) for phi in angles(wheel)]
 
 
 def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
@@ -115,12 +142,12 @@ def growth_by_time_course(found: Fixpoint, wheel: Wheel) -> float:
     leading, vector = found.eigenvalues[0], found.eigenvectors[:, 0]
     left = np.linalg.inv(found.eigenvectors)[0]
     seconds = np.log(FACTOR) / abs(leading.real) if leading.real else 1.0 / abs(leading)
-    constants = list(wheel)
+    own_rates, constants = rates_of(wheel), list(wheel)
     start = found.state + NEAR * (vector / np.abs(vector).max()).real
     from scipy.integrate import solve_ivp
 
     run = solve_ivp(
-        lambda _, state: rates(*state, *constants),
+        lambda _, state: own_rates(*state, *constants),
         (0.0, seconds),
         start,
         method="LSODA",

@@ -3,22 +3,29 @@
 Exactly, and by the paper's expansion. At phi = 0 the potential x1 decouples; with S = x_t(1) the
 others have the characteristic polynomial
     I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S),
-from which `hopf` follows by the criterion of Routh and Hurwitz.
+from which `hopf` follows by the criterion of Routh and Hurwitz. A wheel with one rod rests at
+phi = pi/2, where the polynomial is the same with S = 1. With the user's own functions the
+bifurcation is found by numbers.
 """
 
 from __future__ import annotations
 
-from math import cos, inf, sin, sqrt
+from math import cos, inf, isfinite, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from host.errors import WrongUse
 from host.theory.analysis.bisection import last_alike
-from host.theory.analysis.fixpoints import ANGLES, fixpoint
+from host.theory.analysis.fixpoints import angles, fixpoint
+from host.theory.model.laws import law_of
 from host.theory.model.symbolic import derivatives, jacobian_at
-from host.theory.model.wheel import Wheel
+from host.theory.model.wheel import Wheel, resting
 from robot.controller import target_position
+
+# Values of k among which a bifurcation is looked for by numbers.
+_TRIED = np.geomspace(1e-3, 1e3, 121)
 
 
 class Hopf(NamedTuple):
@@ -33,11 +40,13 @@ class Hopf(NamedTuple):
         l1: first Lyapunov coefficient (Kuznetsov, Elements of Applied Bifurcation Theory, section
             5.4, with eigenvectors of length 1). If it is negative, cycles are born stable: the
             bifurcation is supercritical.
+        phi: the angle of rest, rad.
     """
 
     k: float
     omega: float
     l1: float
+    phi: float = 0.0
 
 
 def hopf(wheel: Wheel) -> Hopf:
@@ -47,14 +56,15 @@ def hopf(wheel: Wheel) -> Hopf:
     Hopf(k=1.58727677..., omega=3.06535941..., l1=-0.04873232...)
 
     Args:
-        wheel: The wheel; its own k does not matter.
+        wheel: The wheel; its own k does not matter. With functions of the user the bifurcation of
+            least k is found.
 
     Returns:
         The bifurcation.
 
     Raises:
         WrongUse: There is none: without friction every resting wheel is unstable, and with a = 0
-            the rods do not pull.
+            the rods do not pull; a single rod pulls a wheel out of its rest only with a above 2.
     """
     if wheel.checked().f == 0.0 or wheel.a == 0.0:
         why = (
@@ -65,28 +75,77 @@ def hopf(wheel: Wheel) -> Hopf:
         raise WrongUse(
             f"there is no Hopf bifurcation: {why}", f"give {'f' if wheel.a else 'a'} above 0"
         )
-    k = critical_k(wheel)
+    if wheel.own:
+        k, phi, omega = _crossing(wheel)
+        if k == inf:
+            raise WrongUse(
+                f"there is no Hopf bifurcation for k from {_TRIED[0]:g} to {_TRIED[-1]:g}",
+                "give other constants or functions",
+            )
+        return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega, phi), phi)
+    k, stiff = critical_k(wheel), _stiffness(wheel)
+    if k == inf:
+        raise WrongUse(
+            "there is no Hopf bifurcation: with a up to 2 a single rod holds a wheel at 90° for no"
+            " k",
+            "give a above 2, or two rods",
+        )
     # omega^2 = (f - k S tau) / (I tau), without the difference, which nearly vanishes for small
     # tau.
-    omega = sqrt(
-        k * (wheel.a / 2 - float(target_position(1.0, wheel.a))) / (wheel.I + wheel.f * wheel.tau)
-    )
-    return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega))
+    omega = sqrt(k * (wheel.a / 2 - stiff) / (wheel.I + wheel.f * wheel.tau))
+    phi = pi / 2 if wheel.rods == 1 else 0.0
+    return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega, phi), phi)
 
 
 def critical_k(wheel: Wheel) -> float:
-    """The k above which rest is unstable, in closed form.
+    """The k above which rest is unstable, in closed form but with functions of the user.
 
-    0 without friction; infinite with a = 0.
+    0 without friction; infinite where no k is enough.
     """
-    tau_s, inertia, friction = wheel.tau, wheel.I, wheel.f
-    pull = tau_s * (target_position(1.0, wheel.a) * friction * tau_s + inertia * wheel.a / 2)
+    if wheel.own:
+        return _crossing(wheel)[0]
+    tau_s, inertia, friction, stiff = wheel.tau, wheel.I, wheel.f, _stiffness(wheel)
+    if wheel.rods == 1 and wheel.a <= 2.0:
+        return inf
+    pull = tau_s * (stiff * friction * tau_s + inertia * wheel.a / 2)
     return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
 
 
-def _lyapunov_coefficient(wheel: Wheel, omega: float) -> float:
-    state = (1.0, 0.0, 0.0, 0.0)
-    second, third = (np.array(derivatives(order)(*state, *wheel)) for order in (2, 3))
+def _stiffness(wheel: Wheel) -> float:
+    """S: the force on a wheel that is turned from rest, in units of k, with the neurons held."""
+    return 1.0 if wheel.rods == 1 else float(target_position(1.0, wheel.a))
+
+
+def _crossing(wheel: Wheel) -> tuple[float, float, float]:
+    """The least k at which eigenvalues of a fixpoint cross the imaginary axis, by numbers.
+
+    Returns:
+        k, infinite without any; the fixpoint's angle, rad; the angular frequency, rad/s.
+    """
+
+    def pair(phi: float, k: float) -> complex:
+        """Of the eigenvalues with an imaginary part, the leading one; -inf without any."""
+        values = fixpoint(phi, wheel._replace(k=k)).eigenvalues
+        return max(
+            (value for value in values if value.imag > 0.0), key=lambda v: v.real, default=-inf
+        )
+
+    k, at, omega = inf, 0.0, 0.0
+    for phi in angles(wheel._replace(k=1.0)):
+        growing = [pair(phi, k).real > 0.0 for k in _TRIED.tolist()]
+        for index in np.flatnonzero(np.diff(growing)).tolist():
+            low, high = _TRIED[index : index + 2].tolist()
+            if isfinite(pair(phi, low).real) and isfinite(pair(phi, high).real):
+                own = float(brentq(lambda k, phi=phi: pair(phi, k).real, low, high, xtol=1e-15))
+                # Fixpoints that are alike differ by rounding.
+                if own < (1.0 - 1e-9) * k:
+                    k, at, omega = own, phi, float(pair(phi, own).imag)
+    return k, at, omega
+
+
+def _lyapunov_coefficient(wheel: Wheel, omega: float, phi: float) -> float:
+    state, law = resting(np.array([phi]))[:, 0].tolist(), law_of(wheel)
+    second, third = (np.array(derivatives(order, law)(*state, *wheel)) for order in (2, 3))
     quadratic, cubic = second.reshape(4, 4, 4), third.reshape(4, 4, 4, 4)
     matrix = jacobian_at(state, wheel)
     values, vectors = np.linalg.eig(matrix)
@@ -154,9 +213,9 @@ def by_eigenvalues(wheel: Wheel) -> float:
 
     Searched between half and twice the closed form. Raises WrongUse as `hopf` does.
     """
-    k = hopf(wheel).k
+    k, *_, phi = hopf(wheel)
 
     def grows(factor: float) -> bool:
-        return bool(fixpoint(ANGLES[0], wheel._replace(k=factor * k)).eigenvalues[0].real > 0.0)
+        return bool(fixpoint(phi, wheel._replace(k=factor * k)).eigenvalues[0].real > 0.0)
 
     return k * last_alike(grows, 0.5, 2.0)

@@ -21,8 +21,9 @@ from host.errors import NotDone, WrongUse
 from host.theory.analysis.bisection import last_alike
 from host.theory.analysis.fixpoints import Fixpoint, NDComplex, fixpoint
 from host.theory.analysis.hopf import hopf
-from host.theory.engine.flow import FINENESS, plain, run, steps_for
-from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
+from host.theory.engine.flow import FINENESS, plain_under, run, steps_for
+from host.theory.model.laws import law_of, rates_of
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 from robot.controller import actual_positions
 
 SADDLE = -pi / 4
@@ -80,7 +81,7 @@ def saddle(wheel: Wheel) -> Fixpoint | None:
 
     def torque(phi: float) -> float:
         x1, x2 = actual_positions(phi)
-        return float(rates(x1, x2, phi, 0.0, *wheel)[OMEGA])
+        return float(rates_of(wheel)(x1, x2, phi, 0.0, *wheel)[OMEGA])
 
     steepest = minimize_scalar(lambda phi: -torque(phi), bounds=(SADDLE, 0.0), method="bounded").x
     return (
@@ -115,7 +116,9 @@ def course(
     pieces = []
     state = left.state + near * vector / vector[PHI]
     for _ in range(ceil((_PATIENCE - log(near)) / _CHUNK)):
-        piece = run(plain, state[:, None], tuple(wheel), chunk_s, count)[:, :, 0]
+        piece = run(plain_under(law_of(wheel)), state[:, None], tuple(wheel), chunk_s, count)[
+            :, :, 0
+        ]
         ended = np.flatnonzero((piece[:, OMEGA] < 0.0) | (piece[:, PHI] > left.phi + 3 * pi / 4))
         pieces.append(piece[: ended[0] + 1] if len(ended) else piece[:-1])
         if len(ended):

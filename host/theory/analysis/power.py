@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from host.theory.engine.ensemble import rate_per_s
-from host.theory.engine.flow import FINENESS, plain, run
+from host.theory.engine.flow import FINENESS, plain_under, run
+from host.theory.model.laws import law_of
 from host.theory.model.wheel import OMEGA, Array, Wheel
 
 # Welch's method averages over segments that are this part of a series, and overlap by a half.
@@ -48,7 +49,7 @@ def of_cycle(wheel: Wheel, state: Array, period_s: float) -> Power:
     """
     needed = period_s * FINENESS * float(rate_per_s(wheel.columns(1))[0])
     count = max(_FEWEST, 2 ** int(np.ceil(np.log2(needed))))
-    path = run(plain, state[:, None], tuple(wheel), period_s, count)[:-1, :, 0]
+    path = run(plain_under(law_of(wheel)), state[:, None], tuple(wheel), period_s, count)[:-1, :, 0]
     parts = 2 * np.abs(np.fft.rfft(path, axis=0)[1 : HARMONICS + 1] / count) ** 2
     numbers = np.arange(1, HARMONICS + 1)
     return Power(numbers / period_s, parts[:, 0] + parts[:, 1], parts[:, OMEGA])
@@ -66,9 +67,10 @@ def of_motion(wheel: Wheel, states: Array, seconds: float) -> Power:
 
     every = round(FINENESS)
     samples = int(np.ceil(seconds * float(rate_per_s(wheel.columns(1))[0])))
-    step_s, found = seconds / samples, []
+    step_s, found, own_rates = seconds / samples, [], plain_under(law_of(wheel))
     for state in states.T:
-        path = run(plain, state[:, None], tuple(wheel), seconds, samples * every)[::every, :, 0]
+        whole = run(own_rates, state[:, None], tuple(wheel), seconds, samples * every)
+        path = whole[::every, :, 0]
         frequency, density = welch(
             path, 1.0 / step_s, nperseg=2 * samples // (_SEGMENTS + 1), axis=0
         )

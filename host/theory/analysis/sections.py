@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from host.theory.analysis.attractors import KINDS, STILL, Kind
 from host.theory.engine.crossings import Surface
-from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, numpy_rates
+from host.theory.model.laws import array_rates, law_of
+from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 
 MotionKind = Literal[Kind, "quasi-periodic"]
 REST, BACK, ROLL, CHAOS = KINDS
@@ -67,7 +68,7 @@ def points(times_s: Array, states: Array, wheel: Wheel, surface: Surface) -> Poi
     if surface == "phi":
         mirrored = omega < 0.0
     else:
-        mirrored = numpy_rates(x1, x2, phi, omega, *wheel)[OMEGA] > 0.0
+        mirrored = array_rates(law_of(wheel))(x1, x2, phi, omega, *wheel)[OMEGA] > 0.0
     sign = np.where(mirrored, -1.0, 1.0)
     turned = (x1 + 1j * x2) * np.array([1, -1j, -1, 1j])[quarters % 4]
     rest = phi - quarters * (pi / 2)

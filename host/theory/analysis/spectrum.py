@@ -88,7 +88,7 @@ def exponents(
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         align_s: How long their vectors turn into place first, s.
         seconds: How long to follow the wheels, s.
         blocks: In how many blocks of time.
@@ -121,7 +121,7 @@ def largest_exponents(
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         seconds: How long to follow them, s.
         moving: Which wheels do not come to rest, (wheels,).
         fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).

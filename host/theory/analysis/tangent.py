@@ -7,6 +7,7 @@ has several columns.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,8 +17,9 @@ from host.theory.analysis.attractors import settle
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, advance, rate_per_s
 from host.theory.engine.sliding import DRY
+from host.theory.model.laws import PAPER, Law, array_rates, law_of
 from host.theory.model.symbolic import jacobian_at, rates_of_vector
-from host.theory.model.wheel import Array, Wheel, numpy_rates
+from host.theory.model.wheel import Array, Wheel
 from sim_motor.mathematics import with_mathematics
 
 # Between two orthonormalisations all vectors turn towards the fastest, by a factor of e^6 or less
@@ -28,19 +30,22 @@ LONGEST_S, LONGEST_ALONE_S = 1.0, 2.0
 # digit.
 PAIR_DISTANCE = 1e-7
 
-_both: Any = with_mathematics(rates_of_vector(), MATHEMATICS, inlined)
 
+@cache
+def tangent_rates(law: Law = PAPER) -> Any:
+    """The compiled rates of all wheels and of the vector below each, (8, wheels)."""
+    both: Any = with_mathematics(rates_of_vector(law), MATHEMATICS, inlined)
 
-@vectorised
-def tangent_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of all wheels and of the vector below each, (8, wheels)."""
-    s, p, o = states, parameters, out
-    for i in range(states.shape[1]):
-        o[0, i], o[1, i], o[2, i], o[3, i], o[4, i], o[5, i], o[6, i], o[7, i] = _both(
-            s[0, i], s[1, i], s[2, i], s[3, i],
-            s[4, i], s[5, i], s[6, i], s[7, i],
-            p[0, i], p[1, i], p[2, i], p[3, i], p[4, i], p[5, i],
-        )  # fmt: skip
+    def tangent_rates(states: Array, parameters: Array, out: Array) -> None:
+        s, p, o = states, parameters, out
+        for i in range(states.shape[1]):
+            o[0, i], o[1, i], o[2, i], o[3, i], o[4, i], o[5, i], o[6, i], o[7, i] = both(
+                s[0, i], s[1, i], s[2, i], s[3, i],
+                s[4, i], s[5, i], s[6, i], s[7, i],
+                p[0, i], p[1, i], p[2, i], p[3, i], p[4, i], p[5, i], p[6, i], p[7, i], p[8, i],
+            )  # fmt: skip
+
+    return vectorised(tangent_rates)
 
 
 class Growth(NamedTuple):
@@ -88,7 +93,7 @@ def growth(
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         seconds: How long to follow them, s.
         count: How many vectors.
         vectors: The first vectors, (wheels, 4, count); without them random ones, always the same.
@@ -115,7 +120,7 @@ def growth(
         if with_flow:
             vectors[:, :, 0] = _flow(states, parameters).T
         vectors = np.linalg.qr(vectors)[0]
-    first = 1 if with_flow else 0
+    first, own_rates = 1 if with_flow else 0, tangent_rates(law_of(parameters))
     columns = np.tile(parameters, (1, count - first))
     rates = np.empty((rounds, count, wheels))
     for step in range(rounds):
@@ -123,7 +128,7 @@ def growth(
         both = np.vstack(
             [np.tile(states, (1, count - first)), own.transpose(1, 2, 0).reshape(4, -1)]
         )
-        both = advance(both, columns, seconds / rounds, fineness, tangent_rates)
+        both = advance(both, columns, seconds / rounds, fineness, own_rates)
         # Copies of a chaotic wheel would part from the last bit on: all go on from the first.
         states = both[:4, :wheels]
         grown = both[4:].reshape(4, count - first, wheels).transpose(2, 0, 1)
@@ -137,7 +142,7 @@ def growth(
 
 def _flow(states: Array, parameters: Array) -> Array:
     """The rates of wheels, (4, wheels)."""
-    return np.array(numpy_rates(*states, *parameters))
+    return np.array(array_rates(law_of(parameters))(*states, *parameters))
 
 
 def pair_growth(states: Array, parameters: Array, seconds: float, fineness: float = FINE) -> Array:
@@ -148,7 +153,7 @@ def pair_growth(states: Array, parameters: Array, seconds: float, fineness: floa
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         seconds: How long to follow them, s.
         fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
 
@@ -171,7 +176,10 @@ def pair_growth(states: Array, parameters: Array, seconds: float, fineness: floa
 
 
 def divergence(wheel: Wheel) -> float:
-    """The sum of the four exponents, 1/s: the Jacobian's trace, the same in all states."""
+    """The sum of the four exponents, 1/s: the Jacobian's trace, the same in all states.
+
+    A wheel with mechanics of its own may have another in each state.
+    """
     return float(np.trace(jacobian_at((0.0, 0.0, 0.0, 0.0), wheel)))
 
 

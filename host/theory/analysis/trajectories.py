@@ -8,7 +8,8 @@ import numpy as np
 
 from host.theory.analysis.phases import Phase
 from host.theory.engine.ensemble import advance
-from host.theory.engine.flow import FINENESS, plain, run, steps_for
+from host.theory.engine.flow import FINENESS, plain_under, run, steps_for
+from host.theory.model.laws import law_of
 from host.theory.model.turning import turning
 from host.theory.model.wheel import PHI, Array, Wheel
 
@@ -44,7 +45,11 @@ def trajectory(state: Array, wheel: Wheel, seconds: float, fineness: float = FIN
         return np.hstack(states).T
     each = -(-steps_for(seconds, wheel, fineness) // samples)
     found: Array = run(
-        plain, np.array(state)[:, None], tuple(wheel), samples * SAMPLE_S, samples * each
+        plain_under(law_of(wheel)),
+        np.array(state)[:, None],
+        tuple(wheel),
+        samples * SAMPLE_S,
+        samples * each,
     )
     return found[::each, :, 0]
 

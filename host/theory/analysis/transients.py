@@ -47,7 +47,7 @@ def lives(states: Array, parameters: Array, most_s: float, fineness: float) -> L
 
     Args:
         states: Where the wheels start, (4, wheels).
-        parameters: Their constants, (6, wheels).
+        parameters: Their constants, (constants, wheels).
         most_s: How long to follow them at most, s.
         fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
 

@@ -12,9 +12,11 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from host.errors import WrongUse
 from host.theory.engine.ensemble import rate_per_s, require_loose
 from host.theory.engine.flow import FINENESS
 from host.theory.engine.runge_kutta import STAGES, TABLEAU
+from host.theory.model.laws import PAPER, law_of
 from host.theory.model.wheel import OMEGA, PHI, Array, rates
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
 
@@ -191,7 +193,7 @@ def crossings(
 
     Args:
         states: Where they start, (4, wheels).
-        parameters: Their constants, (6, wheels), without dry friction.
+        parameters: Their constants, (constants, wheels), without dry friction.
         seconds: How long to follow them, s.
         surface: A key of EQUATIONS.
         most: How many crossings of a wheel are kept at most: the first ones.
@@ -201,8 +203,13 @@ def crossings(
         The crossings.
 
     Raises:
-        WrongUse: A wheel is too stiff to be followed.
+        WrongUse: A wheel is too stiff to be followed, or has other equations than the paper's.
     """
+    if law_of(parameters) != PAPER:
+        raise WrongUse(
+            "crossings are computed for the paper's equations only",
+            "give two rods, no bound, and no functions of your own",
+        )
     require_loose(parameters, seconds * fineness)
     wheels = states.shape[1]
     counts = np.maximum(1, np.ceil(seconds * fineness * rate_per_s(parameters))).astype(np.int64)

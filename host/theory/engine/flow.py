@@ -13,6 +13,7 @@ import numpy as np
 
 from host.theory.engine.ensemble import rate_per_s, too_stiff
 from host.theory.engine.runge_kutta import STAGES, TABLEAU
+from host.theory.model.laws import PAPER, Law, under
 from host.theory.model.symbolic import derivatives, derivatives_by_constant
 from host.theory.model.wheel import Array, Wheel, rates
 from sim_motor.compiled import compiled, jit
@@ -24,9 +25,6 @@ _LEAST_STEPS = 16
 # A piece of a period that takes more is that of a stiff wheel, for which an explicit method is the
 # wrong one.
 MOST_STEPS = 40_000
-
-_rates: Any = compiled(rates)
-_jacobian: Any = compiled(derivatives(1))
 
 
 def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
@@ -44,7 +42,7 @@ def steps_for(seconds: float, wheel: Wheel, fineness: float = FINENESS) -> int:
 def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: int) -> Array:
     """The states (4, columns) in the course of `count` steps, (count + 1, 4, columns).
 
-    own_rates: `plain` or one of `varied`.
+    own_rates: one of `plain_under` or `varied`.
     """
     path: Array = _running(own_rates)(states, constants, seconds, count)
     return path
@@ -79,26 +77,37 @@ def _running(own_rates: Any) -> Any:
     return jit(run)
 
 
-@jit
-def plain(states: Array, constants: Any, out: Array) -> None:
-    """Rates of a state alone, (4, 1)."""
-    out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(
-        states[0, 0], states[1, 0], states[2, 0], states[3, 0], *constants
-    )
+@cache
+def plain_under(law: Law) -> Any:
+    """The compiled rates of a state alone, (4, 1)."""
+    of_state: Any = compiled(under(law, rates))
+
+    def plain(states: Array, constants: Any, out: Array) -> None:
+        out[0, 0], out[1, 0], out[2, 0], out[3, 0] = of_state(
+            states[0, 0], states[1, 0], states[2, 0], states[3, 0], *constants
+        )
+
+    return jit(plain)
+
+
+# The paper's.
+plain = plain_under(PAPER)
 
 
 @cache
-def varied(followed: int) -> Any:
+def varied(followed: int, law: Law = PAPER) -> Any:
     """The compiled rates of a state and of its derivatives, (4, 1 + 4 + 1).
 
     The derivatives are by the initial state, and by the wheel's constant of number `followed`.
     """
-    by_constant: Any = compiled(derivatives_by_constant(followed))
+    of_state: Any = compiled(under(law, rates))
+    jacobian: Any = compiled(derivatives(1, law))
+    by_constant: Any = compiled(derivatives_by_constant(followed, law))
 
     def own_rates(states: Array, constants: Any, out: Array) -> None:
         x1, x2, phi, omega = states[0, 0], states[1, 0], states[2, 0], states[3, 0]
-        out[0, 0], out[1, 0], out[2, 0], out[3, 0] = _rates(x1, x2, phi, omega, *constants)
-        m = _jacobian(x1, x2, phi, omega, *constants)
+        out[0, 0], out[1, 0], out[2, 0], out[3, 0] = of_state(x1, x2, phi, omega, *constants)
+        m = jacobian(x1, x2, phi, omega, *constants)
         for column in range(1, 6):
             u, v, w, z = states[0, column], states[1, column], states[2, column], states[3, column]
             out[0, column] = m[0] * u + m[1] * v + m[2] * w + m[3] * z

@@ -6,6 +6,7 @@ kick changes the neurons. Both are robot/kicks.py's.
 
 from __future__ import annotations
 
+from functools import cache
 from math import inf
 from typing import Any, NamedTuple, Protocol
 
@@ -15,6 +16,7 @@ from host.theory.engine import ensemble, sampled
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, Averages
 from host.theory.engine.sampled import Clock, Seen, ticks_in
+from host.theory.model.laws import Law, law_of, under
 from host.theory.model.wheel import OMEGA, Array, Wheel, seen_rates
 from robot.controller import actual_positions
 from robot.kick_requests import parse
@@ -28,7 +30,6 @@ from robot.kicks import (
     seen_positions,
 )
 from robot.params import Params
-from sim_motor.mathematics import with_mathematics
 
 # Mode, and sign of the shift.
 KICKS = ((MEMBRANE, 0), (POSITION, 0), (PHASE, 1), (PHASE, -1))
@@ -37,7 +38,7 @@ KICKS = ((MEMBRANE, 0), (POSITION, 0), (PHASE, 1), (PHASE, -1))
 class Model(Protocol):
     """Wheels, (rows, wheels), whose rows begin with x1, x2, phi and omega.
 
-    Parameters are (6, wheels).
+    Parameters are (constants, wheels).
     """
 
     def states_of(self, states: Array) -> Array:
@@ -67,9 +68,8 @@ class Continuous(NamedTuple):
 
     def kicked(self, states: Array, parameters: Array, seconds: float, seen: Seen) -> Array:
         carried = np.vstack([states, np.repeat(np.array(seen)[:, None], states.shape[1], axis=1)])
-        return ensemble.advance(carried, parameters, seconds, self.fineness, _seeing_rates)[
-            : OMEGA + 1
-        ]
+        own_rates = _seeing_rates(law_of(parameters))
+        return ensemble.advance(carried, parameters, seconds, self.fineness, own_rates)[: OMEGA + 1]
 
 
 class Sampled(NamedTuple):
@@ -120,7 +120,7 @@ def inverted(states: Array) -> Array:
 def _rates(
     x1: Any, x2: Any, phi: Any, omega: Any, beta: Any, shift_rad: Any, constants: Any
 ) -> Any:
-    a, tau_s, k, inertia, friction, dry_friction = constants
+    a, tau_s, k, inertia, friction, dry_friction, bounded = constants
     actual_1, actual_2 = actual_positions(phi)
     seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
     return seen_rates(
@@ -137,34 +137,38 @@ def _rates(
         inertia,
         friction,
         dry_friction,
+        bounded,
     )
 
 
-_vectorised_rates: Any = with_mathematics(_rates, MATHEMATICS, inlined)
-
-
-@vectorised
-def _seeing_rates(states: Array, parameters: Array, out: Array) -> None:
-    """The rates of wheels under a kick.
+@cache
+def _seeing_rates(law: Law) -> Any:
+    """The compiled rates of wheels under a kick.
 
     Rows 4 and 5 of the states are what the kick does to what the neurons see. They stay.
     """
-    for i in range(states.shape[1]):
-        constants = (
-            parameters[0, i],
-            parameters[1, i],
-            parameters[2, i],
-            parameters[3, i],
-            parameters[4, i],
-            parameters[5, i],
-        )
-        out[0, i], out[1, i], out[2, i], out[3, i] = _vectorised_rates(
-            states[0, i],
-            states[1, i],
-            states[2, i],
-            states[3, i],
-            states[4, i],
-            states[5, i],
-            constants,
-        )
-        out[4, i] = out[5, i] = 0.0
+    vectorised_rates: Any = under(law, _rates, MATHEMATICS, inlined)
+
+    def seeing_rates(states: Array, parameters: Array, out: Array) -> None:
+        for i in range(states.shape[1]):
+            constants = (
+                parameters[0, i],
+                parameters[1, i],
+                parameters[2, i],
+                parameters[3, i],
+                parameters[4, i],
+                parameters[5, i],
+                parameters[6, i],
+            )
+            out[0, i], out[1, i], out[2, i], out[3, i] = vectorised_rates(
+                states[0, i],
+                states[1, i],
+                states[2, i],
+                states[3, i],
+                states[4, i],
+                states[5, i],
+                constants,
+            )
+            out[4, i] = out[5, i] = 0.0
+
+    return vectorised(seeing_rates)

@@ -2,14 +2,15 @@
 
 Between ticks I domega/dt = F - f omega with F constant has an exact solution, so that a tick is a
 map. Its state is (x1, x2, phi, omega, F): that of host.theory.model.wheel, and the force that acts
-until the next one does. Arrays of states are (5, wheels), of parameters (6, wheels), as in
-host.theory.engine.ensemble. There is no motor here that could saturate or stick.
+until the next one does. Arrays of states are (5, wheels), of parameters (constants, wheels), as in
+host.theory.engine.ensemble. No motor sticks here; F is the torque of one that is bounded.
 """
 
 from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
+from functools import cache
 from math import exp, expm1
 from typing import Any, NamedTuple
 
@@ -20,12 +21,12 @@ from host.errors import WrongUse
 from host.theory.engine.elementary import MATHEMATICS, inlined
 from host.theory.engine.ensemble import Averages
 from host.theory.engine.sliding import DRY
-from host.theory.model.wheel import PHI, Array, Wheel
+from host.theory.model.laws import Law, law_of, torque_under, under
+from host.theory.model.wheel import PHI, Array, Wheel, torque
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS, Kick, seen_positions
 from robot.params import Params
 from sim_motor.compiled import compiled, parallel_jit, prange
-from sim_motor.mathematics import with_mathematics
 
 HELD = 4
 # A run of more ticks takes too long.
@@ -116,13 +117,14 @@ def tick(
     k: Any,
     tick_s: float,
     fresh: bool,
+    bounded: Any,
     late: Any,
     then: Any,
 ) -> Any:
     """The state (x1, x2, phi, omega, force) a tick later.
 
-    beta, shift_rad: of the kick that acts, 0 if none does. late, then: how the wheel coasts before
-    and after the tick's force acts.
+    beta, shift_rad: of the kick that acts, 0 if none does. bounded: the greatest torque, for a law
+    that bounds it. late, then: how the wheel coasts before and after the tick's force acts.
     """
     actual_1, actual_2 = actual_positions(phi)
     seen_1, seen_2 = seen_positions(phi, beta, shift_rad)
@@ -133,66 +135,66 @@ def tick(
         force = step_wheel(
             x1, x2, actual_1, actual_2, actual_1, actual_2, seen_1, seen_2, 0.0, a, tau_s, k, 2
         )[2]
+    force = torque(force, bounded)
     for (ahead, pushed, kept, gained), acting in ((late, held), (then, force)):
         phi, omega = phi + ahead * omega + pushed * acting, kept * omega + gained * acting
     return new_1, new_2, phi, omega, force
 
 
-@inlined
-def _unsaturated(force: float) -> float:
-    """The motor's torque, which is no part of the map and need not be computed."""
-    return force
-
-
 _coast: Any = compiled(coast)
-_tick: Any = with_mathematics(tick, {**MATHEMATICS, "tanh": _unsaturated}, inlined)
 
 
-@parallel_jit
-def _run(
-    states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int
-) -> Array:
-    """Advance all wheels by some ticks, in place.
+@cache
+def _running(law: Law) -> Any:
+    """The compiled function that advances all wheels by some ticks, in place.
 
-    Returns:
-        The sums of omega^2 at the begins of these ticks, (wheels,).
+    It returns the sums of omega^2 at the begins of these ticks, (wheels,).
     """
-    squares = np.zeros(states.shape[1])
-    tick_s, latency_s, fresh = clock
-    for i in prange(states.shape[1]):
-        x1, x2, phi, omega, held = (
-            states[0, i],
-            states[1, i],
-            states[2, i],
-            states[3, i],
-            states[4, i],
-        )
-        a, tau_s, k, inertia, friction = (
-            parameters[0, i],
-            parameters[1, i],
-            parameters[2, i],
-            parameters[3, i],
-            parameters[4, i],
-        )
-        late, then = (
-            _coast(latency_s, inertia, friction),
-            _coast(tick_s - latency_s, inertia, friction),
-        )
-        square = 0.0
-        for _ in range(ticks):
-            square += omega * omega
-            x1, x2, phi, omega, held = _tick(
-                x1, x2, phi, omega, held, seen[0], seen[1], a, tau_s, k, tick_s, fresh, late, then
+    own_tick: Any = under(law, tick, MATHEMATICS, inlined)
+
+    def run(
+        states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int
+    ) -> Array:
+        squares = np.zeros(states.shape[1])
+        tick_s, latency_s, fresh = clock
+        for i in prange(states.shape[1]):
+            x1, x2, phi, omega, held = (
+                states[0, i],
+                states[1, i],
+                states[2, i],
+                states[3, i],
+                states[4, i],
             )
-        states[0, i], states[1, i], states[2, i], states[3, i], states[4, i] = (
-            x1,
-            x2,
-            phi,
-            omega,
-            held,
-        )
-        squares[i] = square
-    return squares
+            a, tau_s, k, inertia, friction, bounded = (
+                parameters[0, i],
+                parameters[1, i],
+                parameters[2, i],
+                parameters[3, i],
+                parameters[4, i],
+                parameters[6, i],
+            )
+            late, then = (
+                _coast(latency_s, inertia, friction),
+                _coast(tick_s - latency_s, inertia, friction),
+            )
+            square = 0.0
+            for _ in range(ticks):
+                square += omega * omega
+                x1, x2, phi, omega, held = own_tick(
+                    x1, x2, phi, omega, held, seen[0], seen[1],
+                    a, tau_s, k, tick_s, fresh, bounded, late, then,
+                )  # fmt: skip
+            states[0, i], states[1, i], states[2, i], states[3, i], states[4, i] = (
+                x1,
+                x2,
+                phi,
+                omega,
+                held,
+            )
+            squares[i] = square
+        return squares
+
+    return parallel_jit(run)
 
 
 def ticks_in(seconds: float, clock: Clock) -> int:
@@ -246,8 +248,12 @@ def _advanced(
             f" {clock.tick_s:g} s",
             "give a tau of more than half a tick; the robot asks for three ticks",
         )
-    last = np.array(states, dtype=np.float64)
-    return last, _run(last, parameters, tuple(seen), tuple(clock), ticks)
+    law, last = law_of(parameters), np.array(states, dtype=np.float64)
+    if law.own:
+        raise WrongUse(
+            "a wheel with functions of its own does not step by ticks", "follow it without ticks"
+        )
+    return last, _running(law)(last, parameters, tuple(seen), tuple(clock), ticks)
 
 
 def advance(
@@ -257,7 +263,7 @@ def advance(
 
     Args:
         states: (5, wheels).
-        parameters: (6, wheels).
+        parameters: (constants, wheels).
         clock: The brick's.
         ticks: How many.
         seen: What a kick does to all wheels all that time.
@@ -298,24 +304,24 @@ def as_robot(
     """
     neurons, params = robot.wheel.Wheel(WHEELS[0]), Params()
     params.a, params.tau_s, params.k = wheel.a, wheel.tau, wheel.k
-    neurons.x1, neurons.x2, phi, omega, neurons.force = state
+    params.rods, own_torque = int(wheel.rods), torque_under(law_of(wheel))
+    neurons.x1, neurons.x2, phi, omega, acting = state
     seen = []
     for number in range(ticks):
         seen.append((phi, omega))
-        held, neurons.phi = neurons.force, phi
+        held, neurons.phi = acting, phi
         neurons.step(number, clock.tick_s, params, kick)
+        acting = own_torque(neurons.force, wheel.bounded)
         for seconds, force in (
             (clock.latency_s, held),
-            (clock.tick_s - clock.latency_s, neurons.force),
+            (clock.tick_s - clock.latency_s, acting),
         ):
             ahead, pushed, kept, gained = coast(seconds, wheel.I, wheel.f)
             phi, omega = phi + ahead * omega + pushed * force, kept * omega + gained * force
     return np.array(seen).T
 
 
-_complex_tick: Any = with_mathematics(
-    tick, {"cos": cmath.cos, "sin": cmath.sin, "exp": cmath.exp, "tanh": lambda force: force}
-)
+_COMPLEX = {name: getattr(cmath, name) for name in ("cos", "sin", "exp", "tanh")}
 _COMPLEX_STEP = 1e-100
 
 
@@ -328,12 +334,13 @@ def jacobian(state: Sequence[float], wheel: Wheel, clock: Clock) -> Array:
         coast(seconds, wheel.I, wheel.f)
         for seconds in (clock.latency_s, clock.tick_s - clock.latency_s)
     ]
+    own_tick: Any = under(law_of(wheel), tick, _COMPLEX)
     columns = []
     for index in range(5):
         aside = [complex(value) for value in state]
         aside[index] += 1j * _COMPLEX_STEP
-        last = _complex_tick(
-            *aside, *PLAIN, wheel.a, wheel.tau, wheel.k, clock.tick_s, clock.fresh, *coasts
+        last = own_tick(
+            *aside, *PLAIN, *wheel[:3], clock.tick_s, clock.fresh, wheel.bounded, *coasts
         )
         columns.append(np.imag(last) / _COMPLEX_STEP)
     return np.array(columns).T

@@ -1,7 +1,8 @@
 """The analytic model in symbols, from the same source as its numbers, and derivatives of its rates.
 
 sympy takes seconds to import and to differentiate. So the derivatives are kept as text, which a
-second process reads instead (sim_motor.kept_files).
+second process reads instead (sim_motor.kept_files). The user's own functions have no symbols: their
+derivatives are by differences (host.theory.model.differences).
 """
 
 from __future__ import annotations
@@ -16,11 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from host.theory.model import differences
+from host.theory.model.laws import PAPER, Law, law_of, rates_of, under
 from host.theory.model.wheel import Array, Wheel, rates
 from robot.sources import fingerprint
 from sim_motor.function_digest import function_digest
 from sim_motor.kept_files import keep, load
-from sim_motor.mathematics import with_mathematics
 
 STATE = ("x1", "x2", "phi", "omega")
 Floats = Callable[..., tuple[float, ...]]
@@ -35,13 +37,14 @@ def _symbols() -> tuple[tuple[Any, ...], tuple[Any, ...]]:
 
 
 @cache
-def _field() -> tuple[Any, ...]:
+def _field(law: Law) -> tuple[Any, ...]:
     """The four rates as expressions in the state and the constants. Eq. dot_x_phi."""
     import sympy
 
     state, constants = _symbols()
-    symbolic = {"sin": sympy.sin, "cos": sympy.cos, "exp": sympy.exp}
-    found = with_mathematics(rates, symbolic)(*state, *constants)
+    names = ("sin", "cos", "exp", "tanh")
+    symbolic = {name: getattr(sympy, name) for name in names}
+    found = under(law, rates, symbolic)(*state, *constants)
     return tuple(sympy.nsimplify(rate) for rate in found)
 
 
@@ -56,12 +59,12 @@ def _text(arguments: Sequence[Any], expressions: Sequence[Any]) -> str:
     return source.replace("def _lambdifygenerated(", "def derived(")
 
 
-def _kept(name: str, write: Callable[[], str]) -> Floats:
+def _kept(name: str, law: Law, write: Callable[[], str]) -> Floats:
     """The function `derived` of a text that is written once a machine.
 
     It uses `math` only, so that numba compiles it.
     """
-    sources = function_digest(rates, {}), fingerprint(__file__), version("sympy")
+    sources = function_digest(under(law, rates), {}), fingerprint(__file__), version("sympy")
     key = (name, Wheel._fields, *sources)
     file = f"{name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
     content = load("derivatives", file)
@@ -75,12 +78,16 @@ def _kept(name: str, write: Callable[[], str]) -> Floats:
 
 
 @cache
-def derivatives(order: int) -> Floats:
-    """The function of all derivatives of this order of the rates by the state.
+def derivatives(order: int, law: Law = PAPER) -> Floats:
+    """The function of all derivatives of this order of a law's rates by the state.
 
     It takes the state and the constants. In its result the rate counts first, and the last variable
-    runs fastest.
+    runs fastest. numba compiles it, beyond order 1 only without the user's own functions.
     """
+    if law.own:
+        if order == 1:
+            return under(law, differences.jacobian)
+        return differences.of_order(order, under(law, rates))
 
     def write() -> str:
         import sympy
@@ -88,60 +95,75 @@ def derivatives(order: int) -> Floats:
         state, constants = _symbols()
         found = [
             sympy.diff(rate, *variables)
-            for rate in _field()
+            for rate in _field(law)
             for variables in product(state, repeat=order)
         ]
         return _text([*state, *constants], found)
 
-    return _kept(f"order{order}", write)
+    return _kept(f"order{order}", law, write)
 
 
 @cache
-def derivatives_by_constant(number: int) -> Floats:
+def derivatives_by_constant(number: int, law: Law = PAPER) -> Floats:
     """The function of the derivatives of the four rates by the wheel's constant of this number."""
+    if law.own:
+        return under(law, differences.by_constant, differences.which(number))
 
     def write() -> str:
         import sympy
 
         state, constants = _symbols()
-        found = [sympy.diff(rate, constants[number]) for rate in _field()]
+        found = [sympy.diff(rate, constants[number]) for rate in _field(law)]
         return _text([*state, *constants], found)
 
-    return _kept(f"constant{number}", write)
+    return _kept(f"constant{number}", law, write)
 
 
 @cache
-def rates_of_vector() -> Floats:
+def rates_of_vector(law: Law = PAPER) -> Floats:
     """The function of the rates of a state, and of a vector that the Jacobian drives.
 
     It takes the state, the vector and the constants.
     """
+    if law.own:
+        return under(law, differences.rates_and_driven)
 
     def write() -> str:
         import sympy
 
         state, constants = _symbols()
         vector = sympy.symbols("v1 v2 v3 v4", real=True)
-        driven = sympy.Matrix(_field()).jacobian(state) * sympy.Matrix(vector)
-        return _text([*state, *vector, *constants], (*_field(), *driven))
+        driven = sympy.Matrix(_field(law)).jacobian(state) * sympy.Matrix(vector)
+        return _text([*state, *vector, *constants], (*_field(law), *driven))
 
-    return _kept("vector", write)
+    return _kept("vector", law, write)
 
 
 def jacobian_at(state: Sequence[float], wheel: Wheel) -> Array:
     """The Jacobian, (4, 4), in 1/s."""
-    return np.array(derivatives(1)(*state, *wheel)).reshape(4, 4)
+    law = law_of(wheel)
+    own: Floats = _compiled_jacobian(law) if law.own else derivatives(1, law)
+    return np.array(own(*state, *wheel)).reshape(4, 4)
+
+
+@cache
+def _compiled_jacobian(law: Law) -> Floats:
+    """The Jacobian by differences, which takes 64 rates, compiled."""
+    from sim_motor.compiled import compiled
+
+    own: Floats = compiled(derivatives(1, law))
+    return own
 
 
 def jacobian_by_differences(state: Sequence[float], wheel: Wheel, step: float = 1e-5) -> Array:
     """The Jacobian, (4, 4), by central differences of the rates: a check, good to about step^2."""
-    columns, constants = [], list(wheel)
+    columns, constants, own_rates = [], list(wheel), rates_of(wheel)
     for index in range(4):
         ahead, behind = (list(state) for _ in range(2))
         ahead[index] += step
         behind[index] -= step
         columns.append(
-            (np.array(rates(*ahead, *constants)) - np.array(rates(*behind, *constants)))
+            (np.array(own_rates(*ahead, *constants)) - np.array(own_rates(*behind, *constants)))
             / (2 * step)
         )
     return np.array(columns).T

@@ -51,7 +51,8 @@ def constant_velocity(wheel: Wheel) -> float | None:
 
     None where the wheel has none.
     """
-    drive, brake = wheel.a * wheel.k * wheel.tau, 2 * wheel.f
+    # On average over a turn each rod gives half of the drive.
+    drive, brake = wheel.a * wheel.k * wheel.tau * wheel.rods / 2, 2 * wheel.f
     return sqrt((drive - brake) / brake) / wheel.tau if drive > brake > 0.0 else None
 
 
@@ -59,7 +60,7 @@ def rolling_states(parameters: Array) -> Array:
     """States at angle 0 of wheels that turn with their constant velocity, or rest without one.
 
     Args:
-        parameters: The wheels' constants, (6, wheels).
+        parameters: The wheels' constants, (constants, wheels).
 
     Returns:
         (4, wheels).

@@ -37,7 +37,8 @@ from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.ensemble import FINE, rate_per_s
 from host.theory.engine.kicked import KICKS, Continuous, Model, Sampled, memory_s
 from host.theory.engine.sampled import as_robot, ticks_in
-from host.theory.model.wheel import PHI, Array, Wheel, numpy_rates, wheel_of
+from host.theory.model.laws import rates_of
+from host.theory.model.wheel import PHI, Array, Wheel, wheel_of
 from host.theory.studies.basins_report import report
 from host.theory.studies.basins_rows import (
     CLOCK,
@@ -55,6 +56,7 @@ from host.theory.studies.basins_rows import (
     Start,
     Sure,
 )
+from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -74,6 +76,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
 
     Raises WrongUse if wheels take too many steps to settle.
     """
+    require_two_rods(options)
     require_settling(wheel_of(options))
     found: list[BasinsCell] = [
         {"part": "sure", "model": CONTINUOUS, "mode": mode, "sign": sign}
@@ -217,7 +220,7 @@ def _angle_elsewhere(model: Model, state: list[float], wheel: Wheel, seconds: fl
         ticks = ticks_in(seconds, model.clock) + 1
         return float(as_robot(state, wheel, model.clock, ticks)[0, -1])
     solved = solve_ivp(
-        lambda _, y: numpy_rates(*y, *wheel),
+        lambda _, y: rates_of(wheel)(*y, *wheel),
         (0.0, seconds),
         state,
         "DOP853",

@@ -45,6 +45,7 @@ from host.theory.studies.branch_rows import (
     Turned,
     pairs,
 )
+from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -60,6 +61,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BranchCell]:
 
     Raises WrongUse if no resting wheel begins to swing, or the wheel cannot be followed.
     """
+    require_two_rods(options)
     wheel = wheel_of(options)
     hopf(wheel)
     field, _, high = span(options)

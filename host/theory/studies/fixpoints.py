@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from math import degrees, inf, pi
 from typing import Any, TypedDict
 
 import numpy as np
@@ -11,14 +12,17 @@ from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import Fixpoint, Kind, fixpoints, growth_by_time_course
+from host.theory.model.laws import rates_of
 from host.theory.model.symbolic import jacobian_at, jacobian_by_differences
-from host.theory.model.wheel import Wheel, wheel_of
+from host.theory.model.wheel import OMEGA, Wheel, resting, wheel_of
 from host.theory.studies.fixpoints_rows import (
     FixpointsCell,
     FixpointsRow,
+    Force,
     PairOfRests,
     Rest,
     eigenvalues,
+    of_one_kind,
     of_one_wheel,
     of_two_wheels,
 )
@@ -26,17 +30,21 @@ from host.theory.studies.registry import PAPER
 
 # The k of the paper's portrait of a wheel that rests.
 PAPER_K = 1.4
+# The angles (rad) at which the force is shown, and how many.
+DRAWN, SAMPLES = (-0.2, 2 * pi + 0.2), 1000
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[FixpointsCell]:
-    """One wheel, and two. Raises WrongUse if a wheel can rest at any angle."""
+    """One wheel, two, and the force. Raises WrongUse if a wheel can rest at any angle."""
     fixpoints(wheel_of(options))
-    return [{"part": "one wheel"}, {"part": "two wheels"}]
+    return [{"part": "one wheel"}, {"part": "two wheels"}, {"part": "force"}]
 
 
-def simulate(cell: FixpointsCell, setting: Setting) -> list[Rest] | list[PairOfRests]:
-    """The fixpoints of one wheel, or of two that do not act on each other."""
+def simulate(cell: FixpointsCell, setting: Setting) -> list[Rest] | list[PairOfRests] | list[Force]:
+    """The fixpoints of one wheel, of two that do not act on each other, or the force."""
     wheel = wheel_of(setting.options)
+    if cell["part"] == "force":
+        return _force(wheel)
     found = fixpoints(wheel)
     if cell["part"] == "two wheels":
         return [_pair(left, right) for left, right in product(found, found)]
@@ -67,6 +75,17 @@ def _rest(n: int, point: Fixpoint, wheel: Wheel) -> Rest:
     }
 
 
+def _force(wheel: Wheel) -> list[Force]:
+    """The force of the rods, which no friction and no bound of the motor changes."""
+    unit = wheel._replace(k=1.0, I=1.0, f=0.0, bounded=inf)
+    own_rates, angles = rates_of(unit), np.linspace(*DRAWN, SAMPLES)
+    states = resting(angles).T.tolist()
+    return [
+        {"phi": phi, "force": float(own_rates(*state, *unit)[OMEGA])}
+        for phi, state in zip(angles.tolist(), states, strict=True)
+    ]
+
+
 def _pair(left: Fixpoint, right: Fixpoint) -> PairOfRests:
     return {"phi": left.phi, "right_phi": right.phi, "stable": left.stable and right.stable}
 
@@ -79,7 +98,7 @@ class Accuracy(TypedDict):
 
 
 class Numbers(TypedDict):
-    """One of the eight fixpoints."""
+    """One of the fixpoints."""
 
     n: int
     phi: float
@@ -114,8 +133,9 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     ratio = f"{drive / wheel.f:.2f}" if wheel.f else "infinite"
     foreign = setting.elsewhere(**PAPER, k=PAPER_K)
     answers = []
-    for first, degrees in ((one[0], "0°, 90°, 180°, 270°"), (one[1], "45°, 135°, 225°, 315°")):
-        answers.append(Answer(f"at {degrees}", first["kind"]))
+    for alike in of_one_kind(one):
+        first, places = alike[0], ", ".join(f"{degrees(row['phi']):.4g}°" for row in alike)
+        answers.append(Answer(f"at {places}", first["kind"]))
         for number, (real, imaginary) in enumerate(eigenvalues(first), 1):
             answers.append(Answer(f"  eigenvalue {number}, real part", real, None, "/s"))
             if imaginary:
@@ -146,8 +166,9 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
                 "stable states",
                 None,
                 stable_pairs == (16 if all(even) else 0),
-                f"among 64 pairs of fixpoints, {'below' if all(even) else 'above'} the Hopf line;"
-                " below it 16 are stable, above it none",
+                f"among {len(two)} pairs of fixpoints,"
+                f" {'below' if all(even) else 'above'} the Hopf line; below it 16 are stable, above"
+                " it none",
             ).doubted(foreign),
         ],
         numbers,

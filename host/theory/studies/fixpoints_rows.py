@@ -20,12 +20,30 @@ class TwoWheelsCell(TypedDict):
     part: Literal["two wheels"]
 
 
+class ForceCell(TypedDict):
+    """The force of the rods on a resting wheel."""
+
+    part: Literal["force"]
+
+
+class Force(TypedDict):
+    """The force at an angle.
+
+    Attributes:
+        phi: angle (rad).
+        force: F_tan, in units of the spring constant (1).
+    """
+
+    phi: float
+    force: float
+
+
 class Rest(TypedDict):
     """A fixpoint of one wheel.
 
     Attributes:
-        n: number of the fixpoint, from 0 to 7.
-        phi: angle, n pi / 4 (rad).
+        n: number of the fixpoint, from 0.
+        phi: angle (rad); with two rods n pi / 4.
         kind: saddle, or stable or unstable node or focus.
         stable: whether every small disturbance dies out.
         re_0: real part of the leading eigenvalue (1/s).
@@ -78,18 +96,27 @@ class TwoWheelsRow(TwoWheelsCell, PairOfRests):
     """A row for two wheels."""
 
 
-FixpointsCell = OneWheelCell | TwoWheelsCell
-FixpointsRow = OneWheelRow | TwoWheelsRow
+class ForceRow(ForceCell, Force):
+    """A row for an angle."""
+
+
+FixpointsCell = OneWheelCell | TwoWheelsCell | ForceCell
+FixpointsRow = OneWheelRow | TwoWheelsRow | ForceRow
 
 
 def of_one_wheel(rows: Iterable[FixpointsRow]) -> list[OneWheelRow]:
-    """The eight fixpoints of one wheel."""
+    """The fixpoints of one wheel."""
     return [row for row in rows if row["part"] == "one wheel"]
 
 
 def of_two_wheels(rows: Iterable[FixpointsRow]) -> list[TwoWheelsRow]:
     """The pairs of fixpoints of two wheels."""
     return [row for row in rows if row["part"] == "two wheels"]
+
+
+def of_force(rows: Iterable[FixpointsRow]) -> list[ForceRow]:
+    """The force by the angle."""
+    return [row for row in rows if row["part"] == "force"]
 
 
 def eigenvalues(row: Rest) -> list[list[float]]:
@@ -100,3 +127,12 @@ def eigenvalues(row: Rest) -> list[list[float]]:
         [row["re_2"], row["im_2"]],
         [row["re_3"], row["im_3"]],
     ]
+
+
+def of_one_kind(one: Iterable[OneWheelRow]) -> list[list[OneWheelRow]]:
+    """The fixpoints that have the same eigenvalues together, in the order of the first angles."""
+    groups: dict[str, list[OneWheelRow]] = {}
+    for row in one:
+        name = " ".join(f"{real:.6g}" for real, _ in eigenvalues(row))
+        groups.setdefault(name, []).append(row)
+    return list(groups.values())

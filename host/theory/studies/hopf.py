@@ -116,7 +116,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
         "l1_changes_sign_at_tau": changes,
         "gamma_at_hopf": {
             f"{angle:.4f}": adaptive_friction(angle, wheel._replace(k=point["k_hopf"]))
-            for angle in ANGLES[:2]
+            for angle in (ANGLES[:2] if wheel.rods == 2 else ())
         },
         "accuracy": {"closed_form_against_eigenvalues": off},
     }

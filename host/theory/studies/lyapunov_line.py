@@ -34,6 +34,7 @@ from host.theory.studies.route_to_chaos import (
     rolling_end_numbers,
     route,
 )
+from host.theory.studies.variants import require_two_rods
 from host.util.intervals import standard_error
 
 # Values of k, wheels of either start at each, and values in a cell.
@@ -44,6 +45,7 @@ LIVES_AT = (-0.1, -0.07, -0.045, -0.025, -0.01, 0.0, 0.005, 0.01, 0.015, 0.02)
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[LineCell]:
     """The rotation, bands of k, and lives. Raises WrongUse if wheels are too fast for long."""
+    require_two_rods(options)
     pieces.require_slow(wheel_of(options)._replace(k=options["k_to"]))
     found: list[LineCell] = [{"part": "rolling"}]
     found += [{"part": "line", "first": first} for first in range(0, KS, BAND)]

@@ -21,8 +21,9 @@ from host.theory.analysis.tangent import pair_growth
 from host.theory.analysis.trajectories import SAMPLE_S, trajectory
 from host.theory.analysis.transients import least_chaotic_k, lives
 from host.theory.engine.ensemble import rate_per_s
+from host.theory.model.laws import array_rates, law_of
 from host.theory.model.turning import rolling_states
-from host.theory.model.wheel import Array, Wheel, numpy_rates
+from host.theory.model.wheel import Array, Wheel
 from host.theory.studies.lyapunov_rows import (
     ANY,
     ROLLS,
@@ -131,7 +132,7 @@ def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
     path = np.concatenate(stretches).T
     _, _, phi, omega = path
     times = SAMPLE_S * np.arange(len(phi))
-    force = wheel.I * numpy_rates(*path, *wheel)[3] + wheel.f * omega
+    force = wheel.I * array_rates(law_of(wheel))(*path, *wheel)[3] + wheel.f * omega
     columns = (times.tolist(), phi.tolist(), omega.tolist(), force.tolist())
     return [
         {"t_s": time_s, "phi_rad": angle, "omega": speed, "force": own}
@@ -154,7 +155,7 @@ def _attractors(parameters: Array, starts: Array, fineness: float = FINENESS) ->
 
 
 def from_both_starts(parameters: Array, wheels: int, rng: np.random.Generator) -> list[GridPoint]:
-    """The attractors of wheels with these constants, (6, points), `wheels` of either start each."""
+    """The attractors of these parameters, (constants, points), `wheels` of either start each."""
     columns = np.repeat(parameters, wheels, axis=1)
     count = columns.shape[1]
     anywhere = random_starts(count, rng)

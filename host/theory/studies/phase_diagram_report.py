@@ -30,11 +30,13 @@ MISJUDGED = 0.01
 
 
 class Constants(TypedDict):
-    """The constants of all wheels, by the paper's letters."""
+    """The constants of all wheels, by the paper's letters; bounded is None without a bound."""
 
     a: float
     f: float
     I: float  # noqa: E741
+    rods: int
+    bounded: float | None
 
 
 class Accuracy(TypedDict):
@@ -71,7 +73,13 @@ def report(rows: list[PhaseDiagramRow], setting: Setting) -> Findings:
     diagram = points(rows)
     ways: tuple[Way, ...] = ("up", "down") if options["start"] == "sweep" else (options["start"],)
     numbers: Numbers = {
-        "constants": {"a": options["a"], "f": options["f"], "I": options["I"]},
+        "constants": {
+            "a": options["a"],
+            "f": options["f"],
+            "I": options["I"],
+            "rods": options["rods"],
+            "bounded": options["bounded"],
+        },
         "shares": {},
         "rest_misjudged": {},
         "accuracy": _accuracy(step_checks(rows), wheel),

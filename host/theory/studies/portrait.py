@@ -34,6 +34,7 @@ from host.theory.studies.portrait_rows import (
     summaries,
 )
 from host.theory.studies.registry import PAPER
+from host.theory.studies.variants import require_two_rods
 
 _NAMES: dict[Phase, str] = {
     "S": "S, at rest",
@@ -67,6 +68,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[PortraitCell]:
 
     Raises WrongUse if the wheel can rest at any angle, or is too stiff to be followed.
     """
+    require_two_rods(options)
     ks = PAPERS_K if options["k"] is None else (options["k"],)
     for k in ks:
         wheel = wheel_of(options)._replace(k=k)

@@ -14,8 +14,21 @@ K = Option("k", 1.85, 0.0, 1e4, "spring constant of the rods, without unit")
 F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel, s (its torque has no unit)")
 I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel, s^2 (its torque has no unit)")  # noqa: E741
 LETTERS = ("k", "tau", "a", "f", "I")
+# Other wheels than the paper's.
+RODS = Option("rods", 2, 1, 2, "rods that pull at the wheel, 2 or 1")
+BOUNDED = Option(
+    "bounded",
+    None,
+    1e-3,
+    1e6,
+    (
+        "greatest torque M_max of the motor, without unit: M = M_max tanh(F_tan / M_max), with 1 as"
+        " on the robot (default: no bound, M = F_tan)"
+    ),
+)
+VARIANTS = (RODS, BOUNDED)
 # The paper's constants, for which its claims are made.
-PAPER = {option.name: option.default for option in (A, TAU, F, I)}
+PAPER = {option.name: option.default for option in (A, TAU, F, I, *VARIANTS)}
 # The Poincare section (host.theory.analysis.sections).
 ON = Option(
     "on",
@@ -30,13 +43,13 @@ ON = Option(
 TABLE = {
     "fixpoints": Entry(
         "the eight fixpoints: eigenvalues, stability, and the 16 resting states of two wheels",
-        (A, TAU, K._replace(default=1.4), F, I),
+        (A, TAU, K._replace(default=1.4), F, I, *VARIANTS),
         ("M1", "M2"),
     ),
     "hopf": Entry(
         "the exact Hopf line in (k, tau), whether limit cycles are born stable there, and the"
         " paper's estimate beside it",
-        (A, TAU, F, I),
+        (A, TAU, F, I, *VARIANTS),
         ("M3",),
     ),
     "branch": Entry(
@@ -72,6 +85,7 @@ TABLE = {
                 10.0,
                 "dry friction of the motor, for a branch of its own, in units of the rods' force",
             ),
+            *VARIANTS,
         ),
         ("M5", "M6", "M9"),
     ),
@@ -91,6 +105,7 @@ TABLE = {
             ),
             F,
             I,
+            *VARIANTS,
         ),
         ("M4",),
     ),
@@ -114,6 +129,7 @@ TABLE = {
             ),
             Option("transient", 100.0, 0.0, 1e5, "how long to wait before measuring, s"),
             Option("seconds", 100.0, 1.0, 1e5, "how long to measure, s"),
+            *VARIANTS,
         ),
         ("M7",),
     ),
@@ -133,6 +149,7 @@ TABLE = {
                 1e6,
                 "how long to follow each of 64 wheels, s; beyond 250 s, more wheels",
             ),
+            *VARIANTS,
         ),
         ("M8",),
     ),
@@ -145,6 +162,7 @@ TABLE = {
             F,
             I,
             Option("k_to", 20.0, 1e-3, 1e4, "greatest k, without unit; the least is 0"),
+            *VARIANTS,
         ),
     ),
     "lyapunov-plane": Entry(
@@ -155,6 +173,7 @@ TABLE = {
             I,
             Option("k_to", 20.0, 1e-3, 1e4, "greatest k, without unit; the least is 0"),
             Option("tau_to", 1.5, 1e-3, 1e3, "greatest tau, s; the least is 0"),
+            *VARIANTS,
         ),
     ),
     "section": Entry(
@@ -218,6 +237,7 @@ TABLE = {
             F,
             I,
             Option("points", 240, 16, 4000, "number of points on each axis"),
+            *VARIANTS,
         ),
     ),
     "edge": Entry(
@@ -241,6 +261,7 @@ TABLE = {
                 1.0,
                 "how long after the start of its tick a torque acts, s; at most a tick",
             ),
+            *VARIANTS,
         ),
     ),
 }

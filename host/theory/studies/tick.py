@@ -42,6 +42,7 @@ from host.theory.studies.tick_rows import (
     Thresholds,
     TickStudyCell,
 )
+from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -69,6 +70,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[TickStudyCell]
 
     Raises WrongUse if there is no Hopf bifurcation, or no tick with this latency.
     """
+    require_two_rods(options)
     hopf(wheel_of(options))
     Clock(options["tick"], options["latency"]).checked()
     ticks_s = [tick_s for tick_s in TICKS_S if tick_s >= options["latency"]]

@@ -8,25 +8,27 @@ from scipy.optimize import fsolve
 
 
 def rates(y, wheel):
-    """Eq. dot_x_phi with the logistic function."""
+    """Eq. dot_x_phi with the logistic function; also with one rod, or a bounded torque."""
     x1, x2, phi, omega = y
-    a, tau, k, inertia, f, _ = wheel
+    a, tau, k, inertia, f, _, most, rods, _ = wheel
     first, second = (2.0 / (1.0 + np.exp(-a * x)) - 1.0 for x in (x1, x2))
     sine, cosine = np.sin(phi), np.cos(phi)
+    force = k * first * sine - k * (second if rods == 2 else sine) * cosine
+    torque = most * np.tanh(force / most) if np.isfinite(most) else force
     return np.array(
         [
             (cosine - x1) / tau,
             (sine - x2) / tau,
             omega,
-            (k * first * sine - k * second * cosine - f * omega) / inertia,
+            (torque - f * omega) / inertia,
         ]
     )
 
 
 def jacobian(y, wheel):
-    """The derivatives of the rates by the state."""
+    """The derivatives of the paper's rates by the state."""
     x1, x2, phi, _ = y
-    a, tau, k, inertia, f, _ = wheel
+    a, tau, k, inertia, f, *_ = wheel
     first, second = (2.0 / (1.0 + np.exp(-a * x)) - 1.0 for x in (x1, x2))
     steep_1, steep_2 = (2.0 * a * np.exp(-a * x) / (1.0 + np.exp(-a * x)) ** 2 for x in (x1, x2))
     sine, cosine = np.sin(phi), np.cos(phi)
@@ -68,7 +70,7 @@ def quarter_turn(y, wheel):
 
 def turning(wheel):
     """The state at phi = 0 of a wheel that turns steadily. Eqs. x-t and F_tan_ana."""
-    a, tau, k, _, f, _ = wheel
+    a, tau, k, _, f, *_ = wheel
     omega = np.sqrt((a * k * tau - 2 * f) / (2 * f * tau**2))
     lag = omega * tau
     return np.array([1.0, -lag, 0.0, omega * (1 + lag**2)]) / (1 + lag**2)

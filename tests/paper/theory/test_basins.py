@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from host.errors import WrongUse
 from host.figures.theory.basins import draw
 from host.runs.contract import Findings, Setting
+from host.runs.registry import complete_options
 from host.theory.analysis.outcomes import (
     BACK,
     BACKWARD,
@@ -33,6 +34,7 @@ from host.theory.engine.kicked import KICKS, Continuous, Sampled, inverted, seen
 from host.theory.engine.sampled import PLAIN, Clock, Seen
 from host.theory.model.wheel import OMEGA, PHI, Wheel, seen_rates
 from host.theory.studies import basins
+from host.theory.studies.registry import TABLE
 from robot.controller import actual_positions, step_wheel
 from robot.kick_requests import parse
 from robot.kicks import MEMBRANE, PHASE, POSITION
@@ -40,7 +42,7 @@ from robot.params import Params
 from tests.paper.theory.table import rows_of
 
 WHEEL = Wheel(k=8.0)
-OPTIONS = {"a": 4.0, "tau": 0.25, "k": 8.0, "f": 0.5, "I": 0.05, "points": 16}
+OPTIONS = complete_options("basins", TABLE["basins"], {"points": 16})
 MODELS = [Continuous(), Sampled()]
 NAMED = pytest.mark.parametrize("model", MODELS, ids=["continuous", "sampled"])
 PHASES = 36
@@ -73,7 +75,8 @@ def test_kicks_show_the_neurons_what_the_robots_kicks_show_them():
 def test_a_kick_alters_the_potentials_rates_and_not_the_force():
     x, actual = (0.3, -0.4), actual_positions(0.7)
     plain, kicked = (
-        seen_rates(*x, 5.0, *actual, *seen, *WHEEL) for seen in (actual, (-actual[0], -actual[1]))
+        seen_rates(*x, 5.0, *actual, *seen, *WHEEL[:7])
+        for seen in (actual, (-actual[0], -actual[1]))
     )
     assert plain[2:] == kicked[2:]
     assert [(kicked[i] + plain[i]) / 2 for i in (0, 1)] == pytest.approx(
@@ -93,7 +96,7 @@ def test_a_kicked_wheel_moves_as_another_integrator_moves_it(kick):
             *actual_positions(y[PHI]),
             sign * np.cos(angle),
             sign * np.sin(angle),
-            *WHEEL,
+            *WHEEL[:7],
         )
 
     state = np.array([0.3, -0.4, 1.0, 7.0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 
 import numpy as np
 import pytest
@@ -25,6 +25,9 @@ WHEELS = st.builds(
     I=st.floats(0.005, 1.0),
     f=st.floats(0.02, 3.0),
     dry_friction=st.just(0.0),
+    bounded=st.just(inf),
+    rods=st.just(2.0),
+    own=st.just(0.0),
 )
 
 
@@ -40,7 +43,7 @@ def test_all_eight_are_at_rest_and_there_are_no_others(wheel):
 @given(WHEELS)
 def test_even_ones_have_the_polynomial_that_can_be_derived_by_hand(wheel):
     """I tau l^3 + (I + f tau) l^2 + (f - k S tau) l + k (a/2 - S), and -1/tau."""
-    a, tau, k, inertia, friction, _ = wheel
+    a, tau, k, inertia, friction, *_ = wheel
     saturation = target_position(1.0, a)
     by_hand = np.roots(
         [

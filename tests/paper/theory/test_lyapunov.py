@@ -9,6 +9,7 @@ from host.errors import WrongUse
 from host.perform.run import perform
 from host.runs.claims import Claim
 from host.runs.contract import Setting
+from host.runs.registry import complete_options
 from host.theory.analysis import transients
 from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL, random_starts, settle, watch
 from host.theory.analysis.tangent import (
@@ -26,6 +27,7 @@ from host.theory.model.wheel import PHI, Wheel, rates, resting
 from host.theory.studies import lyapunov as study
 from host.theory.studies import lyapunov_line, lyapunov_plane
 from host.theory.studies import lyapunov_pieces as pieces
+from host.theory.studies.registry import TABLE
 from tests.paper.theory import independent
 
 RESTING, SWINGING, ROLLING, CHAOTIC = (
@@ -34,8 +36,8 @@ RESTING, SWINGING, ROLLING, CHAOTIC = (
     Wheel(k=8.0),
     Wheel(k=15.0, tau=1.0),
 )
-OPTIONS = {"a": 4.0, "tau": 1.0, "k": 15.0, "f": 0.5, "I": 0.05, "seconds": 250.0}
-LINE = {"a": 4.0, "tau": 1.0, "f": 0.5, "I": 0.05, "k_to": 20.0}
+OPTIONS = complete_options("lyapunov", TABLE["lyapunov"], {})
+LINE = complete_options("lyapunov-line", TABLE["lyapunov-line"], {})
 
 
 def _chance():
@@ -53,7 +55,7 @@ def test_a_vector_is_driven_as_a_small_difference_is():
     rng, step = _chance(), 1e-6
     state, vector = random_starts(1, rng)[:, 0], rng.normal(size=4)
     out = np.empty((8, 1))
-    tangent_rates(np.concatenate([state, vector])[:, None], CHAOTIC.columns(1), out)
+    tangent_rates()(np.concatenate([state, vector])[:, None], CHAOTIC.columns(1), out)
     ahead, behind = (np.array(rates(*(state + sign * step * vector), *CHAOTIC)) for sign in (1, -1))
     assert out[:4, 0] == pytest.approx(rates(*state, *CHAOTIC), rel=1e-12)
     assert out[4:, 0] == pytest.approx((ahead - behind) / (2 * step), rel=1e-6, abs=1e-6)

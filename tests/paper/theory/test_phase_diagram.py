@@ -6,24 +6,18 @@ import numpy as np
 import pytest
 
 from host.runs.contract import Setting
+from host.runs.registry import complete_options
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import STILL
 from host.theory.model.turning import constant_velocity, rolling_states, turning
 from host.theory.model.wheel import OMEGA, Wheel
 from host.theory.studies import phase_diagram
+from host.theory.studies.registry import TABLE
 from tests.paper.theory.table import rows_of
 
-OPTIONS = {
-    "a": 4.0,
-    "f": 0.5,
-    "I": 0.05,
-    "points": 10,
-    "k_to": 20.0,
-    "tau_to": 1.5,
-    "start": "sweep",
-    "transient": 60.0,
-    "seconds": 40.0,
-}
+OPTIONS = complete_options(
+    "phase-diagram", TABLE["phase-diagram"], {"points": 10, "transient": 60.0, "seconds": 40.0}
+)
 
 
 @pytest.fixture(scope="module")

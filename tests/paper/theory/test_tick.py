@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from host.errors import WrongUse
 from host.figures.theory.tick import draw
 from host.runs.contract import Setting
+from host.runs.registry import complete_options
 from host.theory.analysis import stability_thresholds as thresholds
 from host.theory.analysis.hopf import hopf
 from host.theory.engine import sampled
@@ -20,6 +21,7 @@ from host.theory.engine.kicked import Continuous, Sampled
 from host.theory.engine.sampled import Clock, at_rest, coast, jacobian
 from host.theory.model.wheel import OMEGA, PHI, Wheel
 from host.theory.studies import tick as study
+from host.theory.studies.registry import TABLE
 from host.theory.studies.tick_rows import ORDERS, growth_of
 from robot.controller import target_position
 from robot.kick_requests import parse
@@ -28,7 +30,7 @@ from robot.params import Params
 from tests.paper.theory.table import rows_of
 
 WHEEL = Wheel()
-OPTIONS = {"a": 4.0, "tau": 0.25, "f": 0.5, "I": 0.05, "tick": 0.03, "latency": 0.0}
+OPTIONS = complete_options("tick", TABLE["tick"], {})
 NEW, OLD = Clock(), Clock(fresh=False)
 CLOCKS = [
     Clock(tick_s, latency_s, fresh)
