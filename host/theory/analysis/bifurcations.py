@@ -18,6 +18,7 @@ from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import Shooting
 from host.theory.analysis.fixpoints import NDComplex
 from host.theory.analysis.merging import saddle
+from host.theory.model.wheel import Array
 
 BifurcationType = Literal["fold", "pitchfork", "neimark-sacker"]
 FOLD: BifurcationType = "fold"
@@ -66,17 +67,36 @@ class Followed(NamedTuple):
     end: End
 
 
+def vanishing(type_: BifurcationType, derivative: Array) -> float:
+    """A function of the reduced map that vanishes at a bifurcation (Kuznetsov, section 10.2).
+
+    Args:
+        type_: Its type.
+        derivative: The map's Jacobian at a fixpoint, (3, 3).
+
+    Returns:
+        0 if it has a multiplier 1, a multiplier -1, or two of product 1.
+    """
+    if type_ == NEIMARK_SACKER:
+        # The eigenvalues of the matrix of cofactors are the products of two multipliers each.
+        first, second, third = derivative
+        derivative = np.array(
+            [np.cross(second, third), np.cross(third, first), np.cross(first, second)]
+        )
+    return float(np.linalg.det(derivative + np.eye(3) * (1.0 if type_ == PITCHFORK else -1.0)))
+
+
 def _tests(shooting: Shooting) -> dict[BifurcationType, Callable[[Point], float]]:
-    """The function that vanishes at each type of bifurcation (Kuznetsov, section 10.2)."""
+    """The function that vanishes at each type of bifurcation."""
 
-    def flip(point: Point) -> float:
-        return float(np.linalg.det(shooting.map_derivative(point.unknowns) + np.eye(3)))
+    def of(type_: BifurcationType) -> Callable[[Point], float]:
+        return lambda point: vanishing(type_, shooting.map_derivative(point.unknowns))
 
-    def pair(point: Point) -> float:
-        a, b, c = shooting.multipliers(point.unknowns)
-        return float(((a * b - 1) * (a * c - 1) * (b * c - 1)).real)
-
-    return {FOLD: lambda point: float(point.tangent[-1]), PITCHFORK: flip, NEIMARK_SACKER: pair}
+    return {
+        FOLD: lambda point: float(point.tangent[-1]),
+        PITCHFORK: of(PITCHFORK),
+        NEIMARK_SACKER: of(NEIMARK_SACKER),
+    }
 
 
 def _is_bifurcation(type_: BifurcationType, multipliers: NDComplex) -> bool:
@@ -124,23 +144,23 @@ def follow(shooting: Shooting, curve: Curve, first: Point, low: float, high: flo
     # Smaller forth-and-back cycles have come back to the fixpoint.
     smallest = 0.0 if shooting.family.turn else abs(first.unknowns[2]) / 2
     try:
-        for length, point in curve.follow(first, _SHORTEST_STEP, _LONGEST_STEP):
+        for point in curve.follow(first, _SHORTEST_STEP, _LONGEST_STEP):
             before, values = values, {type_: test(point) for type_, test in tests.items()}
             for type_ in before:
                 if before[type_] * values[type_] >= 0.0:
                     continue
-                there = curve.locate(points[-1], length, tests[type_])
+                there = curve.locate(points[-1], point, tests[type_])
                 if _is_bifurcation(type_, shooting.multipliers(there.unknowns)):
                     finer_curve = Curve(finer, curve.scales)
-                    again = finer_curve.locate(points[-1], length, _tests(finer)[type_])
+                    again = finer_curve.locate(points[-1], point, _tests(finer)[type_])
                     off_by = abs(float(again.unknowns[4] / there.unknowns[4]) - 1)
                     found.append(Bifurcation(type_, there, len(points), off_by))
             end = _end(shooting, point, low, high, smallest)
             if end == RANGE and points:
                 bound = low if point.unknowns[4] <= low else high
-                points.append(curve.locate(points[-1], length, partial(_beyond, bound)))
+                points.append(curve.locate(points[-1], point, partial(_beyond, bound)))
             elif end == STICKS and points:
-                points.append(curve.locate(points[-1], length, shooting.least_omega))
+                points.append(curve.locate(points[-1], point, shooting.least_omega))
             else:
                 points.append(point)
             if end or len(points) == _MOST_POINTS:

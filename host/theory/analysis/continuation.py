@@ -91,31 +91,50 @@ class Curve(NamedTuple):
         along: Array = np.linalg.svd(jacobian)[2][-1]
         return along if along @ like >= 0.0 else -along
 
-    def ahead(self, point: Point, length: float) -> Point:
-        """The solution at this distance along a point's tangent. Raises NotDone."""
-        return self.solve(point.unknowns + length * self.scales * point.tangent, point.tangent)
+    def ahead(self, point: Point, length: float, other: Point | None = None) -> Point:
+        """The solution at this distance along a point's tangent.
+
+        The guess is on the tangent, or on the cubic that the curve nearly is through this point and
+        another one. Raises NotDone.
+        """
+        offset = length * point.tangent
+        if other is not None:
+            offset = self._cubic(point, other, length)
+            offset = offset + (length - point.tangent @ offset) * point.tangent
+        return self.solve(point.unknowns + self.scales * offset, point.tangent)
+
+    def _cubic(self, point: Point, other: Point, length: float) -> Array:
+        """How far the cubic through two points and their tangents is from the first, scaled."""
+        chord = (other.unknowns - point.unknowns) / self.scales
+        whole = float(np.linalg.norm(chord)) * (1.0 if chord @ point.tangent > 0.0 else -1.0)
+        part = length / whole
+        slopes = (1 - part) * point.tangent - part * other.tangent
+        bent: Array = part**2 * (3 - 2 * part) * chord + whole * part * (1 - part) * slopes
+        return bent
 
     def follow(
-        self, first: Point, shortest: float, longest: float
-    ) -> Iterator[tuple[float, Point]]:
+        self, first: Point, shortest: float, longest: float, *, cubic: bool = False
+    ) -> Iterator[Point]:
         """Follow the curve with steps that adapt to how it turns.
 
         Args:
             first: Where to start, and in which direction.
             shortest: Shortest step, in scaled unknowns.
             longest: Longest step, in scaled unknowns.
+            cubic: Whether the next point is guessed on a cubic through the last two, not on the
+                tangent. Where the curve goes close to another, steps are then much longer.
 
         Yields:
-            The length of the step and the point after it; first a length of 0 and the first point.
+            Its points, first the first.
 
         Raises:
             NotDone: The curve is lost.
         """
-        yield 0.0, first
-        point, length = first, 10 * shortest
+        yield first
+        point, length, before = first, 10 * shortest, None
         while True:
             try:
-                following = self.ahead(point, length)
+                following = self.ahead(point, length, before)
                 turn = float(np.arccos(min(1.0, float(following.tangent @ point.tangent))))
                 aside = following.unknowns - point.unknowns - length * self.scales * point.tangent
                 near = (
@@ -131,8 +150,8 @@ class Curve(NamedTuple):
                         "its solutions change too fast there, or cease to exist",
                     )
                 continue
-            yield length, following
-            point = following
+            yield following
+            before, point = point if cubic else None, following
             length = min(longest, length * (_GROWTH if turn < _MOST_TURN / 3 else 1.0))
 
     def between(
@@ -144,15 +163,14 @@ class Curve(NamedTuple):
         """
         if vanishing(point) * vanishing(following) > 0.0:
             return None
-        ahead = (following.unknowns - point.unknowns) / self.scales
-        return self.locate(point, float(point.tangent @ ahead), vanishing)
+        return self.locate(point, following, vanishing)
 
-    def locate(self, point: Point, length: float, vanishing: Callable[[Point], float]) -> Point:
+    def locate(self, point: Point, following: Point, vanishing: Callable[[Point], float]) -> Point:
         """The point of the curve where a function vanishes.
 
         Args:
             point: A point before it.
-            length: The distance of a point behind it.
+            following: The next one that `follow` gave.
             vanishing: The function, with different signs at both.
 
         Returns:
@@ -161,12 +179,15 @@ class Curve(NamedTuple):
         Raises:
             NotDone: The function has the same sign at both.
         """
+        ahead = float(point.tangent @ ((following.unknowns - point.unknowns) / self.scales))
 
-        def at(distance: float) -> float:
-            return vanishing(self.ahead(point, distance) if distance else point)
+        def at(distance: float) -> Point:
+            return self.ahead(point, distance, following) if distance else point
 
-        if at(0.0) * at(length) > 0.0:
+        if vanishing(at(0.0)) * vanishing(at(ahead)) > 0.0:
             raise NotDone(
                 "a function does not change its sign between two points", "take them further apart"
             )
-        return self.ahead(point, float(brentq(at, 0.0, length, xtol=1e-13, rtol=1e-13)))
+        return at(
+            float(brentq(lambda part: vanishing(at(part)), 0.0, ahead, xtol=1e-13, rtol=1e-13))
+        )

@@ -10,7 +10,7 @@ bifurcation is found by numbers.
 
 from __future__ import annotations
 
-from math import cos, inf, isfinite, pi, sin, sqrt
+from math import cos, inf, isfinite, log, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -109,6 +109,11 @@ def critical_k(wheel: Wheel) -> float:
         return inf
     pull = tau_s * (stiff * friction * tau_s + inertia * wheel.a / 2)
     return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
+
+
+def above_hopf(wheel: Wheel) -> float:
+    """ln(k / k_c): how far a wheel with friction and neurons is above the Hopf bifurcation."""
+    return log(wheel.k / critical_k(wheel))
 
 
 def _stiffness(wheel: Wheel) -> float:

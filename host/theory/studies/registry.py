@@ -39,6 +39,7 @@ ON = Option(
     " = 0, it turns round",
     ("phi", "omega"),
 )
+_MOST = " (default: 20 for k, 1.5 for tau, 4 times the wheel's value for others)"
 
 TABLE = {
     "fixpoints": Entry(
@@ -132,6 +133,23 @@ TABLE = {
             *VARIANTS,
         ),
         ("M7",),
+    ),
+    "lines": Entry(
+        "two-parameter diagram: Hopf and merging lines, folds, pitchforks and Neimark-Sacker lines"
+        " in the plane of two constants, with their special points. The constants on the axes begin"
+        " at a thousandth of the greatest x and a hundredth of the greatest y",
+        (
+            A,
+            TAU,
+            K,
+            F,
+            I,
+            Option("x", "k", 0.0, 0.0, "the constant on the axis x", LETTERS),
+            Option("y", "tau", 0.0, 0.0, "the constant on the axis y", LETTERS),
+            Option("x_to", None, 1e-6, 1e4, "greatest x, in the unit of its constant" + _MOST),
+            Option("y_to", None, 1e-6, 1e4, "greatest y, in the unit of its constant" + _MOST),
+            *VARIANTS,
+        ),
     ),
     "lyapunov": Entry(
         "the four Lyapunov exponents at a point, with errors, and what they say: at rest, regular,"

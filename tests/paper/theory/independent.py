@@ -88,8 +88,12 @@ def rotation(wheel, start):
     return y, quarter_turn(y, wheel)[1]
 
 
-def multipliers(y, seconds, wheel):
-    """The multipliers of a quarter turn from y, the greatest modulus first."""
+UNDO_QUARTER = np.eye(4)
+UNDO_QUARTER[:2, :2] = [[0.0, 1.0], [-1.0, 0.0]]
+
+
+def multipliers(y, seconds, wheel, back=UNDO_QUARTER):
+    """The multipliers of a quarter turn from y, or of what `back` undoes, the greatest first."""
 
     def both(_, z):
         driven = jacobian(z[:4], wheel) @ z[4:].reshape(4, 4)
@@ -97,8 +101,6 @@ def multipliers(y, seconds, wheel):
 
     begin = np.concatenate([y, np.eye(4).ravel()])
     end = solve_ivp(both, (0.0, seconds), begin, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
-    back = np.eye(4)
-    back[:2, :2] = [[0.0, 1.0], [-1.0, 0.0]]
     found = np.linalg.eigvals(back @ end[4:].reshape(4, 4))
     found = np.delete(found, np.argmin(abs(found - 1.0)))
     return found[np.argsort(-abs(found))]

@@ -254,11 +254,9 @@ def test_a_circle_is_followed_around_and_its_folds_are_located():
 
     curve = Curve(circle, np.ones(2))
     points = []
-    for length, point in curve.follow(
-        Point(np.array([0.0, -1.0]), np.array([1.0, 0.0])), 1e-4, 0.2
-    ):
+    for point in curve.follow(Point(np.array([0.0, -1.0]), np.array([1.0, 0.0])), 1e-4, 0.2):
         if points and points[-1].tangent[1] * point.tangent[1] < 0.0:
-            fold = curve.locate(points[-1], length, lambda at: at.tangent[1])
+            fold = curve.locate(points[-1], point, lambda at: at.tangent[1])
             assert abs(fold.unknowns[1]) == pytest.approx(1.0, abs=1e-12)
             break
         points.append(point)
@@ -272,7 +270,7 @@ def test_a_curve_that_ceases_to_exist_is_said_to_be_lost():
         return unknowns[:1].copy(), np.array([[1.0, 0.0]])
 
     with pytest.raises(NotDone, match="followed"):
-        for _, point in Curve(half, np.ones(2)).follow(
+        for point in Curve(half, np.ones(2)).follow(
             Point(np.zeros(2), np.array([0.0, 1.0])), 1e-6, 0.1
         ):
             assert point.unknowns[1] <= 1.0

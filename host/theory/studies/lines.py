@@ -1,0 +1,94 @@
+"""The study `lines`: bifurcations in the plane of two constants.
+
+The plane is cut into bands of y. In each band, lines are followed from where they cross its edges:
+a line that lies within a band altogether is not seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from host.errors import WrongUse
+from host.runs.contract import Setting
+from host.theory.analysis.fixpoints import fixpoint
+from host.theory.analysis.hopf import critical_k, hopf
+from host.theory.analysis.phases import phase
+from host.theory.engine.ensemble import averages, require_loose
+from host.theory.engine.flow import steps_for
+from host.theory.model.wheel import resting
+from host.theory.studies.lines_boundaries import boundary_rows
+from host.theory.studies.lines_cycles import cycle_rows
+from host.theory.studies.lines_plane import Plane, plane_of
+from host.theory.studies.lines_report import report
+from host.theory.studies.lines_rows import PARTS, LinesCell, Measured, PhasePoint
+from host.theory.studies.variants import require_two_rods
+
+__all__ = ["cells", "report", "simulate"]
+
+BANDS = 12
+# Phases: points of each axis, values of y in a cell; the push (rad), and times (s).
+GRID, ROWS = 60, 15
+_PUSH, _TRANSIENT_S, _MEASURED_S = 1e-3, 60.0, 40.0
+
+
+def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
+    """Phases, and the lines of each kind in each band.
+
+    Raises WrongUse for a wheel with one rod, if the axes are the same, if no resting wheel begins to swing, or if a wheel is
+    too stiff to be followed.
+    """
+    require_two_rods(options)
+    if options["x"] == options["y"]:
+        raise WrongUse(
+            f"both axes are {options['x']}", "give two different constants for --x and --y"
+        )
+    plane = plane_of(options)
+    x_from, x_to, y_from, y_to = plane.window
+    for x, y in ((x_from, y_from), (x_from, y_to), (x_to, y_from), (x_to, y_to)):
+        wheel = plane.at(x, y).checked()
+        hopf(wheel)
+        fixpoint(0.0, wheel)
+        steps_for(1.0, wheel)
+        require_loose(wheel.columns(1), _TRANSIENT_S)
+    phases: list[LinesCell] = [{"part": "phases", "first": first} for first in range(0, GRID, ROWS)]
+    return phases + [{"part": part, "band": band} for band in range(BANDS) for part in PARTS]
+
+
+def simulate(cell: LinesCell, setting: Setting) -> Sequence[Measured | PhasePoint]:
+    """The phases, or the lines, of one cell."""
+    plane = plane_of(setting.options)
+    if cell["part"] == "phases":
+        return _phases(cell["first"], plane)
+    band = plane.band(cell["band"], BANDS)
+    match cell["part"]:
+        case "Hopf" | "merging" as part:
+            return boundary_rows(part, band)
+        case "FB" | "LLM" as family:
+            return cycle_rows(family, band)
+
+
+def _phases(first: int, plane: Plane) -> list[PhasePoint]:
+    """What wheels do that start beside rest."""
+    middles = (np.arange(GRID) + 0.5) / GRID
+    ys, xs = (
+        axis.ravel()
+        for axis in np.meshgrid(
+            plane.window.y_to * middles[first : first + ROWS],
+            plane.window.x_to * middles,
+            indexing="ij",
+        )
+    )
+    parameters = plane.wheel.columns(xs.size, **{plane.x: xs, plane.y: ys})
+    start = resting(np.full(xs.size, _PUSH))
+    found = averages(start, parameters, _TRANSIENT_S, _MEASURED_S)
+    rows: list[PhasePoint] = []
+    for x, y, mean, std in zip(
+        *(column.tolist() for column in (xs, ys, found.omega_mean, found.omega_std)), strict=True
+    ):
+        wheel = plane.at(x, y)
+        name = phase(mean, std, wheel.k, critical_k(wheel))
+        rows.append({"kind": "phase", "x": x, "y": y, "phase": name})
+    return rows

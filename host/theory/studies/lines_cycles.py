@@ -1,0 +1,110 @@
+"""The lines of bifurcations of cycles in the study `lines`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from itertools import count
+from typing import NamedTuple
+
+import numpy as np
+
+from host.errors import NotDone
+from host.theory.analysis.bifurcations import BifurcationType
+from host.theory.analysis.branches import rotations, swings
+from host.theory.analysis.cycle_lines import CycleLine, Traced, joined, trace
+from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION
+from host.theory.analysis.hopf import above_hopf
+from host.theory.model.wheel import Array, Wheel
+from host.theory.studies.lines_boundaries import relative_gap
+from host.theory.studies.lines_plane import Plane
+from host.theory.studies.lines_rows import CyclePart, Measured
+
+# A line that comes back to a crossing of an edge is the same as the one that begins there.
+_SAME = 1e-4
+# How far (relative) from a line the merging is looked for.
+_NEAREST, _FARTHEST = 1e-8, 1e-2
+
+
+class _Crossing(NamedTuple):
+    """Where a line of cycles crosses an edge: the type of bifurcation, and the cycle, (6,)."""
+
+    type: BifurcationType
+    unknowns: Array
+
+
+@cache
+def _crossings(
+    part: CyclePart, wheel: Wheel, axes: tuple[str, str], x_from: float, x_to: float
+) -> list[_Crossing]:
+    """The bifurcations of one family along x; y is that of the wheel.
+
+    Neighbouring bands share them.
+    """
+    find = swings if part == "FB" else rotations
+    try:
+        branches = find(wheel, axes[0], x_from, x_to)
+    except NotDone:  # no wheel goes on rolling
+        return []
+    y = getattr(wheel, axes[1])
+    return [
+        _Crossing(found.type, np.append(found.point.unknowns, y))
+        for branch in branches
+        for way in branch.ways
+        for found in way.bifurcations
+    ]
+
+
+def cycle_rows(part: CyclePart, plane: Plane) -> list[Measured]:
+    """The lines of one family of cycles in a plane, from its edges."""
+    family = FORTH_AND_BACK if part == "FB" else ROTATION
+    axes, window = (plane.x, plane.y), plane.window
+    rows: list[Measured] = []
+    reached: list[_Crossing] = []
+    pieces = count()
+    for y, direction in ((window.y_to, -1.0), (window.y_from, 1.0)):
+        wheel = plane.at(window.x_to, y)
+        for crossing in _crossings(part, wheel, axes, window.x_from, window.x_to):
+            scales = np.maximum(np.abs(crossing.unknowns), [1.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+            line = CycleLine(wheel, family, crossing.type, axes, scales)
+            if joined(line, crossing.unknowns) or any(_same(crossing, one) for one in reached):
+                continue
+            first = line.at(crossing.unknowns)
+            first = first._replace(tangent=first.tangent * np.sign(direction * first.tangent[-1]))
+            traced = trace(line, first, window)
+            reached.append(_Crossing(crossing.type, traced.points[-1].unknowns))
+            rows += _rows_of(line, plane, traced, next(pieces))
+    return rows
+
+
+def _same(one: _Crossing, other: _Crossing) -> bool:
+    close = np.abs(one.unknowns / other.unknowns - 1)[3:].max() < _SAME
+    return one.type == other.type and bool(close)
+
+
+def _rows_of(line: CycleLine, plane: Plane, traced: Traced, piece: int) -> Iterator[Measured]:
+    """The rows of a piece of a line."""
+    type_, x, y = line.type, 0.0, 0.0
+    for point in traced.points:
+        x1, x2, omega, seconds, x, y = point.unknowns.tolist()
+        yield {
+            "kind": "point",
+            "type": type_,
+            "piece": piece,
+            "x": x,
+            "y": y,
+            "period": line.family.power * seconds,
+            "x1": x1,
+            "x2": x2,
+            "omega": omega,
+        }
+    if traced.end != "range":
+        gap = None
+        if traced.end == "merging":
+            gap = relative_gap(plane, x, y, _NEAREST, _FARTHEST)
+        elif traced.end == "Hopf line":
+            gap = abs(above_hopf(plane.at(x, y)))
+        yield {"kind": "end", "type": traced.end, "on": type_, "x": x, "y": y, "gap": gap}
+    for special, there, off_by in traced.specials:
+        x, y = there.unknowns[4:].tolist()
+        yield {"kind": "special", "type": special, "on": type_, "x": x, "y": y, "off_by": off_by}
