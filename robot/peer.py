@@ -69,8 +69,7 @@ class Peer(object):
         Args:
             now: The robot's clock (s).
         """
-        session = self.session
-        return session.subscribed and (now >= self._records_due or session.event_waits)
+        return self.session.waits(now >= self._records_due)
 
     def events(self):
         """What to wait for on the link, a mask of select.epoll: nothing while its turn is due."""

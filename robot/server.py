@@ -199,7 +199,7 @@ class Server(object):
                 self._drop(peer)
             elif peer.due:
                 self._watch(peer)  # it has to wait: hear no more of it until then
-            elif peer.ready or peer.out:
+            elif peer.frame is not None or peer.out or peer.streaming:
                 self._turns.call(peer)
             if len(ready) > 1:
                 now = self._now()
@@ -268,7 +268,7 @@ class Server(object):
         for _ in self._peers:
             self._place = (self._place + 1) % len(self._peers)
             peer = self._peers[self._place]
-            if self._have_read(peer, now):
+            if peer is not self._driver and self._have_read(peer, now):
                 left -= 1
                 if not left:
                     return
@@ -286,7 +286,7 @@ class Server(object):
         (kind, payload), peer.frame = peer.frame, None
         session = peer.session
         frames = session.receive(kind, payload)
-        if kind != wire.STOP and session.greeted and not peer.seated and not self._seat(peer, kind):
+        if not peer.seated and kind != wire.STOP and session.greeted and not self._seat(peer, kind):
             peer.refuse(
                 "busy",
                 "all {} places for hosts are taken".format(PLACES),

@@ -143,10 +143,17 @@ class Session(object):
         """Whether the peer wants records."""
         return self._cursor is not None
 
-    @property
-    def event_waits(self):
-        """Whether the robot has an event for the peer that wants records."""
-        return not self._introduced or self._event_cursor != self._loop.blackbox.next_event
+    def waits(self, records_due):
+        """Whether there is something for the peer, if it wants records.
+
+        Args:
+            records_due: Whether records are due. Events always are.
+        """
+        return self._cursor is not None and (
+            records_due
+            or not self._introduced
+            or self._event_cursor != self._loop.blackbox.next_event
+        )
 
     def receive(self, kind, payload):
         """Take in a frame.

@@ -73,7 +73,7 @@ def encode(kind, payload):
             )
         )
     frame = _HEADER.pack(SYNC, kind, len(payload)) + payload
-    return frame + _CHECK.pack(zlib.crc32(frame) & 0xFFFFFFFF)
+    return frame + _CHECK.pack(zlib.crc32(frame))
 
 
 def encode_json(kind, message):
@@ -214,7 +214,7 @@ class Decoder(object):
                 if len(buffer) < length + OVERHEAD:
                     return None
                 body = bytes(buffer[:end])
-                if _CHECK.unpack_from(buffer, end)[0] == zlib.crc32(body) & 0xFFFFFFFF:
+                if _CHECK.unpack_from(buffer, end)[0] == zlib.crc32(body):
                     del buffer[: length + OVERHEAD]
                     return kind, body[_HEADER.size :]
             self._discard(1)
