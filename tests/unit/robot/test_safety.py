@@ -140,6 +140,7 @@ def test_who_takes_over_has_the_lease_and_who_lost_it_can_take_it_back():
 
 def test_who_lost_the_lease_hears_so_until_it_takes_it_again():
     lease = Lease()
+    assert [lease.taken_over_by(holder) for holder in ("a", "")] == [None, None]
     lease.take("a", "Ann", 0.0)
     lease.take("b", "Bob", 1.0, over=True)
     lease.release("b")
@@ -149,7 +150,7 @@ def test_who_lost_the_lease_hears_so_until_it_takes_it_again():
     assert lease.taken_over_by("a") == "Bob"
     lease.release("c")
     lease.take("a", "Ann", 4.0)
-    assert lease.taken_over_by("a") is None
+    assert [lease.taken_over_by(holder) for holder in ("a", "")] == [None, None]
     lease.require("a", 4.0)
 
 
