@@ -37,8 +37,8 @@ _PUSH, _TRANSIENT_S, _MEASURED_S = 1e-3, 60.0, 40.0
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
     """Phases, and the lines of each kind in each band.
 
-    Raises WrongUse for a wheel with one rod, if the axes are the same, if no resting wheel begins to swing, or if a wheel is
-    too stiff to be followed.
+    Raises WrongUse for a wheel with one rod, if the axes are the same, if no resting wheel begins to
+    swing, or if a wheel is too stiff to be followed.
     """
     require_two_rods(options)
     if options["x"] == options["y"]:
