@@ -26,8 +26,8 @@ TORUS: MotionKind = "quasi-periodic"
 # greatest one; those of a period differ from each other by more than APART. In between, a wheel
 # still settles.
 SAME, APART = 1e-6, 1e-3
-# What still settles comes closer by this factor while it is watched.
-CLOSER = 0.8
+# What still settles comes closer by this factor in the second half of the time.
+CLOSER = 0.9
 # A wheel that does not repeat itself is chaotic if its largest exponent is above this (1/s).
 GROWS = 0.01
 # The longest period that is looked for, and the fewest pairs of points by which a wheel is known to
@@ -110,11 +110,13 @@ def repeat(found: Points, *, settling: bool = False) -> Repeat | None:
         if length + pairs > len(scaled):
             return None
         differences = np.abs(scaled[length:] - scaled[:-length]).max(axis=1)
+        first_half, last_half = np.array_split(differences, 2)
         off_by = float(differences[-pairs:].max())
-        comes_closer = settling and off_by < CLOSER * differences[:pairs].max()
-        if off_by < SAME or (off_by < APART and comes_closer):
+        comes_closer = bool(last_half.max() < CLOSER * first_half.max())
+        if off_by < SAME or (settling and comes_closer and off_by < APART):
             return _repeat(found, length, off_by)
-        if off_by < APART:
+        # A spiral towards a shorter period nearly repeats itself with a longer one, too.
+        if off_by < APART or comes_closer:
             return None
     return None
 

@@ -36,6 +36,8 @@ def test_a_period_is_the_shortest_and_a_spiral_has_none_of_its_own():
     spiral = section_points(0.3 + 3e-4 * 0.99**number * np.cos(2 * np.pi / 3 * number))
     assert sections.repeat(spiral) is None
     assert sections.repeat(spiral, settling=True).crossings == 1
+    wide = section_points(0.3 + 0.01 * 0.99**number * np.cos(2 * np.pi / 3 * number))
+    assert sections.repeat(wide) is sections.repeat(wide, settling=True) is None
     torus = section_points(0.3 + 0.05 * np.cos(2.0 * number))
     assert sections.repeat(torus, settling=True) is None
 
