@@ -41,16 +41,25 @@ Coexistence = TypedDict("Coexistence", {"from": float, "to": float})
 class PeriodLaw(TypedDict):
     """How the period grows towards a merging: by this much (s) for each unit of ln(distance).
 
+    The distance falls with the period as the slower of the saddle's leading rates says: that of
+    growth if cycles are stable there, else that of decay.
+
     Attributes:
-        slope_s: of a line through the last cycles. It approaches the limit as slowly as a small
-            power of the distance.
-        limit_s: from a fit to the last cycles that takes this power into account.
-        predicted_s: minus the passages by a saddle in a period, divided by its growth rate.
+        slope_s: of a line through the last cycles.
+        limit_s: of the law itself, from a fit to the last cycles that takes the saddle's second
+            rate into account.
+        predicted_s: minus the passages by a saddle in a period, divided by this rate.
+        explained_s: the slope of a line through the same cycles by the law with both rates of the
+            saddle, none of them fitted: what is left between slope_s and predicted_s is due to the
+            second one.
+        power: the slope's relative difference from predicted_s falls as this power of the distance.
     """
 
     slope_s: float
     limit_s: float
     predicted_s: float
+    explained_s: float
+    power: float
 
 
 class FoldNumbers(TypedDict):
@@ -94,26 +103,36 @@ def period_law(rows: list[BranchRow], part: CyclePart, merging: MergingRow) -> P
     if len(cycles) < _LAST:
         return None
     (growth, _), (decay, _), *_ = merging["eigenvalues"]
+    slower, faster = sorted((growth, -decay))
     distances = np.array([row["value"] - merging["value"] for row in cycles])
     periods = np.array([row["period"] for row in cycles])
     times = periods / _PASSAGES[part]
 
     def terms(rate: float) -> Array:
-        decays = np.exp(np.outer(times - times[0], [-rate, decay, -2 * rate]))
+        decays = np.exp(np.outer(times - times[0], [-rate, -faster, -2 * rate]))
         return np.asarray(decays / distances[:, None])
 
-    def misfit(rate: float) -> float:
+    def fitted(rate: float) -> Array:
+        """Distances by the law, in units of those of the cycles."""
         coefficients = np.linalg.lstsq(terms(rate), np.ones_like(times), rcond=None)[0]
-        return float(np.sum((terms(rate) @ coefficients - 1) ** 2))
+        return np.asarray(terms(rate) @ coefficients)
 
-    close = slice(-_CLOSEST, None)
-    slope = np.polyfit(np.log(np.abs(distances[close])), periods[close], 1)[0]
-    bounds = (0.8 * growth, 1.2 * growth)
+    def misfit(rate: float) -> float:
+        return float(np.sum((fitted(rate) - 1) ** 2))
+
+    def slope(distances: Array) -> float:
+        close = slice(-_CLOSEST, None)
+        return float(np.polyfit(np.log(np.abs(distances[close])), periods[close], 1)[0])
+
+    power = faster / slower - 1.0
+    bounds = (0.8 * slower, 1.2 * slower)
     rate = minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-9}).x
     return {
-        "slope_s": float(slope),
+        "slope_s": slope(distances),
         "limit_s": -_PASSAGES[part] / float(rate),
-        "predicted_s": -_PASSAGES[part] / growth,
+        "predicted_s": -_PASSAGES[part] / slower,
+        "explained_s": slope(fitted(slower) * distances),
+        "power": power,
     }
 
 

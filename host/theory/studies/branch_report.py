@@ -148,7 +148,9 @@ def _answers(rows: list[BranchRow], numbers: Numbers, near: list[list[float]]) -
         if law:
             words = (
                 f"{law['slope_s']:.5g} s per ln(distance), in the limit {law['limit_s']:.5g} s;"
-                f" the saddle's growth rate says {law['predicted_s']:.5g} s"
+                f" predicted {law['predicted_s']:.5g} s. The saddle's second rate explains"
+                f" {law['explained_s']:.5g} s at these distances; what it adds falls as"
+                f" distance^{law['power']:.3g}"
             )
             answers.append(Answer(f"period near the merging, {_NAMES[part]}", words))
     both = numbers["coexistence_with_rotations"]

@@ -10,6 +10,7 @@ from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.theory.model.wheel import Wheel
 from host.theory.studies import branch
+from host.theory.studies.branch_merging import period_law
 from host.theory.studies.registry import TABLE
 from tests.paper.theory import independent
 from tests.paper.theory.table import rows_of
@@ -77,6 +78,24 @@ def test_the_period_grows_towards_the_merging_as_the_saddles_growth_rate_says(fo
         assert law["predicted_s"] == pytest.approx(-passages / growth, rel=1e-9)
         assert law["limit_s"] == pytest.approx(law["predicted_s"], rel=2e-3)
         assert law["slope_s"] == pytest.approx(law["predicted_s"], rel=0.025)
+        assert law["slope_s"] == pytest.approx(law["explained_s"], rel=2e-4)
+        assert law["slope_s"] != pytest.approx(law["predicted_s"], rel=0.01)
+
+
+def test_where_the_saddle_quantity_is_positive_the_rate_of_decay_rules_the_period():
+    """As 2 exp(-0.8 T/2) + exp(-0.9 T/2), with the rates of another saddle."""
+    periods = np.linspace(8.0, 30.0, 40)
+    values = 1.0 - 1e-3 * (2 * np.exp(-0.4 * periods) + np.exp(-0.45 * periods))
+    rows = [
+        {"part": "FB", "kind": "cycle", "way": None, "value": value, "period": period}
+        for value, period in zip(values.tolist(), periods.tolist(), strict=True)
+    ]
+    merging = {"value": 1.0, "eigenvalues": [[0.9, 0.0], [-0.8, 0.0], [-1.0, 0.0], [-11.0, 0.0]]}
+    law = period_law(rows, "FB", merging)
+    assert law["predicted_s"] == pytest.approx(-2 / 0.8)
+    assert law["limit_s"] == pytest.approx(-2 / 0.8, rel=1e-4)
+    assert law["explained_s"] == pytest.approx(law["slope_s"], rel=1e-6)
+    assert law["power"] == pytest.approx(0.125)
 
 
 def test_rest_swings_and_rotations_are_stable_where_the_paper_finds_them(rows):
