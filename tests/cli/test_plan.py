@@ -198,6 +198,8 @@ def test_what_cannot_be_planned_is_told_in_words(kickctl, arguments, status, wor
 def test_a_search_ranks_pulses_beside_the_papers_kicks_with_margins_and_odds(kickctl, monkeypatch):
     monkeypatch.setattr("host.kicking.search.AMPLITUDES", (("beta", (1.0,)),))
     monkeypatch.setattr("host.kicking.search_margins.STEPS", (0.9,))
+    monkeypatch.setattr("host.kicking.search_margins.MAY_BE_OFF", ("k", "battery_v"))
+    monkeypatch.setattr("host.kicking.search_margins._WHEELS", 120)
     status, out, _ = kickctl("plan", "--to", "backward", "--search", "shortest", "--json")
     result = json.loads(out)
     assert (status, result["search"], result["period_rad"]) == (0, "shortest", pi / 2)

@@ -15,7 +15,13 @@ from tests.paper.theory import independent
 from tests.paper.theory.table import rows_of
 
 WHEEL = Wheel(k=8.0)
-FEW = {"PHASES": 8, "DIRECTIONS": 12, "LEVELS": 8, "_AROUND": np.linspace(0.5, 1.1, 7)}
+FEW = {
+    "PHASES": 8,
+    "DIRECTIONS": 12,
+    "LEVELS": 8,
+    "_AROUND": np.linspace(0.7, 1.1, 5),
+    "_WITHIN": 1e-6,
+}
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +76,7 @@ def test_the_least_jump_is_where_another_program_finds_it_by_bisection(least, cy
         middle = (low + high) / 2
         low, high = (low, middle) if pushed(rolled, *place, middle) else (middle, high)
     assert least.amplitude == pytest.approx((low + high) / 2, abs=2e-6)
-    assert least.error < 1e-6
+    assert least.error < 2e-6
     assert least.amplitude < 0.62 * 2 * np.hypot(*cycle[:2]).min()  # of the paper's inversion
 
 
@@ -104,11 +110,12 @@ def test_moments_beyond_a_quarter_turn_are_those_of_the_next(cycle):
     assert last.ways == pytest.approx(first.ways, abs=1e-15)
 
 
-def test_the_study_answers_with_both_pushes_and_draws_them(least, path, monkeypatch):
+def test_the_study_answers_with_both_pushes_and_draws_them(cycle, least, path, monkeypatch):
     push = least._replace(amplitude=20.0, angle=pi)  # of the speed, about as it is
     for name, value in FEW.items():
         monkeypatch.setattr(least_push, name, value)
     monkeypatch.setattr(study, "PHASES", study.BAND)
+    monkeypatch.setattr(study, "rolling", lambda wheel: cycle)
     monkeypatch.setattr(study, "least", lambda kind, *_: push if kind == "speed" else least)
     monkeypatch.setattr(study, "track", lambda *_: path)
     setting = Setting(0, {"a": 4.0, "tau": 0.25, "k": 8.0, "f": 0.5, "I": 0.05})

@@ -38,7 +38,6 @@ REQUESTS = [
     {"mode": "pulse", "param": "a", "value": 20.0, "ticks": 9, "shape": "smooth"},
     {"mode": "pulse", "param": "tau_s", "value": 0.1, "ticks": 5},
     {"mode": "waveform", "param": "shift_rad", "waveform": [0.3, 2.0, 2.4, 0.1]},
-    {"mode": "waveform", "param": "x1", "waveform": [-0.5, 0.25]},
 ]
 
 
