@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.theory.analysis.edge import Pair, thresholds
-from host.theory.analysis.outcomes import QUARTER, free_speed, rolling_states
+from host.theory.analysis.outcomes import QUARTER, rolling_states
 from host.theory.engine.kicked import Continuous
 from host.theory.model.wheel import OMEGA, Array, Wheel
 
@@ -22,16 +22,17 @@ POTENTIALS: PushKind = "potentials"
 SPEED: PushKind = "speed"
 KINDS: tuple[PushKind, ...] = (POTENTIALS, SPEED)
 # Moments of a quarter turn of rolling; how many of them, and of directions, a search begins with.
-MOMENTS, PHASES, DIRECTIONS = 1024, 16, 32
-# At how many amplitudes a push is tried first. The greatest is twice the inversion of the
-# potentials, or four times the speed that the springs could give the wheel.
-LEVELS = 16
+# The speed has two directions only, and so as many more moments.
+MOMENTS, PHASES, DIRECTIONS, MORE = 1024, 16, 32, 8
+# At how many amplitudes a push is tried first, the closer the smaller they are. The greatest is
+# MOST times the size of the potentials, or the speed, of the wheel that rolls.
+LEVELS, MOST = 16, 4.0
 # Around the best of the grid there are finer ones, with so many lines to either side, each with a
 # part of the spacing of the one before. Amplitudes are then sought to this part of themselves.
 _LINES, _FINER, _ROUNDS, _WITHIN = 2, 4, 3, 1e-7
 _AROUND = np.linspace(0.5, 1.1, 40)
-# On the grid they are sought to this part of the distance of levels.
-_COARSE = 1e-2
+# On the grid they are sought to this part of the greatest one.
+_COARSE = 1e-3
 
 
 class Least(NamedTuple):
@@ -106,18 +107,18 @@ def grid(kind: PushKind, cycle: Array, moments: Whole) -> Pushes:
     return pushes(kind, cycle, np.repeat(moments, count), np.tile(angles, len(moments)))
 
 
-def levels(kind: PushKind, wheel: Wheel, cycle: Array) -> Array:
+def levels(kind: PushKind, cycle: Array) -> Array:
     """The amplitudes at which a push is tried first, (LEVELS,)."""
-    most = 4.0 * np.hypot(cycle[0], cycle[1]).max() if kind == POTENTIALS else 4 * free_speed(wheel)
-    return np.linspace(0.0, most, LEVELS + 1)[1:]
+    size = np.hypot(cycle[0], cycle[1]) if kind == POTENTIALS else cycle[OMEGA]
+    return np.asarray(MOST * size.max() * np.linspace(0.0, 1.0, LEVELS + 1)[1:] ** 2)
 
 
 def amplitudes(wheel: Wheel, of: Pushes, tried: Array) -> Pair:
-    """The amplitudes around which pushes begin to reverse, to a hundredth of the first one tried.
+    """The amplitudes around which pushes begin to reverse, to a thousandth of the greatest one.
 
     Raises WrongUse if wheels cannot be followed.
     """
-    return thresholds(wheel, of.starts, of.ways, tried, _COARSE * tried[0])
+    return thresholds(wheel, of.starts, of.ways, tried, _COARSE * tried[-1])
 
 
 def least(kind: PushKind, wheel: Wheel, cycle: Array) -> Least | None:
@@ -134,15 +135,16 @@ def least(kind: PushKind, wheel: Wheel, cycle: Array) -> Least | None:
     Raises:
         WrongUse: Wheels cannot be followed.
     """
-    all_ways = grid(kind, cycle, np.arange(0, MOMENTS, MOMENTS // PHASES, dtype=np.int64))
-    tried = levels(kind, wheel, cycle)
+    spacing = MOMENTS // (PHASES if kind == POTENTIALS else MORE * PHASES)
+    all_ways = grid(kind, cycle, np.arange(0, MOMENTS, spacing, dtype=np.int64))
+    tried = levels(kind, cycle)
     rough = thresholds(wheel, all_ways.starts, all_ways.ways, tried, np.inf)
     if not np.isfinite(rough.above.min()):
         return None
     hopeful = np.flatnonzero(rough.below < rough.above.min())
     ways = pushes(kind, cycle, all_ways.moments[hopeful], all_ways.angles[hopeful])
     found = amplitudes(wheel, ways, tried)
-    spacing, turn = MOMENTS // PHASES, all_ways.angles[1]
+    turn = all_ways.angles[1]
     lines = np.arange(-_LINES, _LINES + 1)
     for _ in range(_ROUNDS):
         best = int(found.above.argmin())

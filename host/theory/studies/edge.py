@@ -87,7 +87,7 @@ def simulate(cell: EdgeCell, setting: Setting) -> Measured:
 def _map(push: PushKind, band: int, wheel: Wheel, cycle: Array) -> list[Threshold]:
     step = MOMENTS // PHASES
     ways = grid(push, cycle, np.arange(band, band + BAND * step, step, dtype=np.int64))
-    found = amplitudes(wheel, ways, levels(push, wheel, cycle)).above
+    found = amplitudes(wheel, ways, levels(push, cycle)).above
     columns = (ways.angles.tolist(), found.tolist(), ways.starts.T.tolist())
     return [
         {

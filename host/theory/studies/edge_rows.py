@@ -45,8 +45,8 @@ class Threshold(TypedDict):
         phase_deg: phase of rolling, the angle within a quarter turn (degrees).
         direction_deg: direction of the push in the plane of x1 and x2 (degrees); for the speed 0 is
             forward and 180 backward.
-        amplitude: the least that reverses, to about 1 % of the potentials' size: without unit, or
-            in rad/s; None if none does that was tried.
+        amplitude: the least that reverses, to 0.1 % of the greatest that is tried: without unit,
+            or in rad/s; None if none does that was tried.
         x1: the first potential before the push (1).
         x2: the second (1).
         omega: the speed before the push (rad/s).
