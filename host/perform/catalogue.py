@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple, cast
 
 from host.experiments.registry import BODIES, ROBOT, SIMULATED
-from host.runs.contract import Cell, Experiment, Findings, Options, Row
+from host.runs.contract import Cell, Experiment, Findings, Options, Parts, Row
 from host.runs.registry import Entry, entry_of
 from host.runs.robot_options import params_of, params_with
 from host.runs.runner import Draw
@@ -38,6 +38,11 @@ class Found(NamedTuple):
     entry: Entry
     work: Experiment
     draw: Draw
+
+    @property
+    def parts(self) -> Parts | None:
+        """Computes a cell part by part; None if its cells are short."""
+        return getattr(self.work, "parts", None)
 
     def cells(self, options: Options, *, batch: bool) -> list[Cell]:
         """The cells of a run. Raises WrongUse if it makes no sense, or no robot could do it."""

@@ -117,6 +117,7 @@ def perform(
                 setting,
                 study,
                 scheduler,
+                parts=(sweep or found).parts,
                 processes=found.kind == BODY,
             )
         elif uri is not None and (missing := sum(cell not in study for cell in cells)):

@@ -6,7 +6,7 @@ the table says why, and the sweep goes on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from host.client.robot import Robot
@@ -15,7 +15,7 @@ from host.logs.log import Log
 from host.perform.catalogue import find
 from host.runs.answers import Answer
 from host.runs.columns import Column, Kind, columns_of
-from host.runs.contract import POINT, Cell, Findings, Options, Row, Setting
+from host.runs.contract import POINT, Cell, Findings, Options, Part, Parts, Row, Setting
 from host.runs.runner import Outcome, Work
 from host.runs.sweep import (
     Axis,
@@ -61,6 +61,11 @@ class Sweep:
         return [
             Kind("", "A quantity at a point.", (*swept, *columns_of(Quantity)), frozenset(names))
         ]
+
+    @property
+    def parts(self) -> Parts | None:
+        """Computes a cell part by part; None if the experiment's cells are short."""
+        return None if self._found.parts is None else partial(_parts, self._found.parts)
 
     def cells(self, options: Options, *, batch: bool) -> list[Cell]:
         """The cells of all points. Raises WrongUse, of the first point, if no point has any."""
@@ -135,6 +140,19 @@ def _simulate(name: str, cell: Cell, setting: Setting) -> list[Row]:
         return [{_ROW: row} for row in simulate(cell[_CELL], setting.at(cell))], []
 
     return forgiving(compute)(cell)[0]
+
+
+def _parts(parts: Parts, cell: Cell, setting: Setting, begun: Part | None) -> Iterator[Part]:
+    """Compute one cell of the experiment at its point, part by part."""
+    if _FAILED in cell:
+        yield Part([{}])
+        return
+    own = begun and begun._replace(rows=[row[_ROW] for row in begun.rows])
+    try:
+        for part in parts(cell[_CELL], setting.at(cell), own):
+            yield part._replace(rows=[{_ROW: row} for row in part.rows])
+    except FAILURES as error:
+        yield Part([{_FAILED: _reason(error)}])
 
 
 def forgiving(work: Work, failures: tuple[type[Exception], ...] = FAILURES) -> Work:

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from host.client.robot import Robot
 from host.logs.log import Log
@@ -29,6 +29,25 @@ Row = dict[str, Any]
 Options = dict[str, Any]
 # Where a cell of a sweep says at which options it is.
 POINT = "at"
+
+
+class Part(NamedTuple):
+    """A part of a cell that is complete. A cell of more than some seconds has several.
+
+    Attributes:
+        rows: Its rows. Those of all parts, one after the other, are the cell's.
+        state: What the next part begins with, as plain data.
+        share: How much of the cell is complete with it; 1 for the last part.
+    """
+
+    rows: list[Row]
+    state: Any = None
+    share: float = 1.0
+
+
+# Computes a cell part by part, on from the rows and the last state of those that are complete; None
+# for a cell that has not begun.
+Parts = Callable[[Cell, "Setting", Part | None], Iterator[Part]]
 
 
 @dataclass(frozen=True)
@@ -146,8 +165,9 @@ class Experiment(Protocol):
     """The module of an experiment.
 
     `simulate` computes a cell. It is None if the experiment runs a robot's whole loop on the
-    simulated brick too. An experiment on simulated bodies and a study of the analytic model need no
-    robot: they have neither `world` nor `trial`.
+    simulated brick too. An experiment with long cells also has `parts`, of the type Parts. An
+    experiment on simulated bodies and a study of the analytic model need no robot: they have
+    neither `world` nor `trial`.
     """
 
     simulate: Callable[[Cell, Setting], list[Row]] | None

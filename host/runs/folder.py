@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.runs.columns import Kind
-from host.runs.contract import Cell, Row
+from host.runs.contract import Cell, Part, Row
 from host.util.whole_files import whole_file, write_text
 
 _CELLS = "cells.jsonl"
@@ -42,6 +42,7 @@ class Study:
     def __init__(self, results: Path, settings: dict[str, Any]) -> None:
         self.folder = folder = results / f"{settings['experiment']}-{digest(settings)}"
         self._done: dict[str, Done] = {}
+        self._begun: dict[str, Part] = {}
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._journal = (folder / _CELLS).open("a+b")
@@ -73,7 +74,10 @@ class Study:
                 break
             try:
                 entry = json.loads(line)
-                self._done[_key(entry["cell"])] = Done(entry["rows"], entry["spoiled"])
+                if "part" in entry:
+                    self._add(entry["cell"], Part(**entry["part"]))
+                else:
+                    self._done[_key(entry["cell"])] = Done(entry["rows"], entry["spoiled"])
             except (ValueError, KeyError, TypeError) as error:
                 raise WrongUse(
                     f"{self.folder / _CELLS} is damaged",
@@ -90,11 +94,30 @@ class Study:
 
     def keep(self, cell: Cell, rows: list[Row], spoiled: list[str]) -> None:
         """Keep the result of a cell. It is on disk before this returns."""
-        line = json.dumps({"cell": cell, "rows": rows, "spoiled": spoiled}, allow_nan=False)
+        kept = self._append({"cell": cell, "rows": rows, "spoiled": spoiled})
+        self._done[_key(cell)] = Done(kept["rows"], spoiled)
+
+    def keep_part(self, cell: Cell, part: Part) -> None:
+        """Keep a part of a cell, but for the last. It is on disk before this returns."""
+        kept = self._append({"cell": cell, "part": part._asdict()})
+        self._add(cell, Part(**kept["part"]))
+
+    def begun(self, cell: Cell) -> Part | None:
+        """All complete parts of a cell that has begun, as one part; None for another cell."""
+        return self._begun.get(_key(cell))
+
+    def _add(self, cell: Cell, part: Part) -> None:
+        before = self.begun(cell)
+        self._begun[_key(cell)] = part._replace(rows=[*(before.rows if before else ()), *part.rows])
+
+    def _append(self, entry: dict[str, Any]) -> dict[str, Any]:
+        """Add a line to the journal. Returns the entry as it will be read."""
+        line = json.dumps(entry, allow_nan=False)
         self._journal.write(line.encode() + b"\n")
         self._journal.flush()
         os.fsync(self._journal.fileno())
-        self._done[_key(cell)] = Done(json.loads(line)["rows"], spoiled)
+        kept: dict[str, Any] = json.loads(line)
+        return kept
 
     def close(self) -> None:
         """Close the folder for others to use."""

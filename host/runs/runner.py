@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import closing, contextmanager
 from functools import partial
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from host.errors import FigureInterrupted, KickctlError, mark_kept
 from host.runs.answers import as_data
 from host.runs.columns import Kind, by_kind
-from host.runs.contract import Cell, Findings, Row, Setting
+from host.runs.contract import Cell, Findings, Part, Parts, Row, Setting
 from host.runs.folder import Study
 from host.runs.results import Results
 from host.util.progress import progress
@@ -20,7 +20,7 @@ from host.util.progress import progress
 T = TypeVar("T")
 # The rows of a cell, and why earlier tries of it did not count.
 Outcome = tuple[list[Row], list[str]]
-Result = tuple[Cell, list[Row], list[str]]
+Result = tuple[Cell, Part, list[str]]
 Work = Callable[[Cell], Outcome]
 # Draws the figure of rows and findings, and writes it to STEM.png and STEM.svg. Returns the paths.
 Draw = Callable[[list[Row], Findings, Path], list[Path]]
@@ -57,7 +57,7 @@ def do_cells(name: str, cells: list[Cell], study: Study, work: Work) -> None:
     """Do the cells that are not complete yet, one after the other."""
     missing = [cell for cell in cells if cell not in study]
     _keep(
-        ((cell, *work(cell)) for cell in missing),
+        ((cell, Part(rows), spoiled) for cell in missing for rows, spoiled in [work(cell)]),
         len(cells) - len(missing),
         len(cells),
         study,
@@ -73,6 +73,7 @@ def simulate(
     study: Study,
     scheduler: str | None = None,
     *,
+    parts: Parts | None = None,
     processes: bool = False,
 ) -> None:
     """Compute the cells that are not complete yet.
@@ -84,22 +85,28 @@ def simulate(
         setting: What they share.
         study: Where their results are kept.
         scheduler: The address of a Dask scheduler; None to compute on this machine.
+        parts: Computes a cell part by part, on this machine; None if its cells are short.
         processes: Whether to use a process for each core of this machine.
     """
     missing = [cell for cell in cells if cell not in study]
+    done: Generator[tuple[Cell, Part]]
     if scheduler is not None:
         from host.runs.cluster import compute_on_cluster
 
-        done = compute_on_cluster(scheduler, function, missing, setting)
+        done = _whole(compute_on_cluster(scheduler, function, missing, setting))
     elif processes:
         from host.runs.processes import compute_in_processes
 
-        done = compute_in_processes(function, missing, setting)
+        done = _whole(compute_in_processes(function, missing, setting))
+    elif parts is not None:
+        done = (
+            (cell, part) for cell in missing for part in parts(cell, setting, study.begun(cell))
+        )
     else:
-        done = ((cell, function(cell, setting)) for cell in missing)
+        done = ((cell, Part(function(cell, setting))) for cell in missing)
     with closing(done):
         _keep(
-            ((cell, rows, []) for cell, rows in done),
+            ((cell, part, []) for cell, part in done),
             len(cells) - len(missing),
             len(cells),
             study,
@@ -107,11 +114,23 @@ def simulate(
         )
 
 
+def _whole(results: Generator[tuple[Cell, list[Row]]]) -> Generator[tuple[Cell, Part]]:
+    """Cells that are computed elsewhere, each in one part. Closing it closes `results`."""
+    with closing(results):
+        for cell, rows in results:
+            yield cell, Part(rows)
+
+
 def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:
     with progress(name, total) as advance:
         advance(done)
-        for cell, rows, spoiled in results:
-            study.keep(cell, rows, spoiled)
+        for cell, part, spoiled in results:
+            if part.share < 1.0:
+                study.keep_part(cell, part)
+                advance(done + part.share)
+                continue
+            begun = study.begun(cell)
+            study.keep(cell, [*(begun.rows if begun else ()), *part.rows], spoiled)
             done += 1
             advance(done)
 

@@ -6,11 +6,12 @@ rests, FB it rolls forth and back, LLM it rolls one way, C it is chaotic.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
-from host.runs.contract import Setting
+from host.runs.contract import Part, Row, Setting
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import phase
 from host.theory.engine.ensemble import FINE, Averages, averages, require_loose
@@ -34,6 +35,8 @@ INSET_K, INSET_TAU = 5.0, 0.5
 # Time constants in a cell. With both ways a cell has two blocks of wheels, one for each core; with
 # fewer, one instruction would do fewer wheels.
 BAND = 32
+# The k of a part of a cell: they take some seconds.
+KS_OF_A_PART = 10
 # Each wheel is pushed by this angle (rad): one that starts exactly at rest would stay there.
 PUSH = 1e-3
 # Points that are computed again, with steps FINER times smaller.
@@ -70,25 +73,38 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[PhaseDiagramCe
     return [*bands, {"panel": "accuracy"}]
 
 
-def simulate(cell: PhaseDiagramCell, setting: Setting) -> list[Point] | list[StepCheck]:
+def simulate(cell: PhaseDiagramCell, setting: Setting) -> list[Row]:
     """The points of one band, or the sample."""
+    return [row for part in parts(cell, setting, None) for row in part.rows]
+
+
+def parts(cell: PhaseDiagramCell, setting: Setting, begun: Part | None) -> Iterator[Part]:
+    """The points of one band, some k at a time, or the sample."""
     options = setting.options
     if cell["panel"] == "accuracy":
-        return _step_checks(options, setting.seed_of(cell))
-    if options["start"] == "sweep":
-        return _sweep(cell, options)
-    return _one_start(cell, options)
+        yield Part(as_rows(_step_checks(options, setting.seed_of(cell))))
+    elif options["start"] == "sweep":
+        yield from _sweep(cell, options, begun)
+    else:
+        yield Part(as_rows(_one_start(cell, options)))
 
 
-def _sweep(cell: BandCell, options: dict[str, Any]) -> list[Point]:
+def as_rows(found: Iterable[Point | StepCheck]) -> list[Row]:
+    """The rows as plain dictionaries."""
+    return [dict(row) for row in found]
+
+
+def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Iterator[Part]:
     """k up and down. Each wheel starts, pushed, in the state in which it ended at the last k."""
     ks, all_taus = axes_of(cell["panel"], options)
     taus = all_taus[cell["first"] : cell["end"]]
     count, line = len(taus), _hopf_line(options, taus)
     both = np.concatenate([taus, taus])
-    states = None
+    states = None if begun is None else np.array(begun.state)
     found: list[Point] = []
-    for up, down in zip(ks.tolist(), ks[::-1].tolist(), strict=True):
+    ways = list(zip(ks.tolist(), ks[::-1].tolist(), strict=True))
+    done = 0 if begun is None else len(begun.rows) // (2 * count)
+    for number, (up, down) in enumerate(ways[done:], done + 1):
         parameters = _parameters(options, both, np.repeat([up, down], count))
         if states is None:
             at_rest = _at_rest(parameters[:, :count])
@@ -98,7 +114,9 @@ def _sweep(cell: BandCell, options: dict[str, Any]) -> list[Point]:
         states = result.states
         found += _points("up", up, taus, line, _part(result, 0, count))
         found += _points("down", down, taus, line, _part(result, count, 2 * count))
-    return found
+        if number % KS_OF_A_PART == 0 or number == len(ways):
+            yield Part(as_rows(found), states.tolist(), number / len(ways))
+            found = []
 
 
 def _one_start(cell: BandCell, options: dict[str, Any]) -> list[Point]:

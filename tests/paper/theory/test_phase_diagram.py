@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
-from host.runs.contract import Setting
+from host.runs.contract import Part, Setting
 from host.runs.registry import complete_options
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import STILL
@@ -113,6 +115,16 @@ def test_a_cell_done_twice_is_the_same_bits():
     assert phase_diagram.simulate(cell, Setting(1, options)) == phase_diagram.simulate(
         cell, Setting(2, options)
     )
+
+
+def test_a_cell_that_is_resumed_in_the_middle_is_the_same_bits(monkeypatch):
+    monkeypatch.setattr(phase_diagram, "KS_OF_A_PART", 2)
+    setting = Setting(1, {**OPTIONS, "points": 5, "transient": 5.0, "seconds": 5.0})
+    cell = {"panel": "plane", "first": 0, "end": 5}
+    first, *rest = phase_diagram.parts(cell, setting, None)
+    assert [part.share for part in (first, *rest)] == [0.4, 0.8, 1.0]
+    kept = Part(**json.loads(json.dumps(first._asdict())))
+    assert list(phase_diagram.parts(cell, setting, kept)) == rest
 
 
 @pytest.mark.parametrize("change", [{"f": 0.0}, {"a": 0.0}, {"I": 1e-3}])

@@ -9,7 +9,7 @@ import pytest
 from host.errors import WrongUse
 from host.figures import sweep as figure
 from host.perform.run import perform
-from host.runs.contract import Findings
+from host.runs.contract import Findings, Part, Setting
 from host.runs.registry import Option
 from host.theory.studies import hopf
 
@@ -78,6 +78,32 @@ def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
     perform("hopf", tau=[0.5, 1.0], out=tmp_path, say=said.append)
     assert "4 of 6 cells complete" in said[-1]
     assert len(set(done)) == 4
+
+
+def test_a_sweep_goes_on_in_the_middle_of_a_cell(tmp_path, monkeypatch):
+    """In parts, as long cells are: also where a point fails in its second one."""
+    began = []
+
+    def parts(cell, setting, begun):
+        began.append((setting.options["tau"], begun))
+        rows = hopf.simulate(cell, setting)
+        if begun is None:
+            yield Part(rows[:1], "state", 0.5)
+            if len(began) == 4:
+                raise KeyboardInterrupt
+        if setting.options["tau"] == 2.0:
+            raise ArithmeticError
+        yield Part(rows[1:])
+
+    expected = perform("hopf", tau=[1.0, 1.5], out=tmp_path / "whole")["numbers"]["rows"]
+    monkeypatch.setattr(hopf, "parts", parts, raising=False)
+    with pytest.raises(KeyboardInterrupt):
+        perform("hopf", tau=[1.0, 1.5, 2.0], out=tmp_path)
+    rows = perform("hopf", tau=[1.0, 1.5, 2.0], out=tmp_path)["numbers"]["rows"]
+    first = hopf.simulate({"part": "point"}, Setting(1, {"tau": 1.5, "a": 4, "f": 0.5, "I": 0.05}))
+    assert began[4] == (1.5, Part(first, "state", 0.5))
+    assert [row for row in rows if not row["failed"]] == expected
+    assert rows[-1]["failed"] == "ArithmeticError: "
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from contextlib import closing
 import pytest
 
 from host.errors import WrongUse
+from host.runs.contract import Part
 from host.runs.folder import Study
 
 SETTINGS = {"experiment": "toy", "seed": 1, "options": {"trials": 3}}
@@ -65,6 +66,16 @@ def test_a_line_that_was_cut_short_was_not_kept_and_harms_nothing(study):
         keep(back, 1)
         back.close()
         assert journal.read_bytes() == whole
+
+
+def test_parts_of_a_cell_add_up_until_it_is_complete(study):
+    assert study.begun(CELLS[0]) is None
+    study.keep_part(CELLS[0], Part([{"value": 0.1}], [1.5], 0.25))
+    study.keep_part(CELLS[0], Part([{"value": 0.2}], [2.5], 0.5))
+    with again(study) as back:
+        assert back.begun(CELLS[0]) == Part([{"value": 0.1}, {"value": 0.2}], [2.5], 0.5)
+        assert CELLS[0] not in back
+        assert back.begun(CELLS[1]) is None
 
 
 def test_a_damaged_journal_is_reported_in_words(study):
