@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
@@ -43,6 +43,11 @@ class Part(NamedTuple):
     rows: list[Row]
     state: Any = None
     share: float = 1.0
+
+
+def as_rows(found: Iterable[Mapping[str, Any]]) -> list[Row]:
+    """Rows of any kind as plain dictionaries."""
+    return [dict(row) for row in found]
 
 
 # Computes a cell part by part, on from the rows and the last state of those that are complete; None

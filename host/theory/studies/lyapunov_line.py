@@ -7,22 +7,20 @@ transients show where chaos begins.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from host.runs.answers import Answer
-from host.runs.contract import Findings, Setting
-from host.theory.analysis.transients import crisis, sample
+from host.runs.contract import Findings, Part, Row, Setting, as_rows
+from host.theory.analysis.transients import crisis, least_chaotic_k, sample
 from host.theory.model.wheel import Array, wheel_of
 from host.theory.studies import lyapunov_pieces as pieces
 from host.theory.studies.lyapunov_numbers import LineNumbers
 from host.theory.studies.lyapunov_rows import (
-    GridPoint,
-    Life,
     LineCell,
     LineRow,
-    RollingEnd,
     line_of,
     lives_of,
     rolling_end_of,
@@ -53,16 +51,25 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[LineCell]:
     return found
 
 
-def simulate(cell: LineCell, setting: Setting) -> list[GridPoint] | list[RollingEnd] | list[Life]:
+def simulate(cell: LineCell, setting: Setting) -> list[Row]:
     """One of the pieces."""
+    return [row for part in parts(cell, setting, None) for row in part.rows]
+
+
+def parts(cell: LineCell, setting: Setting, begun: Part | None) -> Iterator[Part]:
+    """One of the pieces. Where lives are measured depends on a long search, which is a part."""
     options, rng = setting.options, np.random.default_rng(setting.seed_of(cell))
     wheel, most_k = wheel_of(options), options["k_to"]
     if cell["part"] == "rolling":
-        return pieces.rolling(wheel, most_k, rng)
-    if cell["part"] == "lives":
-        return pieces.lives_near_chaos(wheel, cell["offset"], most_k, rng)
-    ks: Array = pieces.midpoints(most_k, KS)[cell["first"] : cell["first"] + BAND]
-    return pieces.from_both_starts(wheel.columns(len(ks), k=ks), WHEELS, rng)
+        yield Part(as_rows(pieces.rolling(wheel, most_k, rng)))
+    elif cell["part"] == "lives":
+        least = begun.state if begun else least_chaotic_k(wheel, most_k, pieces.FINENESS)
+        if begun is None:
+            yield Part([], least, 0.5)
+        yield Part(as_rows(pieces.lives_near_chaos(wheel, cell["offset"], least, rng)))
+    else:
+        ks: Array = pieces.midpoints(most_k, KS)[cell["first"] : cell["first"] + BAND]
+        yield Part(as_rows(pieces.from_both_starts(wheel.columns(len(ks), k=ks), WHEELS, rng)))
 
 
 def report(rows: list[LineRow], setting: Setting) -> Findings:

@@ -19,7 +19,7 @@ from host.theory.analysis.cycles import ROTATION
 from host.theory.analysis.spectrum import exponents, largest_exponents
 from host.theory.analysis.tangent import pair_growth
 from host.theory.analysis.trajectories import SAMPLE_S, trajectory
-from host.theory.analysis.transients import least_chaotic_k, lives
+from host.theory.analysis.transients import lives
 from host.theory.engine.ensemble import rate_per_s
 from host.theory.model.laws import array_rates, law_of
 from host.theory.model.turning import rolling_states
@@ -200,10 +200,9 @@ def rolling(wheel: Wheel, most_k: float, rng: np.random.Generator) -> list[Rolli
 
 
 def lives_near_chaos(
-    wheel: Wheel, offset: float, most_k: float, rng: np.random.Generator
+    wheel: Wheel, offset: float, least: float | None, rng: np.random.Generator
 ) -> list[Life]:
     """How long wheels switch at the least k with chaos, times 1 + offset; none without chaos."""
-    least = least_chaotic_k(wheel, most_k, FINENESS)
     if least is None:
         return []
     k = least * (1 + offset)

@@ -6,12 +6,12 @@ rests, FB it rolls forth and back, LLM it rolls one way, C it is chaotic.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from host.runs.contract import Part, Row, Setting
+from host.runs.contract import Part, Row, Setting, as_rows
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import phase
 from host.theory.engine.ensemble import FINE, Averages, averages, require_loose
@@ -87,11 +87,6 @@ def parts(cell: PhaseDiagramCell, setting: Setting, begun: Part | None) -> Itera
         yield from _sweep(cell, options, begun)
     else:
         yield Part(as_rows(_one_start(cell, options)))
-
-
-def as_rows(found: Iterable[Point | StepCheck]) -> list[Row]:
-    """The rows as plain dictionaries."""
-    return [dict(row) for row in found]
 
 
 def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Iterator[Part]:
