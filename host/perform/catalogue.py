@@ -47,7 +47,7 @@ class Found(NamedTuple):
     def cells(self, options: Options, *, batch: bool) -> list[Cell]:
         """The cells of a run. Raises WrongUse if it makes no sense, or no robot could do it."""
         if self.kind == EXPERIMENT:
-            params_with(params_of(options))
+            params_with(**params_of(options))
         return self.work.cells(options, batch=batch)
 
 

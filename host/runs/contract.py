@@ -99,7 +99,7 @@ class Setting:
 
     def params(self) -> Params:
         """The robot's parameters in this setting. Raises WrongUse if it would refuse them."""
-        return params_with(self.own_params())
+        return params_with(**self.own_params())
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
         """The random seed of a cell. It does not depend on other cells or on the machine."""

@@ -36,12 +36,12 @@ def params_of(options: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
-def params_with(changes: Mapping[str, Any]) -> Params:
-    """The robot's parameters with these changes. Raises WrongUse if the robot would refuse them."""
+def params_with(**changes: float) -> Params:
+    """The default parameters with these changes. Raises WrongUse if the robot would refuse them."""
     params = Params()
     try:
         if changes:
-            params.apply(params.check(dict(changes)))
+            params.apply(params.check(changes))
     except Refused as refusal:
         raise WrongUse(refusal.message, refusal.hint) from refusal
     return params

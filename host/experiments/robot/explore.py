@@ -17,6 +17,7 @@ is visited if the centre is in it at one of the times of the table, which are ST
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
 from typing import TypedDict
 
 import numpy as np
@@ -25,9 +26,11 @@ from numpy.typing import NDArray
 from host.errors import WrongUse
 from host.experiments.robot.wall_rows import ON_AXLES, ROBOT
 from host.kicking.modes import CHAOS, MODES, WALL_TURNER
-from host.runs.contract import Findings, Options, Setting
+from host.runs.contract import Findings, Options, Part, Setting
+from host.runs.contract import Row as RunRow
+from host.runs.robot_options import params_with
 from host.util.intervals import bootstrap_interval
-from robot.params import Params
+from sim_motor.batch import random_times
 from sim_motor.robots import Start, random_robots, run
 from sim_motor.scene import Scene
 from sim_motor.world import alone
@@ -39,6 +42,8 @@ WAYS = (CHAOTIC, STRAIGHT, KICKED, WALK)
 FLOOR_M = 2.0
 CELL_M = ROBOT["body_length"]
 SIDE = round((FLOOR_M - CELL_M) / CELL_M)
+# Robots whose ten minutes are computed at once: they take some seconds.
+ROBOTS_OF_A_PART = 4
 STEP_S, PAUSE_S, WALK_S = 0.3, 1.0, 5.0
 STUCK_M, DITHER_DEG = 0.05, 0.2
 # The speed (m/s) of a robot that drives straight on at k = 2.
@@ -104,27 +109,43 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
     return [{"way": way} for way in WAYS]
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Place]:
+def simulate(cell: Cell, setting: Setting) -> list[RunRow]:
     """Let all robots of one way move about."""
+    return [row for part in parts(cell, setting, None) for row in part.rows]
+
+
+def parts(cell: Cell, setting: Setting, begun: Part | None) -> Iterator[Part]:
+    """The same, some robots at a time."""
     robots, seconds = setting.options["robots"], 60 * setting.options["minutes"]
     rng = np.random.default_rng(setting.seed_of(cell))
     way = cell["way"]
     if way == WALK:
         steps = round(seconds / STEP_S)
-        places = np.stack([random_walk(steps, rng) for _ in range(robots)])
-    else:
-        places = _drive(way, robots, seconds, rng, setting)
+        yield Part(_places([random_walk(steps, rng) for _ in range(robots)]))
+        return
+    drive = _drive_of(way, robots, seconds, rng, setting)
+    first = begun.state if begun else 0
+    for end in [*range(first + ROBOTS_OF_A_PART, robots, ROBOTS_OF_A_PART), robots]:
+        yield Part(_places(drive(slice(first, end)), first), end, end / robots)
+        first = end
+
+
+def _places(paths: Iterable[Array], first: int = 0) -> list[RunRow]:
+    """The rows of robots whose numbers begin with `first`."""
     return [
         {"number": number, "t_s": at * STEP_S, "x_m": float(x), "y_m": float(y)}
-        for number, path in enumerate(places)
+        for number, path in enumerate(paths, first)
         for at, (x, y) in enumerate(path)
     ]
 
 
-def _drive(
+def _drive_of(
     way: str, robots: int, seconds: float, rng: np.random.Generator, setting: Setting
-) -> Array:
-    """Where robots are every STEP_S: x and y (m), (robots, times, 2)."""
+) -> Callable[[slice], Array]:
+    """A function that says where some of the robots are every STEP_S.
+
+    It returns x and y (m), (robots, times, 2). All chances are drawn here, for all robots.
+    """
     motor, seed = alone(setting.constants), int(rng.integers(2**30))
     params = params_with(**MODES[CHAOS if way == CHAOTIC else WALL_TURNER].params)
     ticks, start = round(seconds / params.tick_s), random_robots(robots, rng, motor)
@@ -136,25 +157,27 @@ def _drive(
             now += PAUSE_S
             pulses.append((round(now / params.tick_s), params))
             now += rng.exponential(WALK_S) + params.tick_s
-    course = run(
-        robots,
-        ticks,
-        seed,
-        Scene(FLOOR_M, FLOOR_M, ON_AXLES["grip"], None, ON_AXLES["bumper"], ON_AXLES["axle"]),
-        params=params,
-        then=pulses,
-        motors=tuple(motor.with_dither(DITHER_DEG, seed + side * robots) for side in range(2)),
-        battery_v=setting.battery_v,
-        start=start if way == CHAOTIC else both_alike(start),
-    )
-    return course.places[:, :: round(STEP_S / params.tick_s), :2]
+    if way != CHAOTIC:
+        start = both_alike(start)
+    times = random_times(robots, ticks, params.tick_s, np.random.default_rng(seed))
 
+    def drive(some: slice) -> Array:
+        dithers = (seed + side * robots + some.start for side in range(2))  # one for each wheel
+        course = run(
+            some.stop - some.start,
+            ticks,
+            seed,
+            Scene(FLOOR_M, FLOOR_M, ON_AXLES["grip"], None, ON_AXLES["bumper"], ON_AXLES["axle"]),
+            params=params,
+            then=pulses,
+            motors=tuple(motor.with_dither(DITHER_DEG, dither) for dither in dithers),
+            battery_v=setting.battery_v,
+            start=Start(start.states[some], start.potentials[some], start.headings[some]),
+            times=times[some],
+        )
+        return course.places[:, :: round(STEP_S / params.tick_s), :2]
 
-def params_with(**changes: float) -> Params:
-    """The default parameters with these changes."""
-    params = Params()
-    params.apply(params.check(changes))
-    return params
+    return drive
 
 
 def both_alike(start: Start) -> Start:

@@ -13,9 +13,9 @@ from typing import TypedDict
 import numpy as np
 
 from host.errors import WrongUse
-from host.experiments.robot.explore import params_with
 from host.experiments.robot.switching import OLDER, OLDER_S
 from host.runs.contract import Findings, Options, Setting
+from host.runs.robot_options import params_with
 from host.theory.analysis.series_exponents import from_twins
 from host.theory.model.wheel import Wheel
 from host.theory.studies.lyapunov_pieces import from_both_starts

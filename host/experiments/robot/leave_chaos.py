@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from host.experiments.robot.explore import DITHER_DEG, params_with
+from host.experiments.robot.explore import DITHER_DEG
 from host.kicking.modes import CHAOS, MODES
 from host.logs.motion import directions
 from host.runs.contract import Findings, Options, Setting
+from host.runs.robot_options import params_with
 from host.util.intervals import wilson
 from robot.kicks import (
     DIRECTION_TICKS,

@@ -5,7 +5,15 @@ import pytest
 
 from host.errors import WrongUse
 from host.experiments.robot import explore
-from host.experiments.robot.explore import CELL_M, CHAOTIC, FLOOR_M, SIDE, STEP_S, STRAIGHT
+from host.experiments.robot.explore import (
+    CELL_M,
+    CHAOTIC,
+    FLOOR_M,
+    KICKED,
+    SIDE,
+    STEP_S,
+    STRAIGHT,
+)
 from host.runs.contract import Setting
 
 SETTING = Setting(1, {"robots": 2, "minutes": 0.5})
@@ -54,3 +62,14 @@ def test_a_straight_robot_has_the_walks_speed_and_chaos_gets_less_far():
 def test_a_real_robot_is_refused_in_words():
     with pytest.raises(WrongUse, match="simulated robot"):
         explore.cells(SETTING.options, batch=False)
+
+
+def test_robots_drive_the_same_ways_in_parts(monkeypatch):
+    setting = Setting(1, {"robots": 3, "minutes": 0.1})
+    cell = {"way": KICKED}
+    whole = explore.simulate(cell, setting)
+    monkeypatch.setattr(explore, "ROBOTS_OF_A_PART", 2)
+    first, last = explore.parts(cell, setting, None)
+    assert (first.share, last.share) == (2 / 3, 1.0)
+    assert [*first.rows, *last.rows] == whole
+    assert list(explore.parts(cell, setting, first)) == [last]
