@@ -86,14 +86,19 @@ def _values(option: Option) -> Values:
 
 
 def _value(option: Option, value: Any) -> Any:
-    if isinstance(value, Iterable) and not isinstance(value, str) and not option.choices:
-        values = [_value(option, one) for one in value]
+    several = isinstance(value, Iterable) and not isinstance(value, str | bytes | Mapping)
+    if several and not option.choices:
+        values = [_single(option, one) for one in value]
         if not values or len(set(values)) < len(values):
             raise WrongUse(
                 f"{option.name} cannot be {shown(value)}",
                 "a sweep takes one value or more, and each of them once",
             )
         return values
+    return _single(option, value)
+
+
+def _single(option: Option, value: Any) -> Any:
     if value is None and option.default is None:
         return None
     if option.choices:
