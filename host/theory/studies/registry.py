@@ -263,6 +263,42 @@ TABLE = {
         " and direction, and the edge state between rolling forward and backward",
         (A, TAU, K._replace(default=8.0), F, I),
     ),
+    "escape": Entry(
+        "how long noise takes to drive a wheel from its attractor: mean times with 95 % intervals"
+        " for six strengths of noise, and Arrhenius's law. Takes about half a minute",
+        (
+            A,
+            TAU,
+            K._replace(default=1.4),
+            F,
+            I,
+            Option(
+                "noise",
+                0.1,
+                0.0,
+                1e3,
+                "greatest white noise of the torque, D_M, in sqrt(s), as torques have no unit",
+            ),
+            Option(
+                "angle_noise",
+                0.0,
+                0.0,
+                1e3,
+                "greatest white noise of the angle, D_phi, rad/sqrt(s)",
+            ),
+            Option(
+                "start",
+                "rest",
+                0.0,
+                0.0,
+                "the attractor; rest: that of a wheel that is pushed a little; roll: rolling",
+                ("rest", "roll"),
+            ),
+            Option("wheels", 256, 8, 100_000, "number of wheels for each strength"),
+            Option("seconds", 1000.0, 1.0, 1e6, "how long to follow a wheel at most, s"),
+            *VARIANTS,
+        ),
+    ),
     "tick": Entry(
         "what the length of a tick and the motor's latency do to the lines: the sampled wheel as"
         " a map",
