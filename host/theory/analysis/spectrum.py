@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as students
+from scipy.special import stdtrit
 
 from host.theory.analysis.tangent import growth, smooth_mean
 from host.theory.engine.ensemble import FINE
@@ -55,7 +55,7 @@ def mean(values: Array) -> Mean:
 
 def quantile(wheels: int, confidence: float) -> float:
     """How many standard errors to either side hold the true mean with this confidence."""
-    return float(students.ppf((1 + confidence) / 2, max(1, wheels - 1)))
+    return float(stdtrit(max(1, wheels - 1), (1 + confidence) / 2))
 
 
 def _error(values: Array) -> float | None:
@@ -83,6 +83,7 @@ def exponents(
     blocks: int,
     moving: Mask,
     regular: Mask,
+    fineness: float = FINE,
 ) -> Exponents:
     """All four exponents of wheels on their attractors.
 
@@ -94,6 +95,7 @@ def exponents(
         blocks: In how many blocks of time.
         moving: Which wheels do not come to rest, (wheels,).
         regular: Which wheels repeat themselves, (wheels,): their blocks open and close smoothly.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.ensemble).
 
     Raises:
         WrongUse: Wheels are too stiff to be followed.
@@ -104,8 +106,10 @@ def exponents(
         if not chosen.any():
             continue
         own = parameters[:, chosen]
-        aligned = growth(states[:, chosen], own, align_s, 4, with_flow=with_flow)
-        after = growth(aligned.states, own, seconds, 4, aligned.vectors, with_flow=with_flow)
+        begin, vectors = states[:, chosen], None
+        aligned = growth(begin, own, align_s, 4, vectors, fineness, with_flow=with_flow)
+        begin, vectors = aligned.states, aligned.vectors
+        after = growth(begin, own, seconds, 4, vectors, fineness, with_flow=with_flow)
         parts = np.array_split(after.rates, blocks)
         found[:, :, chosen] = [
             np.where(regular[chosen], smooth_mean(part), part.mean(axis=0)) for part in parts

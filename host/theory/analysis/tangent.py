@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from host.errors import WrongUse
-from host.theory.analysis.attractors import settle
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.ensemble import FINE, advance, rate_per_s
 from host.theory.engine.sliding import DRY
@@ -169,7 +168,7 @@ def pair_growth(states: Array, parameters: Array, seconds: float, fineness: floa
     rates = np.empty((rounds, wheels))
     for step in range(rounds):
         away *= PAIR_DISTANCE / np.linalg.norm(away, axis=0)
-        both = settle(np.hstack([states, states + away]), columns, seconds / rounds, fineness)
+        both = advance(np.hstack([states, states + away]), columns, seconds / rounds, fineness)
         states, away = both[:, :wheels], both[:, wheels:] - both[:, :wheels]
         rates[step] = np.log(np.linalg.norm(away, axis=0) / PAIR_DISTANCE) * (rounds / seconds)
     return rates

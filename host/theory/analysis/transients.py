@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.stats import expon, goodness_of_fit
 
 from host.theory.analysis.attractors import CHAOS, random_starts, settle, watch
 from host.theory.model.wheel import OMEGA, Array, Wheel
@@ -135,6 +134,8 @@ def sample(k: float, life_s: Array, ended: NDArray[np.bool_]) -> Sample:
     mean = float(own.sum() / over.sum()) if over.any() else None
     likeness = None
     if over.all() and len(own) >= FEWEST:
+        from scipy.stats import expon, goodness_of_fit
+
         rng = np.random.default_rng(0)
         fitted = goodness_of_fit(
             expon, own, known_params={"loc": 0.0}, statistic="ad", n_mc_samples=RESAMPLES, rng=rng

@@ -90,7 +90,10 @@ def report(rows: list[LineRow], setting: Setting) -> Findings:
         "lives": [lives_numbers(one) for one in samples],
         "in_words": words,
     }
+    seen = numbers["line"]
     answers = [
+        Answer("chaos was seen for k from", _range(seen["chaos_seen_k"])),
+        Answer("chaos beside rolling for k from", _range(seen["chaos_and_rolling_seen_k"])),
         Answer("rolling is stable up to k", rolls and rolls["k"]),
         Answer("it ends in a", rolls and rolls["type"]),
         Answer("a little above, wheels are", rolls and rolls["above"]),
@@ -101,3 +104,8 @@ def report(rows: list[LineRow], setting: Setting) -> Findings:
             Answer("power of the mean life", found.power, standard_error(found.power_interval)),
         ]
     return Findings([], numbers, answers=answers)
+
+
+def _range(ends: list[float] | None) -> str | None:
+    """The ends of a range of k in words; None if there is none."""
+    return f"{ends[0]:.6g} to {ends[1]:.6g}" if ends else None

@@ -20,7 +20,7 @@ from host.theory.analysis.spectrum import exponents, largest_exponents
 from host.theory.analysis.tangent import pair_growth
 from host.theory.analysis.trajectories import SAMPLE_S, trajectory
 from host.theory.analysis.transients import lives
-from host.theory.engine.ensemble import rate_per_s
+from host.theory.engine.ensemble import FINE, rate_per_s
 from host.theory.model.laws import array_rates, law_of
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel
@@ -90,8 +90,12 @@ def spectrum_in_blocks(wheel: Wheel, seconds: float, rng: np.random.Generator) -
     before = watch(settled, parameters, WATCH_S)
     moving, regular = before.kinds() != REST, before.apart < AGREE
     blocks = max(1, round(seconds / BLOCK_S))
-    found = exponents(before.states, parameters, ALIGN_S, seconds, blocks, moving, regular)
-    pairs = pair_growth(before.states, parameters, ALIGN_S + seconds)[round(ALIGN_S) :]
+    # Means over chaotic motion have errors far above those of the steps.
+    fineness = FINE if regular.any() else FINENESS
+    found = exponents(
+        before.states, parameters, ALIGN_S, seconds, blocks, moving, regular, fineness
+    )
+    pairs = pair_growth(before.states, parameters, ALIGN_S + seconds, fineness)[round(ALIGN_S) :]
     after = watch(found.states, parameters, WATCH_S)
     pair_means = np.array([block.mean(axis=0) for block in np.array_split(pairs, blocks)])
     largest = found.blocks.mean(axis=0).max(axis=0)
