@@ -15,7 +15,7 @@ F = Option("f", 0.5, 0.0, 1e3, "friction of the wheel, s (its torque has no unit
 I = Option("I", 0.05, 1e-9, 1e3, "moment of inertia of the wheel, s^2 (its torque has no unit)")  # noqa: E741
 LETTERS = ("k", "tau", "a", "f", "I")
 # Other wheels than the paper's.
-RODS = Option("rods", 2, 1, 2, "rods that pull at the wheel, 2 or 1")
+RODS = Option("rods", 2, 1, 2, "number of rods that pull at the wheel, 2 or 1")
 BOUNDED = Option(
     "bounded",
     None,
