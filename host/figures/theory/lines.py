@@ -16,15 +16,18 @@ from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
+from host.theory.analysis.chaos_edges import LASTING_S
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import PHASES
 from host.theory.model.wheel import Wheel
 from host.theory.studies.lines_report import Numbers
 from host.theory.studies.lines_rows import (
+    ChaosEdgeRow,
     CyclePointRow,
     LinesRow,
     PointRow,
     SpecialRow,
+    chaos_edges_of,
     phases_of,
     points_of,
     specials_of,
@@ -78,6 +81,7 @@ def draw(rows: list[LinesRow], findings: Findings) -> Figure:
             _draw_lines(axes, rows, x_of)
             _draw_specials(axes, rows, x_of)
             axes.set_ylabel(_LABELS[letters[1]])
+        _draw_chaos(plane, chaos_edges_of(rows))
         window = [max(row[axis] for row in phases_of(rows)) for axis in ("x", "y")]
         plane.set(xlabel=_LABELS[letters[0]], xlim=(0.0, window[0]), ylim=(0.0, window[1]))
         near = [above(row) for row in points_of(rows) if row["type"] in ("Hopf", "merging", "fold")]
@@ -113,6 +117,20 @@ def _draw_phases(axes: Axes, rows: list[LinesRow]) -> None:
         if PHASES.index(name) in numbers:
             style: Any = {"color": _GREYS[name], "markeredgecolor": "black", "markersize": 12}
             axes.plot([], [], "s", label=f"{name}, from rest", **style)
+
+
+def _draw_chaos(axes: Axes, edges: list[ChaosEdgeRow]) -> None:
+    """Each edge with its uncertainty."""
+    if edges:
+        axes.hlines(
+            [row["y"] for row in edges],
+            [row["few"] for row in edges],
+            [row["most"] for row in edges],
+            color=COLOURS[4],
+            linewidth=4.0,
+            label=f"edge of chaos that lasts {LASTING_S:g} s",
+        )
+        axes.plot([row["x"] for row in edges], [row["y"] for row in edges], "|", color="black")
 
 
 def _draw_lines(

@@ -13,6 +13,7 @@ import numpy as np
 
 from host.errors import WrongUse
 from host.runs.contract import Setting
+from host.theory.analysis.chaos_edges import LASTING_S, chaos_edges
 from host.theory.analysis.fixpoints import fixpoint
 from host.theory.analysis.hopf import critical_k, hopf
 from host.theory.analysis.phases import phase
@@ -23,22 +24,24 @@ from host.theory.studies.lines_boundaries import boundary_rows
 from host.theory.studies.lines_cycles import cycle_rows
 from host.theory.studies.lines_plane import Plane, plane_of
 from host.theory.studies.lines_report import report
-from host.theory.studies.lines_rows import PARTS, LinesCell, Measured, PhasePoint
+from host.theory.studies.lines_rows import PARTS, ChaosEdgePoint, LinesCell, Measured, PhasePoint
 from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
 BANDS = 12
+# Values of y at which the edges of lasting chaos are looked for.
+CHAOS_YS = 10
 # Phases: points of each axis, values of y in a cell; the push (rad), and times (s).
 GRID, ROWS = 60, 15
 _PUSH, _TRANSIENT_S, _MEASURED_S = 1e-3, 60.0, 40.0
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
-    """Phases, and the lines of each kind in each band.
+    """Phases, edges of lasting chaos, and the lines of each kind in each band.
 
-    Raises WrongUse for a wheel with one rod, if the axes are the same, if no resting wheel begins to
-    swing, or if a wheel is too stiff to be followed.
+    Raises WrongUse for a wheel with one rod, if the axes are the same, if no resting wheel begins
+    to swing, or if a wheel is too stiff to be followed.
     """
     require_two_rods(options)
     if options["x"] == options["y"]:
@@ -52,16 +55,21 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
         hopf(wheel)
         fixpoint(0.0, wheel)
         steps_for(1.0, wheel)
-        require_loose(wheel.columns(1), _TRANSIENT_S)
+        require_loose(wheel.columns(1), LASTING_S)
     phases: list[LinesCell] = [{"part": "phases", "first": first} for first in range(0, GRID, ROWS)]
-    return phases + [{"part": part, "band": band} for band in range(BANDS) for part in PARTS]
+    chaos: list[LinesCell] = [{"part": "chaos", "number": number} for number in range(CHAOS_YS)]
+    return (
+        phases + chaos + [{"part": part, "band": band} for band in range(BANDS) for part in PARTS]
+    )
 
 
-def simulate(cell: LinesCell, setting: Setting) -> Sequence[Measured | PhasePoint]:
-    """The phases, or the lines, of one cell."""
+def simulate(cell: LinesCell, setting: Setting) -> Sequence[Measured | PhasePoint | ChaosEdgePoint]:
+    """The phases, edges of chaos, or lines of one cell."""
     plane = plane_of(setting.options)
     if cell["part"] == "phases":
         return _phases(cell["first"], plane)
+    if cell["part"] == "chaos":
+        return _chaos(cell["number"], plane, np.random.default_rng(setting.seed_of(cell)))
     band = plane.band(cell["band"], BANDS)
     match cell["part"]:
         case "Hopf" | "merging" as part:
@@ -92,3 +100,13 @@ def _phases(first: int, plane: Plane) -> list[PhasePoint]:
         name = phase(mean, std, wheel.k, critical_k(wheel))
         rows.append({"kind": "phase", "x": x, "y": y, "phase": name})
     return rows
+
+
+def _chaos(number: int, plane: Plane, rng: np.random.Generator) -> list[ChaosEdgePoint]:
+    """The edges of lasting chaos along x."""
+    y = plane.window.y_to * (number + 0.5) / CHAOS_YS
+    found = chaos_edges(plane.at(plane.window.x_to, y), plane.x, plane.window.x_to, rng)
+    return [
+        {"kind": "chaos", "x": edge.value, "y": y, "few": edge.few, "most": edge.most}
+        for edge in found
+    ]

@@ -6,12 +6,15 @@ from typing import TypedDict
 
 from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
+from host.theory.analysis.chaos_edges import LASTING_S
 from host.theory.studies.lines_rows import (
+    ChaosEdgeRow,
     CyclePointRow,
     EndRow,
     LinesRow,
     PointRow,
     SpecialRow,
+    chaos_edges_of,
     ends_of,
     points_of,
     specials_of,
@@ -55,6 +58,9 @@ class Numbers(TypedDict):
         special_points: with x and y, and the relative difference with shorter time steps.
         ends: where lines end, with x and y.
         lines: the lines that were found.
+        chaos_edges: where half of the wheels are still chaotic after chaos_lasts_s; few and most
+            are the values of x at which a tenth and nine tenths of them are.
+        chaos_lasts_s: how long lasting chaos lasts at least (s).
         greatest_off_by: the greatest relative difference with shorter time steps.
     """
 
@@ -63,12 +69,15 @@ class Numbers(TypedDict):
     special_points: list[dict[str, object]]
     ends: list[dict[str, object]]
     lines: list[LineNumbers]
+    chaos_edges: list[dict[str, float]]
+    chaos_lasts_s: float
     greatest_off_by: float | None
 
 
 def report(rows: list[LinesRow], setting: Setting) -> Findings:
     """The lines. The paper claims nothing about them in numbers."""
     axes = {axis: setting.options[axis] for axis in ("x", "y")}
+    chaos = chaos_edges_of(rows)
     specials, ends, lines = specials_of(rows), ends_of(rows), _lines(points_of(rows))
     differences = [row["off_by"] for row in specials if row["off_by"] is not None]
     numbers: Numbers = {
@@ -95,6 +104,10 @@ def report(rows: list[LinesRow], setting: Setting) -> Findings:
             for row in ends
         ],
         "lines": lines,
+        "chaos_edges": [
+            {"x": row["x"], "y": row["y"], "few": row["few"], "most": row["most"]} for row in chaos
+        ],
+        "chaos_lasts_s": LASTING_S,
         "greatest_off_by": max(differences, default=None),
     }
     answers = [
@@ -105,6 +118,7 @@ def report(rows: list[LinesRow], setting: Setting) -> Findings:
             for one in lines
         ),
     ]
+    answers += [_chaos_answer(row, axes) for row in chaos]
     if not any(row["type"] == "pitchfork" for row in points_of(rows)):
         answers.append(Answer("pitchforks, period doublings", "none of symmetric cycles"))
     return Findings([], numbers, answers=answers)
@@ -141,6 +155,14 @@ def _special_answer(row: SpecialRow, axes: dict[str, str]) -> Answer:
 def _end_answer(row: EndRow, axes: dict[str, str]) -> Answer:
     gap = "" if row["gap"] is None else f", closer than {row['gap']:.1e} of it"
     return Answer(f"{_name(row['part'], row['on'])}: {_ENDS[row['type']]}", _place(row, axes) + gap)
+
+
+def _chaos_answer(row: ChaosEdgeRow, axes: dict[str, str]) -> Answer:
+    (x, y), (low, high) = axes.values(), sorted((row["few"], row["most"]))
+    return Answer(
+        f"edge of chaos that lasts {LASTING_S:g} s, {y} = {row['y']:g}{_unit(y)}",
+        f"{x} = {row['x']:.4g}{_unit(x)} ({low:.4g} to {high:.4g})",
+    )
 
 
 def _place(row: SpecialRow | EndRow, axes: dict[str, str]) -> str:

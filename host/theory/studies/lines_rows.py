@@ -40,6 +40,34 @@ class BandCell(TypedDict):
     band: int
 
 
+class ChaosCell(TypedDict):
+    """The edges of lasting chaos at one y.
+
+    Attributes:
+        number: number of this y, from the bottom.
+    """
+
+    part: Literal["chaos"]
+    number: int
+
+
+class ChaosEdgePoint(TypedDict):
+    """Where half of the wheels are still chaotic after LASTING_S s.
+
+    Attributes:
+        x: the constant on the axis x (in its unit).
+        y: the constant on the axis y (in its unit).
+        few: where FEW of them are, x (in its unit).
+        most: where MOST of them are, x (in its unit).
+    """
+
+    kind: Literal["chaos"]
+    x: float
+    y: float
+    few: float
+    most: float
+
+
 class PhasePoint(TypedDict):
     """What a wheel does that starts beside rest.
 
@@ -134,6 +162,10 @@ class PhaseRow(PhasesCell, PhasePoint):
     """A row for a phase."""
 
 
+class ChaosEdgeRow(ChaosCell, ChaosEdgePoint):
+    """A row for an edge of lasting chaos."""
+
+
 class PointRow(BandCell, LinePoint):
     """A row for a point of a line."""
 
@@ -150,14 +182,19 @@ class EndRow(BandCell, EndPoint):
     """A row for the end of a piece."""
 
 
-LinesCell = PhasesCell | BandCell
+LinesCell = PhasesCell | ChaosCell | BandCell
 Measured = LinePoint | CycleLinePoint | SpecialPoint | EndPoint
-LinesRow = PhaseRow | PointRow | CyclePointRow | SpecialRow | EndRow
+LinesRow = PhaseRow | ChaosEdgeRow | PointRow | CyclePointRow | SpecialRow | EndRow
 
 
 def phases_of(rows: Iterable[LinesRow]) -> list[PhaseRow]:
     """The phases."""
     return [row for row in rows if row["kind"] == "phase"]
+
+
+def chaos_edges_of(rows: Iterable[LinesRow]) -> list[ChaosEdgeRow]:
+    """The edges of lasting chaos."""
+    return [row for row in rows if row["kind"] == "chaos"]
 
 
 def points_of(rows: Iterable[LinesRow]) -> list[PointRow | CyclePointRow]:

@@ -7,9 +7,12 @@ from host.errors import NotDone
 from host.figures.theory import lines as figure
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
+from host.theory.analysis.attractors import random_starts
 from host.theory.analysis.boundaries import Boundary
+from host.theory.analysis.chaos_edges import chaos_edges
 from host.theory.analysis.cycle_lines import Window
 from host.theory.analysis.hopf import above_hopf
+from host.theory.analysis.transients import lives
 from host.theory.model.wheel import Wheel
 from host.theory.studies import lines
 from host.theory.studies.lines_boundaries import boundary_rows
@@ -123,7 +126,27 @@ def test_the_folds_of_swinging_end_where_cycles_cease_to_be_born_stable():
     assert touched == pytest.approx(bautin["y"], abs=2e-5)
 
 
-def test_the_lines_are_reported_and_drawn(cycles, tmp_path):
+@pytest.fixture(scope="module")
+def edges():
+    return chaos_edges(PAPER._replace(tau=1.0), "k", 8.0, np.random.default_rng(1))
+
+
+def test_below_the_edge_of_chaos_wheels_stop_turning_round_and_above_it_they_do_not(edges):
+    (edge,) = edges
+    assert edge.few < edge.value < edge.most
+    assert edge.most - edge.few < 0.1 * edge.value
+    ks = np.repeat([0.95 * edge.few, 1.05 * edge.most], 8)
+    parameters = PAPER._replace(tau=1.0).columns(16, k=ks)
+    ended = lives(random_starts(16, np.random.default_rng(2)), parameters, 600.0, 1.0).ended
+    assert ended[:8].all()
+    assert not ended[8:].all()
+
+
+def test_there_is_no_edge_where_there_is_no_chaos():
+    assert chaos_edges(PAPER, "k", 8.0, np.random.default_rng(1)) == []
+
+
+def test_the_lines_are_reported_and_drawn(cycles, edges, tmp_path):
     setting = Setting(1, options(y_to=0.83))
     plane = plane_of(setting.options)
     rows = [{"part": part, "band": 0, **row} for part, own in cycles.items() for row in own]
@@ -131,6 +154,9 @@ def test_the_lines_are_reported_and_drawn(cycles, tmp_path):
     rows += [{"part": "Hopf", "band": 0, **row} for row in hopf]
     cell = {"part": "phases", "first": 0}
     rows += [{**cell, **row} for row in lines.simulate(cell, setting)]
+    chaos = {"part": "chaos", "number": 0, "kind": "chaos", "y": 0.5}
+    few, most = edges[0].few, edges[0].most
+    rows.append({**chaos, "x": edges[0].value, "few": few, "most": most})
     found = lines.report(rows, setting)
     names = [one["line"] for one in found.numbers["lines"]]
     assert "Neimark-Sacker line of rotations" in names
