@@ -51,7 +51,7 @@ def _lines(what: str, total: float, clock: Callable[[], float]) -> Callable[[flo
             last_s = now_s
             left_s = (now_s - start_s) / (done - at_start) * (total - done)
             print(
-                f"{what}: {done:.0f} of {total:.0f}, about {_words(left_s)} left",
+                f"{what}: {round(done, 1):g} of {total:.0f}, about {_words(left_s)} left",
                 file=sys.stderr,
                 flush=True,
             )

@@ -13,6 +13,7 @@ robot's kinetic energy, winds the axle up and springs back over that point.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from math import ceil, pi
 from typing import TypedDict
 
@@ -32,10 +33,8 @@ from host.experiments.robot.wall_rows import (
     Hit,
     HitRow,
     HitsCell,
-    NumberedHit,
     OneHit,
     SeriesCell,
-    Tick,
     TrialCell,
     WallCell,
     WallRow,
@@ -49,7 +48,7 @@ from host.logs.log import Log
 from host.runs import presets
 from host.runs.answers import Answer, share
 from host.runs.claims import Claim, too_few
-from host.runs.contract import Findings, Options, Setting
+from host.runs.contract import Findings, Options, Part, Row, Setting, as_rows
 from host.runs.presets import OPTION
 from host.util.intervals import fraction, wilson
 from robot.kicks import DIRECTION_TICKS, PHASE
@@ -65,6 +64,8 @@ AXLES = (220.0, 300.0, 400.0, 600.0, 900.0, 1500.0, 3000.0, None)
 GRIPS = (1.34, 1.5, 1.6, 1.71, 1.83, 2.0, 2.5)
 BUMPERS, BATTERIES = (0.1, 0.16, 0.2, 0.25, 0.3, 0.4), (6.5, 7.0, 7.5, 8.0, 8.4)
 MAP_HITS = 40
+# Hits of one robot after the other that take some seconds.
+HITS_OF_A_PART = 100
 
 # The least distance between the walls. Over all hits it grows by what two turns of the wheels
 # cover, so that the wheels come to the wall at all phases.
@@ -124,15 +125,26 @@ def world(cell: OneHit | SeriesCell) -> dict[str, str]:
     }
 
 
-def simulate(cell: HitsCell | SeriesCell, setting: Setting) -> list[NumberedHit] | list[Tick]:
+def simulate(cell: HitsCell | SeriesCell, setting: Setting) -> list[Row]:
     """Run the robot's whole loop against the wall, with a robot of its own for each hit."""
+    return [row for part in parts(cell, setting, None) for row in part.rows]
+
+
+def parts(cell: HitsCell | SeriesCell, setting: Setting, begun: Part | None) -> Iterator[Part]:
+    """The same, some hits at a time."""
     if cell["part"] == "series":
-        return read_series(*_run_into_wall(cell, setting, stop=False))
-    rows: list[NumberedHit] = []
-    for hit in range(cell["hits"]):
-        motion = _run_into_wall({**cell, "hit": hit}, setting, stop=True)
-        rows.append({"hit": hit, **read_hit(*motion)})
-    return rows
+        yield Part(as_rows(read_series(*_run_into_wall(cell, setting, stop=False))))
+        return
+    first = len(begun.rows) if begun else 0
+    for end in [*range(first + HITS_OF_A_PART, cell["hits"], HITS_OF_A_PART), cell["hits"]]:
+        yield Part(
+            [
+                {"hit": hit, **read_hit(*_run_into_wall({**cell, "hit": hit}, setting, stop=True))}
+                for hit in range(first, end)
+            ],
+            share=end / cell["hits"],
+        )
+        first = end
 
 
 def _run_into_wall(cell: OneHit | SeriesCell, setting: Setting, *, stop: bool) -> Motion:
