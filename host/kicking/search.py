@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from math import pi
+from math import inf, pi
 from typing import Any
 
 from host.kicking.kick_map import lengths, request
@@ -174,25 +174,35 @@ def _shortest(wheels: RollingWheels, name: str, amplitudes: tuple[float, ...]) -
 
 
 def _least_effort(wheels: RollingWheels, name: str, amplitudes: tuple[float, ...]) -> Found | None:
-    best, bracket, form = None, (0.0, 0.0), (1, RECTANGULAR)
+    best, least_s = None, inf
     for ticks, shape in product(lengths(wheels.params.tick_s), SHAPES):
         for smaller, amplitude, kick in _pulses(wheels, name, amplitudes, ticks, shape):
-            effort = effort_s(kick, wheels.params) or 0.0
-            if best is not None and effort >= (best.effort_s or 0.0):
+            # No pulse of this form that is left to try has less than this.
+            if (effort_s(kick, wheels.params) or 0.0) * smaller / amplitude >= least_s:
                 break
             found = _try(wheels, kick)
             if found is not None:
-                best, bracket, form = found, (smaller, amplitude), (ticks, shape)
+                found = _least_amplitude(wheels, found, smaller, amplitude)
+                if (found.effort_s or 0.0) < least_s:
+                    best, least_s = found, found.effort_s or 0.0
                 break
-    if best is None:
-        return None
-    too_small, enough = bracket
+    return best
+
+
+def _least_amplitude(wheels: RollingWheels, found: Found, too_small: float, enough: float) -> Found:
+    """The pulse of the same parameter, length and shape with the least amplitude that reverses.
+
+    It lies between two amplitudes, one too small and one that does it, that of `found`.
+    """
+    kick = found.request
     for _ in range(_HALVINGS):
         middle = (too_small + enough) / 2
-        pulse = _pulse(name, middle, *form, wheels.params)
-        found = _try(wheels, pulse) if pulse else None
-        if found is None:
+        pulse = _pulse(
+            kick["param"], middle, kick["ticks"], kick.get("shape", RECTANGULAR), wheels.params
+        )
+        smaller = _try(wheels, pulse) if pulse else None
+        if smaller is None:
             too_small = middle
         else:
-            best, enough = found, middle
-    return best
+            found, enough = smaller, middle
+    return found

@@ -301,7 +301,7 @@ def test_a_kick_without_a_form_and_a_wrong_waveform_are_refused_first(kickctl, a
 
 
 def test_a_kick_waits_for_its_window_of_angles(kickctl):
-    """The least pulse of `plan --search` reverses in its window."""
+    """A pulse that works at some angles only."""
     kick = ("kick", "--mode", "pulse", "--param", "shift_rad", "--value", "1.16583")
     kick += ("--ticks", "7", "--shape", "smooth", "--wheel", "left", "--seed", "1", "--json")
     status, out, _ = kickctl(*kick, "--window", "76,100")

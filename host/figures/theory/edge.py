@@ -92,7 +92,7 @@ def _draw_phases(axes: Axes, plane: list[MapRow]) -> None:
         label="least in any direction",
     )
     axes.set(xlabel="phase of rolling (degrees)", ylabel="jump", ylim=(0, None), xlim=(0, 90))
-    axes.legend(loc="lower right", fontsize=11)
+    axes.legend(loc="best", fontsize=11)
 
 
 def _draw_courses(axes: Axes, rows: list[EdgeRow]) -> None:
@@ -106,4 +106,4 @@ def _draw_courses(axes: Axes, rows: list[EdgeRow]) -> None:
         )
     axes.axhline(0.0, color="dimgrey", linewidth=0.8, zorder=0)
     axes.set(xlabel="time after the least jump (s)", ylabel=r"speed $\omega/2\pi$ (Hz)")
-    axes.legend(loc="upper center", fontsize=11)
+    axes.legend(loc="best", fontsize=11)

@@ -30,6 +30,8 @@ _SECTIONS, _SIDE_BY_SIDE = 8, 64
 NEAR, APART = 1e-7, 1e-4
 _BEYOND = np.array([-8.0, -2.0, 0.0, 1.0, 3.0, 9.0])
 _STEP_MEMORIES = 0.05
+# They have parted at this distance, and are followed for at most so long, in memories.
+PARTED, _LONGEST = 1.0, 100.0
 
 
 class Pair(NamedTuple):
@@ -163,16 +165,17 @@ def departures(wheel: Wheel, path: EdgePath, memories: float) -> Iterator[tuple[
     Args:
         wheel: The wheel's constants.
         path: The path.
-        memories: For how long, in units of the wheel's memory.
+        memories: For how long after they have parted, in units of the wheel's memory.
 
     Yields:
         Times from the path's begin, s, (points,), and states, (4, points): forward, then backward.
     """
     step_s = _STEP_MEMORIES * memory_s(wheel)
     pair = np.stack([path.forward, path.backward], axis=1)
-    states = [pair]
-    for _ in range(round(memories / _STEP_MEMORIES)):
+    states, parted = [pair], 0
+    while parted * _STEP_MEMORIES < memories and len(states) * _STEP_MEMORIES < _LONGEST:
         states.append(advance(states[-1], wheel.columns(2), step_s))
+        parted += bool(np.abs(states[-1][:, 1] - states[-1][:, 0]).max() > PARTED)
     courses = np.stack(states, axis=2)
     times = path.times[-1] + step_s * np.arange(len(states))
     yield from ((times, courses[:, side]) for side in (0, 1))

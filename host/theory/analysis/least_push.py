@@ -28,9 +28,10 @@ MOMENTS, PHASES, DIRECTIONS, MORE = 1024, 16, 32, 8
 # MOST times the size of the potentials, or the speed, of the wheel that rolls.
 LEVELS, MOST = 16, 4.0
 # Around the best of the grid there are finer ones, with so many lines to either side, each with a
-# part of the spacing of the one before. Amplitudes are then sought to this part of themselves.
+# part of the spacing of the one before. The least amplitude so far is among those that are tried,
+# as a multiple of it, so that it cannot get lost. They are sought to a part of themselves.
 _LINES, _FINER, _ROUNDS, _WITHIN = 2, 4, 3, 1e-7
-_AROUND = np.linspace(0.5, 1.1, 40)
+_AROUND = np.linspace(0.5, 1.1, 37)
 # On the grid they are sought to this part of the greatest one.
 _COARSE = 1e-3
 
@@ -165,10 +166,11 @@ def _lowest(kind: PushKind, ways: Pushes, found: Pair, before: float) -> Least:
     """The least push from the finest grid, and from the least amplitude of the grid before."""
     best = int(found.above.argmin())
     moment, angle = float(ways.moments[best]), float(ways.angles[best])
-    # Without a parabola, where two folds of the edge meet, the least is known to the next value.
+    # Without a parabola, where two folds of the edge meet, the least is known to the next value, or
+    # to the distance of the amplitudes that were tried.
     heights = (found.below + found.above) / 2
     amplitude, next_one = np.partition(heights, 1)[:2].tolist()
-    error = next_one - amplitude
+    error = min(next_one - amplitude, before * float(_AROUND[1] - _AROUND[0]))
     later, turned = ways.moments - ways.moments[best], ways.angles - angle
     fitted = _vertex(later.astype(float), turned, heights)
     if fitted is not None:

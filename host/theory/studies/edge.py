@@ -44,8 +44,9 @@ __all__ = ["cells", "report", "simulate"]
 
 # Phases of the map, and how many of them are computed in one piece.
 PHASES, BAND = 32, 4
-# For how long the edge is followed, and both sides afterwards, in units of the wheel's memory.
-FOLLOWED, DEPARTED = 16.0, 10.0
+# For how long the edge is followed, and both sides once they have parted, in units of the wheel's
+# memory.
+FOLLOWED, DEPARTED = 16.0, 6.0
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[EdgeCell]:
