@@ -72,10 +72,12 @@ class Peer(object):
         return self.session.waits(now >= self._records_due)
 
     def events(self):
-        """What to wait for on the link, a mask of select.epoll: nothing while its turn is due."""
-        if self.due:
-            return 0
-        return (select.EPOLLIN if self.reads else 0) | (select.EPOLLOUT if self.out else 0)
+        """What to wait for on the link, a mask of select.epoll: what it sends while it may send.
+
+        Also while it waits for its turn to get records, since it may send a stop.
+        """
+        sends = self.out and not self.due
+        return (select.EPOLLIN if self.reads else 0) | (select.EPOLLOUT if sends else 0)
 
     def read(self, now):
         """Take in what has arrived.

@@ -198,7 +198,7 @@ class Server(object):
             ):
                 self._drop(peer)
             elif peer.due:
-                self._watch(peer)  # it has to wait: hear no more of it until then
+                self._watch(peer)  # if a frame waits, nothing more is heard until then
             elif peer.frame is not None or peer.out or peer.streaming:
                 self._turns.call(peer)
             if len(ready) > 1:

@@ -276,6 +276,25 @@ def test_a_stop_is_obeyed_before_the_next_tick_although_no_time_is_left(slow_des
     assert STATES[desk.records_from(tick)[0].state] == "stopped"
 
 
+def test_a_stop_of_who_waits_for_records_is_heard_although_it_has_just_beaten(slow_desk):
+    desk = slow_desk
+    watchers = [desk.connect(token=None, name=f"watcher {number}").greet() for number in range(9)]
+    host = desk.connect().greet()
+    host.ask("subscribe")
+    (robots_end,) = (peer for peer in desk.server._peers if peer.session.trusted)
+    desk.frame_s = 0.045
+    for watcher in watchers:
+        watcher.send(watcher.talk.request("status", {}, sealed=False)[1] * 30)
+    while not robots_end.due:
+        desk.run()
+    host.send(host.talk.beat())
+    desk.server._hear(desk.clock.now())
+    assert robots_end.due
+    host.send(STOP)
+    desk.server._hear(desk.clock.now())
+    assert STATES[desk.loop.safety.state] == "stopped"
+
+
 def test_many_watchers_share_the_turns_and_get_every_record(desk):
     """Sixty-three watch and one drives, and the robot sends to nine of them in each tick."""
     driver = desk.connect(name="driver").greet()
