@@ -55,19 +55,17 @@ def new_id():
 
 
 @lru_cache(maxsize=1)
-def _about(boot, seed, motor):
+def _about(boot, seed, motor, sources):
     """What every hello of this run of the program says, as JSON: bytes."""
     facts = {
         "protocol": wire.PROTOCOL,
         "software": __version__,
-        "sources": _SOURCES,
+        "sources": sources,
         "boot": boot,
         "seed": seed,
         "machine": _MACHINE,
         "motor": motor,
     }
-    if _HARDWARE_ID:
-        facts.update(hardware_id=_HARDWARE_ID)
     return wire.dump(facts)
 
 
@@ -274,7 +272,9 @@ class Session(object):
             "controller_held_s": lease.held_s(now),
             "taken_over_by": lease.taken_over_by(client),
         }
-        about = _about(self._boot, loop.seed, loop.motor)
+        if _HARDWARE_ID:
+            answer["hardware_id"] = _HARDWARE_ID
+        about = _about(self._boot, loop.seed, loop.motor, _SOURCES)
         return wire.encode(wire.HELLO, wire.join(about, wire.dump(answer)))
 
     def _authenticate(self, message):
