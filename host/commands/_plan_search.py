@@ -57,9 +57,10 @@ def search_kicks(goal: str, wanted: str, params: Params, motor: Constants) -> di
 
 
 def _as_data(found: Found, safety: Safety, wheels: RollingWheels) -> dict[str, Any]:
-    window = None
+    window, phase_off_rad = None, 0.0
     if found.window is not None:
         window = [found.window.first_rad, found.window.first_rad + found.window.width_rad]
+        phase_off_rad = found.window.width_rad / 2
     return {
         "kick": found.request,
         "length_s": found.request["ticks"] * wheels.params.tick_s,
@@ -67,6 +68,7 @@ def _as_data(found: Found, safety: Safety, wheels: RollingWheels) -> dict[str, A
         "window_rad": window,
         "in_window": _odds(safety.in_window),
         "at_any_phase": _odds(safety.at_any_phase),
+        "phase_may_be_off_rad": phase_off_rad,
         "may_be_off": {name: list(ends) for name, ends in safety.margins.items()},
     }
 
@@ -109,10 +111,11 @@ def _blocks(rows: list[dict[str, Any]], period_rad: float) -> Iterator[str]:
             yield f"    reversed {_share(odds)}; sure at no phase"
             continue
         first, last = row["window_rad"]
-        timed = ""
+        timed, phase = "", "any phase"
         if last - first >= period_rad:
             yield f"    at any phase: reversed {_share(odds)}"
         else:
+            phase = f"phase ±{degrees(row['phase_may_be_off_rad']):.0f}°"
             timed = f" --wheel left --window {degrees(first):.0f},{degrees(last):.0f}"
             yield (
                 f"    at a phase from {degrees(first):.0f}° to {degrees(last):.0f}°: reversed"
@@ -122,7 +125,7 @@ def _blocks(rows: list[dict[str, Any]], period_rad: float) -> Iterator[str]:
             f"{_NAMES.get(name, name)} -{low:.0%} to +{high:.0%}"
             for name, (low, high) in row["may_be_off"].items()
         )
-        yield f"    still does with {ends}"
+        yield f"    still does with {phase}, {ends}"
         yield f"    kickctl kick{_as_options(row['kick'])}{timed}"
 
 

@@ -205,7 +205,7 @@ def test_a_search_ranks_pulses_beside_the_papers_kicks_with_margins_and_odds(kic
     assert (status, result["search"], result["period_rad"]) == (0, "shortest", pi / 2)
     (best,) = result["found"]
     assert best["kick"] == {"mode": "pulse", "param": "beta", "value": 1.0, "ticks": 3}
-    assert best["window_rad"] == [0.0, pi / 2]
+    assert (best["window_rad"], best["phase_may_be_off_rad"]) == ([0.0, pi / 2], pi / 4)
     membrane, position, phase = result["paper"]
     assert [row["kick"]["mode"] for row in result["paper"]] == [MEMBRANE, POSITION, PHASE]
     # The paper's inverted positions are this pulse, so all about them is the same.
@@ -216,6 +216,7 @@ def test_a_search_ranks_pulses_beside_the_papers_kicks_with_margins_and_odds(kic
     assert best["may_be_off"]["battery_v"][0] == 0.0
     words = "\n".join(sentences(result, "backward", Params()))
     assert "pulse of beta to 1, 3 ticks (90 ms), effort 0.09 s" in words
+    assert "still does with any phase, k -" in words
     assert "kickctl kick --mode pulse --param beta --value 1 --ticks 3\n" in words
 
 

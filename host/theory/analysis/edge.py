@@ -38,8 +38,8 @@ class Pair(NamedTuple):
     """Two states on one ray, (4, rays), on either side of the edge, and the amplitudes of both.
 
     Attributes:
-        below: the greater amplitude that is known not to reverse, (rays,).
-        above: the least amplitude that is known to reverse, (rays,); infinite where none does.
+        below: the greatest amplitude that was tried below that, (rays,); it does not reverse.
+        above: the least amplitude that reverses, (rays,); infinite where none does.
     """
 
     below: Array
