@@ -11,6 +11,7 @@ from host.lab.station import STOP, Answer, Station
 from host.lab.stopper import LAB
 from host.link.sim import SimLink
 from robot.commands import execute
+from robot.wire import load
 
 
 class SteppedStation(Station):
@@ -38,7 +39,7 @@ class SteppedStation(Station):
                 self._link.run_tick()
                 self._robot.pump(0.0)
             # To ask over the link would take a tick.
-            self._status = dict(execute(self._link.loop, None, {"do": "status"}, sealed=False))
+            self._status = load(execute(self._link.loop, None, {"do": "status"}, sealed=False))
         self._wake()
 
     def drives_here(self) -> bool:
