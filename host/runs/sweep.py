@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
+from math import prod
 from typing import Any, TypedDict
 
 from host.errors import WrongUse
@@ -13,6 +14,8 @@ from host.runs.registry import Entry
 
 # A figure has two directions.
 MOST_SWEPT = 2
+# More points are a mistake: a table of them is too long to use.
+MOST_POINTS = 100_000
 # More values than these are not listed in words.
 MOST_SHOWN = 8
 
@@ -68,6 +71,11 @@ def axes(entry: Entry, options: Options) -> list[Axis]:
             f"{', '.join(axis['name'] for axis in found)} have several values each, and a sweep"
             f" goes over {MOST_SWEPT} options at most",
             "give one value to the others",
+        )
+    if (count := prod(len(axis["values"]) for axis in found)) > MOST_POINTS:
+        raise WrongUse(
+            f"a sweep over {in_all(found)} has {count} points",
+            f"choose fewer values: at most {MOST_POINTS} points",
         )
     return found
 
@@ -149,6 +157,8 @@ def _single(numbers: Any, name: str = "") -> Iterator[Answer]:
     """The numbers and words in dictionaries, with the keys that lead to them."""
     if isinstance(numbers, dict):
         for key, value in numbers.items():
+            if key == "in_words":
+                continue  # sentences for people, of the same numbers
             yield from _single(value, f"{name}: {key}" if name else str(key))
     elif isinstance(numbers, int | float | str):
         yield Answer(name, numbers)

@@ -2,15 +2,21 @@
 
 import csv
 import json
+import pickle
 from pathlib import Path
 
 import pytest
 
 from host.errors import WrongUse
 from host.figures import sweep as figure
+from host.perform.catalogue import find
 from host.perform.run import perform
+from host.perform.sweep import Sweep
+from host.runs.answers import Answer
+from host.runs.claims import Claim
 from host.runs.contract import Findings, Part, Setting
-from host.runs.registry import Option
+from host.runs.registry import Option, complete_options
+from host.runs.sweep import axes, quantities
 from host.theory.studies import hopf
 
 
@@ -115,6 +121,7 @@ def test_a_sweep_goes_on_in_the_middle_of_a_cell(tmp_path, monkeypatch):
         ({"tau": [0.5, "x"]}, "tau cannot be 'x'"),
         ({"f": [0.0], "a": [1.0, 2.0]}, "no Hopf"),
         ({"tau": [1, 2], "a": [1, 2], "f": [1, 2]}, "over 2 options at most"),
+        ({"tau": range(1, 400), "I": range(1, 400)}, "has 159201 points"),
     ],
 )
 def test_a_sweep_that_makes_no_sense_is_refused_before_it_begins(tmp_path, options, words):
@@ -136,6 +143,37 @@ def test_a_sweep_that_makes_no_sense_is_refused_before_it_begins(tmp_path, optio
 )
 def test_the_unit_of_an_option_is_that_of_its_help(doc, unit):
     assert Option("x", 1.0, 0.0, 1.0, doc).unit == unit
+
+
+def test_a_run_without_answers_gives_its_claims_and_single_numbers():
+    claim = Claim("R0", "is so", "1", 0.5, "Hz", None, holds=None)
+    numbers = {"both": {"p": 0.25, "list": [1], "none": None}, "kind": "a", "in_words": "a line"}
+    found = quantities(Findings([claim], numbers), {})
+    assert [(one["quantity"], one["value"], one["word"], one["unit"]) for one in found] == [
+        ("R0", 0.5, None, "Hz"),
+        ("both: p", 0.25, None, ""),
+        ("kind", None, "a", ""),
+    ]
+
+
+def test_names_of_answers_are_the_same_at_all_points():
+    answers = [
+        Answer("phase at k = 2", "rest"),
+        Answer("at 0", "focus"),
+        *[Answer("  rate", 1.0)] * 2,
+    ]
+    found = quantities(Findings([], {}, answers=answers), {"k": 2.0})
+    assert [one["quantity"] for one in found] == ["phase", "at 0", "at 0: rate", "at 0: rate (2)"]
+
+
+def test_another_process_computes_the_same(tmp_path):
+    entry = find("hopf").entry
+    options = complete_options("hopf", entry, {"tau": [0.5, 1.0]})
+    sweep, setting = Sweep("hopf", axes(entry, options)), Setting(1, options)
+    cell = sweep.cells(options, batch=True)[3]
+    there = pickle.loads(pickle.dumps(sweep.simulate))  # noqa: S301 - our own
+    assert there(cell, setting) == sweep.simulate(cell, setting)
+    assert there(cell, setting)[0]["row"]["tau"] == 1.0
 
 
 def findings(swept):
