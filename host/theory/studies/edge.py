@@ -39,6 +39,7 @@ from host.theory.studies.edge_rows import (
     Role,
     Threshold,
 )
+from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -52,8 +53,9 @@ FOLLOWED, DEPARTED = 16.0, 6.0
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[EdgeCell]:
     """For each kind of push: bands of the map of least pushes, and the least of all.
 
-    Raises WrongUse if the wheel does not roll, or takes too many steps to settle.
+    Raises WrongUse if the wheel has one rod, does not roll, or takes too many steps to settle.
     """
+    require_two_rods(options)
     wheel = wheel_of(options)
     require_settling(wheel)
     if rolling(wheel) is None:

@@ -262,7 +262,7 @@ TABLE = {
     "edge": Entry(
         "the least push of the potentials or the speed that reverses a rolling wheel, over phase"
         " and direction, and the edge state between rolling forward and backward",
-        (A, TAU, K._replace(default=8.0), F, I),
+        (A, TAU, K._replace(default=8.0), F, I, *VARIANTS),
     ),
     "escape": Entry(
         "how long noise takes to drive a wheel from its attractor: mean times with 95 % intervals"

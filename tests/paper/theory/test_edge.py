@@ -119,7 +119,7 @@ def test_the_study_answers_with_both_pushes_and_draws_them(cycle, least, path, m
     monkeypatch.setattr(study, "rolling", lambda wheel: cycle)
     monkeypatch.setattr(study, "least", lambda kind, *_: push if kind == "speed" else least)
     monkeypatch.setattr(study, "track", lambda *_: path)
-    setting = Setting(0, {"a": 4.0, "tau": 0.25, "k": 8.0, "f": 0.5, "I": 0.05})
+    setting = Setting(0, {"a": 4.0, "tau": 0.25, "k": 8.0, "f": 0.5, "I": 0.05, "rods": 2})
     rows = rows_of(study, setting)
     findings = study.report(rows, setting)
     potentials, speed = findings.numbers["pushes"]
