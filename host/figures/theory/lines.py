@@ -76,14 +76,13 @@ def draw(rows: list[LinesRow], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**{**SIZE, "figsize": (12.5, 7.0)})
         plane, close = figure.subplots(1, 2)
-        _draw_phases(plane, rows)
+        x_to, y_to = _draw_phases(plane, rows)
         for axes, x_of in ((plane, _x), (close, above)):
             _draw_lines(axes, rows, x_of)
             _draw_specials(axes, rows, x_of)
             axes.set_ylabel(_LABELS[letters[1]])
         _draw_chaos(plane, chaos_edges_of(rows))
-        window = [max(row[axis] for row in phases_of(rows)) for axis in ("x", "y")]
-        plane.set(xlabel=_LABELS[letters[0]], xlim=(0.0, window[0]), ylim=(0.0, window[1]))
+        plane.set(xlabel=_LABELS[letters[0]], xlim=(0.0, x_to), ylim=(0.0, y_to))
         near = [above(row) for row in points_of(rows) if row["type"] in ("Hopf", "merging", "fold")]
         close.set(
             xlabel="$k$, relative to the Hopf line",
@@ -99,15 +98,16 @@ def _x(row: PointRow | CyclePointRow | SpecialRow) -> float:
     return row["x"]
 
 
-def _draw_phases(axes: Axes, rows: list[LinesRow]) -> None:
-    """Each phase in its grey."""
+def _draw_phases(axes: Axes, rows: list[LinesRow]) -> tuple[float, float]:
+    """Each phase in its grey. Returns the greatest x and y."""
     own = phases_of(rows)
     xs, ys = np.unique([row["x"] for row in own]), np.unique([row["y"] for row in own])
     numbers = np.array([PHASES.index(row["phase"]) for row in own]).reshape(len(ys), len(xs))
+    x_to, y_to = (float(values[-1] + values[0]) for values in (xs, ys))
     axes.imshow(
         numbers,
         origin="lower",
-        extent=(0.0, float(xs[-1] + xs[0]), 0.0, float(ys[-1] + ys[0])),
+        extent=(0.0, x_to, 0.0, y_to),
         aspect="auto",
         cmap=ListedColormap([_GREYS[name] for name in PHASES]),
         norm=BoundaryNorm(np.arange(len(PHASES) + 1) - 0.5, len(PHASES)),
@@ -117,6 +117,7 @@ def _draw_phases(axes: Axes, rows: list[LinesRow]) -> None:
         if PHASES.index(name) in numbers:
             style: Any = {"color": _GREYS[name], "markeredgecolor": "black", "markersize": 12}
             axes.plot([], [], "s", label=f"{name}, from rest", **style)
+    return x_to, y_to
 
 
 def _draw_chaos(axes: Axes, edges: list[ChaosEdgeRow]) -> None:

@@ -32,7 +32,7 @@ Mark = Literal["cusp", "crosses Hopf", "resonance 1:3", "resonance 1:4"]
 LineEnd = Literal["range", "Hopf line", "merging", "resonance 1:1", "resonance 1:2", "lost", "long"]
 # The step, relative to an unknown's scale, of the derivatives of the function that vanishes.
 _DIFFERENCE = 1e-8
-_SHORTEST_STEP, _LONGEST_STEP, _MOST_POINTS = 1e-3, 0.1, 400
+_SHORTEST_STEP, _LONGEST_STEP, _MOST_POINTS = 2e-3, 0.1, 60
 # A cycle whose reduced map takes the longest of these times of the saddle's growth is within about
 # 1e-5 (relative) of the merging, and its line ends there. Closer to it, shooting cannot follow it;
 # a line that is lost beyond the shorter of these times has come to the merging.

@@ -51,7 +51,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
     plane = plane_of(options)
     x_from, x_to, y_from, y_to = plane.window
     for x, y in ((x_from, y_from), (x_from, y_to), (x_to, y_from), (x_to, y_to)):
-        wheel = plane.at(x, y).checked()
+        wheel = plane.at(x, y)
         hopf(wheel)
         fixpoint(0.0, wheel)
         steps_for(1.0, wheel)

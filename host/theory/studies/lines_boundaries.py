@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from host.errors import NotDone
+from host.errors import NotDone, WrongUse
 from host.theory.analysis.boundaries import Boundary
 from host.theory.analysis.hopf import above_hopf, hopf
 from host.theory.analysis.merging import NEAR, passes, saddle
@@ -55,14 +55,25 @@ def _line(part: BoundaryPart, plane: Plane) -> _Line:
             lambda wheel: 2 * pi / hopf(wheel).omega,
         )
     return _Line(
-        boundary(passes),
-        boundary(lambda wheel: passes(wheel, _FARTHER * NEAR, _FINER * FINENESS)),
+        boundary(rolls),
+        boundary(lambda wheel: rolls(wheel, _FARTHER * NEAR, _FINER * FINENESS)),
         {
             "neutral saddle": _saddle_quantity,
             "crosses Hopf": above_hopf,
         },
         lambda _: None,
     )
+
+
+def rolls(wheel: Wheel, near: float = NEAR, fineness: float = FINENESS) -> bool:
+    """Whether a wheel passes the next saddle (see `passes`).
+
+    One that takes too long to leave its saddle to be followed, as its neurons hardly act, does not.
+    """
+    try:
+        return passes(wheel, near, fineness)
+    except WrongUse:
+        return False
 
 
 def _saddle_quantity(wheel: Wheel) -> float:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
-from host.errors import NotDone
+from host.errors import NotDone, WrongUse
 from host.theory.analysis.bifurcations import BifurcationType
 from host.theory.analysis.branches import rotations, swings
-from host.theory.analysis.cycle_lines import CycleLine, Traced, joined, trace
+from host.theory.analysis.continuation import Point
+from host.theory.analysis.cycle_lines import CycleLine, Traced, Window, joined, trace
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION
 from host.theory.analysis.hopf import above_hopf
+from host.theory.analysis.merging import passes
 from host.theory.model.wheel import Array, Wheel
 from host.theory.studies.lines_boundaries import relative_gap
 from host.theory.studies.lines_plane import Plane
@@ -22,6 +25,8 @@ from host.theory.studies.lines_rows import CyclePart, Measured
 
 # A line that comes back to a crossing of an edge is the same as the one that begins there.
 _SAME = 1e-4
+# Values of x with which a branch may begin.
+_BEGINNINGS = 16
 # How far (relative) from a line the merging is looked for.
 _NEAREST, _FARTHEST = 1e-8, 1e-2
 
@@ -42,9 +47,13 @@ def _crossings(
     Neighbouring bands share them.
     """
     find = swings if part == "FB" else rotations
+    for least in np.geomspace(x_from, x_to, _BEGINNINGS, endpoint=False).tolist():
+        with suppress(WrongUse):  # wheels are too slow there to be followed
+            passes(wheel._replace(**{axes[0]: least}))
+            break
     try:
-        branches = find(wheel, axes[0], x_from, x_to)
-    except NotDone:  # no wheel goes on rolling
+        branches = find(wheel, axes[0], least, x_to)
+    except (NotDone, WrongUse):  # no wheel goes on rolling, or none can be followed
         return []
     y = getattr(wheel, axes[1])
     return [
@@ -69,12 +78,20 @@ def cycle_rows(part: CyclePart, plane: Plane) -> list[Measured]:
             line = CycleLine(wheel, family, crossing.type, axes, scales)
             if joined(line, crossing.unknowns) or any(_same(crossing, one) for one in reached):
                 continue
-            first = line.at(crossing.unknowns)
-            first = first._replace(tangent=first.tangent * np.sign(direction * first.tangent[-1]))
-            traced = trace(line, first, window)
+            traced = _traced(line, crossing, direction, window)
             reached.append(_Crossing(crossing.type, traced.points[-1].unknowns))
             rows += _rows_of(line, plane, traced, next(pieces))
     return rows
+
+
+def _traced(line: CycleLine, crossing: _Crossing, direction: float, window: Window) -> Traced:
+    """The line from a crossing on, up or down."""
+    try:
+        first = line.at(crossing.unknowns)
+    except NotDone:
+        return Traced([Point(crossing.unknowns, np.zeros(6))], [], "lost")
+    tangent = first.tangent * np.sign(direction * first.tangent[-1])
+    return trace(line, first._replace(tangent=tangent), window)
 
 
 def _same(one: _Crossing, other: _Crossing) -> bool:

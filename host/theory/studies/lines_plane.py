@@ -9,8 +9,8 @@ import numpy as np
 from host.theory.analysis.cycle_lines import Window
 from host.theory.model.wheel import Array, Wheel, wheel_of
 
-# The plane begins at these parts of its greatest x and y: lines run to infinity towards 0.
-X_FROM, Y_FROM = 1e-3, 1e-2
+# The plane begins at this part of its greatest x and y: lines run to infinity towards 0.
+_FROM = 1e-2
 # The greatest value of an axis, unless it is given: for k and tau as in the phase diagram, for
 # others this many times the wheel's own value.
 _MOST, _TIMES = {"k": 20.0, "tau": 1.5}, 4.0
@@ -57,5 +57,5 @@ def plane_of(options: dict[str, Any]) -> Plane:
         return float(options[f"{axis}_to"] or default)
 
     x_to, y_to = most("x"), most("y")
-    window = Window(X_FROM * x_to, x_to, Y_FROM * y_to, y_to)
+    window = Window(_FROM * x_to, x_to, _FROM * y_to, y_to)
     return Plane(wheel, options["x"], options["y"], window)

@@ -137,8 +137,8 @@ TABLE = {
     "lines": Entry(
         "two-parameter diagram: Hopf and merging lines, folds, pitchforks and Neimark-Sacker lines"
         " in the plane of two constants, with their special points, and the edge of lasting chaos."
-        " Takes one to two minutes. The constants on the axes begin"
-        " at a thousandth of the greatest x and a hundredth of the greatest y",
+        " Takes one to two minutes. The axes begin at a hundredth of their"
+        " greatest values",
         (
             A,
             TAU,

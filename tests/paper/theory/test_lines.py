@@ -14,7 +14,7 @@ from host.theory.analysis.cycle_lines import Window
 from host.theory.analysis.hopf import above_hopf
 from host.theory.analysis.transients import lives
 from host.theory.model.wheel import Wheel
-from host.theory.studies import lines
+from host.theory.studies import lines, lines_boundaries
 from host.theory.studies.lines_boundaries import boundary_rows
 from host.theory.studies.lines_cycles import cycle_rows
 from host.theory.studies.lines_plane import Plane, plane_of
@@ -38,11 +38,24 @@ def at_edge(rows, type_, y):
     ]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_values():
+    """The planes of these tests are narrow."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lines_boundaries, "_TRIED", 12)
+        yield
+
+
 @pytest.fixture(scope="module")
 def cycles():
-    """The lines of cycles between tau = 0.82 and 0.83 s."""
-    plane = Plane(PAPER, "k", "tau", Window(0.5, 7.0, 0.82, 0.83))
-    return {part: cycle_rows(part, plane) for part in ("FB", "LLM")}
+    """The lines of cycles between tau = 0.82 and 0.83 s, close to the merging and far from it."""
+    near, far = (
+        Plane(PAPER, "k", "tau", Window(*ks, 0.82, 0.83)) for ks in ((0.55, 0.65), (5.7, 6.1))
+    )
+    return {
+        "FB": cycle_rows("FB", near),
+        "LLM": cycle_rows("LLM", near) + cycle_rows("LLM", far),
+    }
 
 
 @pytest.mark.parametrize(
@@ -114,7 +127,7 @@ def test_the_saddle_of_the_neutral_point_has_two_opposite_leading_eigenvalues():
 
 
 def test_the_folds_of_swinging_end_where_cycles_cease_to_be_born_stable():
-    plane = Plane(PAPER, "k", "tau", Window(0.3, 0.4, 1.40, 1.45))
+    plane = Plane(PAPER, "k", "tau", Window(0.33, 0.35, 1.42, 1.44))
     (bautin,) = [row for row in boundary_rows("Hopf", plane) if row["kind"] == "special"]
     assert bautin["y"] == pytest.approx(1.43435, abs=5e-6)
     rows = cycle_rows("FB", plane)
@@ -128,22 +141,22 @@ def test_the_folds_of_swinging_end_where_cycles_cease_to_be_born_stable():
 
 @pytest.fixture(scope="module")
 def edges():
-    return chaos_edges(PAPER._replace(tau=1.0), "k", 8.0, np.random.default_rng(1))
+    return chaos_edges(PAPER._replace(tau=1.0), "k", 6.0, np.random.default_rng(1))
 
 
 def test_below_the_edge_of_chaos_wheels_stop_turning_round_and_above_it_they_do_not(edges):
     (edge,) = edges
     assert edge.few < edge.value < edge.most
     assert edge.most - edge.few < 0.1 * edge.value
-    ks = np.repeat([0.95 * edge.few, 1.05 * edge.most], 8)
+    ks = np.repeat([0.9 * edge.few, 1.1 * edge.most], 8)
     parameters = PAPER._replace(tau=1.0).columns(16, k=ks)
-    ended = lives(random_starts(16, np.random.default_rng(2)), parameters, 600.0, 1.0).ended
+    ended = lives(random_starts(16, np.random.default_rng(2)), parameters, 400.0, 1.0).ended
     assert ended[:8].all()
     assert not ended[8:].all()
 
 
 def test_there_is_no_edge_where_there_is_no_chaos():
-    assert chaos_edges(PAPER, "k", 8.0, np.random.default_rng(1)) == []
+    assert chaos_edges(PAPER, "k", 4.0, np.random.default_rng(1)) == []
 
 
 def test_the_lines_are_reported_and_drawn(cycles, edges, tmp_path):
