@@ -20,6 +20,8 @@ from host.theory.model.wheel import Array
 # The boundary is first looked for this far aside of the predicted point, relative to the step, and
 # at most as far as the step is long.
 _ASIDE = 1 / 64
+# At first its direction is not known, and it is looked for as many steps aside.
+_FIRST_REACH = 64.0
 # A boundary that turns too fast for steps of this part of the longest is lost.
 _SHORTEST = 1e-3
 
@@ -95,18 +97,19 @@ class Boundary(NamedTuple):
             NotDone: The boundary is lost.
         """
         yield first
-        point, step = first, _SHORTEST * longest
+        point, step, reach = first, _SHORTEST * longest, _FIRST_REACH
         while True:
             direction = direction / np.linalg.norm(direction)
             try:
-                following = self.beside(point + step * direction, direction, _ASIDE * step, step)
+                aim = point + step * direction
+                following = self.beside(aim, direction, _ASIDE * step, reach * step)
             except NotDone:
                 if step <= _SHORTEST * longest:
                     raise
                 step = max(step / 4, _SHORTEST * longest)
                 continue
             yield following
-            direction, point = following - point, following
+            direction, point, reach = following - point, following, 1.0
             step = min(longest, 4 * step)
 
     def where(self, point: Array, following: Array, vanishing: Callable[[Array], float]) -> Array:

@@ -86,13 +86,15 @@ def boundary_rows(part: BoundaryPart, plane: Plane) -> list[Measured]:
     """The pieces of a line in a plane, and its special points."""
     line = _line(part, plane)
     rows: list[Measured] = []
-    for piece, points in enumerate(_pieces(line.boundary, plane)):
+    for piece, (points, whole) in enumerate(_pieces(line.boundary, plane)):
         for point in points:
             x, y = np.exp(point).tolist()
             period_s = line.period_s(plane.at(x, y))
             rows.append(
                 {"kind": "point", "type": part, "piece": piece, "x": x, "y": y, "period": period_s}
             )
+        if not whole:
+            rows.append({"kind": "end", "type": "lost", "on": part, "x": x, "y": y, "gap": None})
         for point, following in pairwise(points):
             rows += _special_rows(part, line, plane, point, following)
     return rows
@@ -118,8 +120,11 @@ def _special_rows(
         yield {"kind": "special", "type": special, "on": part, "x": x, "y": y, "off_by": off_by}
 
 
-def _pieces(boundary: Boundary, plane: Plane) -> Iterator[list[Array]]:
-    """The pieces of a boundary, from the upper edge down, then from the lower edge up."""
+def _pieces(boundary: Boundary, plane: Plane) -> Iterator[tuple[list[Array], bool]]:
+    """The pieces of a boundary, from the upper edge down, then from the lower edge up.
+
+    With each, whether it goes as far as an edge.
+    """
     x_from, x_to, y_from, y_to = np.log(plane.window).tolist()
 
     def inside(point: Array) -> float:
@@ -133,15 +138,16 @@ def _pieces(boundary: Boundary, plane: Plane) -> Iterator[list[Array]]:
         for first in boundary.crossings(ends, _TRIED):
             if any(np.abs(first - end).max() < _SAME for end in reached):
                 continue
-            points: list[Array] = []
+            points, whole = list[Array](), False
             with suppress(NotDone):
                 for point in boundary.follow(first, np.array([0.0, direction]), _STEP):
                     if points and inside(point) < 0.0:
                         points.append(boundary.where(points[-1], point, inside))
+                        whole = True
                         break
                     points.append(point)
             reached.append(points[-1])
-            yield points
+            yield points, whole
 
 
 def relative_gap(plane: Plane, x: float, y: float, least: float, most: float) -> float | None:

@@ -193,6 +193,12 @@ def test_a_boundary_is_followed_around_a_fold_and_lost_where_it_ends():
     assert max(abs(np.linalg.norm(point) - 1.0) for point in seen) < 1e-13
     crossed = list(circle.crossings((np.array([-2.0, 0.5]), np.array([2.0, 0.5])), 20))
     assert crossed[0] == pytest.approx([-np.sqrt(0.75), 0.5])
+    # A boundary that runs almost across the direction in which it is followed at first.
+    slanted = Boundary(lambda point: bool(point[0] + 5 * point[1] < 0.0))
+    _, following = zip(
+        range(2), slanted.follow(np.zeros(2), np.array([0.0, -1.0]), 0.1), strict=False
+    )
+    assert following[1][0] == pytest.approx(-5 * following[1][1], rel=1e-9)
     half = Boundary(lambda point: bool(point[0] < 0.0 and point[1] < 0.5))
     with pytest.raises(NotDone, match="boundary"):
         for _ in half.follow(np.zeros(2), np.array([0.0, 1.0]), 0.1):
