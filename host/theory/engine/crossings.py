@@ -7,18 +7,18 @@ to the same end).
 
 from __future__ import annotations
 
+from functools import cache
 from math import cos, sin
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from host.errors import WrongUse
 from host.theory.engine.ensemble import rate_per_s, require_loose
 from host.theory.engine.flow import FINENESS
 from host.theory.engine.runge_kutta import STAGES, TABLEAU
-from host.theory.model.laws import PAPER, law_of
+from host.theory.model.laws import Law, law_of, under
 from host.theory.model.wheel import OMEGA, PHI, Array, rates
-from sim_motor.compiled import compiled, jit, parallel_jit, prange
+from sim_motor.compiled import jit, parallel_jit, prange
 
 # phi: a wheel comes to a multiple of a quarter turn. omega: it turns round.
 Surface = Literal["phi", "omega"]
@@ -27,10 +27,7 @@ EQUATIONS: dict[Surface, str] = {"phi": "sin(2 phi) = 0", "omega": "omega = 0"}
 # many steps, some of which bisect.
 _SAME, _MOST = 1e-14, 60
 
-_rates: Any = compiled(rates)
 
-
-@jit
 def _step(at: Array, constants: Array, step_s: float, after: Array) -> None:
     """One step from the state `at`, (4,), into `after`."""
     stages = np.empty((STAGES, 4))
@@ -42,7 +39,7 @@ def _step(at: Array, constants: Array, step_s: float, after: Array) -> None:
             stages[stage - 1, 1],
             stages[stage - 1, 2],
             stages[stage - 1, 3],
-        ) = _rates(
+        ) = rates(
             after[0],
             after[1],
             after[2],
@@ -53,6 +50,7 @@ def _step(at: Array, constants: Array, step_s: float, after: Array) -> None:
             constants[3],
             constants[4],
             constants[5],
+            constants[6],
         )
         for row in range(4):
             total = 0.0
@@ -61,12 +59,11 @@ def _step(at: Array, constants: Array, step_s: float, after: Array) -> None:
             after[row] = at[row] + step_s * total
 
 
-@jit
 def _height(state: Array, constants: Array, turns: bool) -> tuple[float, float]:
     """How far a state is from the surface, and the rate of that."""
     if not turns:
         return sin(2.0 * state[PHI]), 2.0 * cos(2.0 * state[PHI]) * state[OMEGA]
-    faster = _rates(
+    faster = rates(
         state[0],
         state[1],
         state[2],
@@ -77,11 +74,11 @@ def _height(state: Array, constants: Array, turns: bool) -> tuple[float, float]:
         constants[3],
         constants[4],
         constants[5],
+        constants[6],
     )[OMEGA]
     return state[OMEGA], faster
 
 
-@jit
 def _moment(
     at: Array, constants: Array, turns: bool, low: float, high: float, above: bool, there: Array
 ) -> float:
@@ -107,7 +104,6 @@ def _moment(
     return step_s
 
 
-@jit
 def _nearest(first: float, rate: float, last: float, last_rate: float, step_s: float) -> Any:
     """When a height that shrinks and grows again is least, by Hermite's cubic; 0 if it does not."""
     if rate * first >= 0.0 or last_rate * last <= 0.0:
@@ -162,7 +158,14 @@ def _follow_all(
             states[row, wheel] = at[row]
 
 
-_follow = parallel_jit(_follow_all)
+@cache
+def _following(law: Law) -> Any:
+    """`_follow_all` compiled, with the equations of a law."""
+
+    def finish(function: Any) -> Any:
+        return (parallel_jit if function.__name__ == _follow_all.__name__ else jit)(function)
+
+    return under(law, _follow_all, {}, finish)
 
 
 class Crossings(NamedTuple):
@@ -203,20 +206,15 @@ def crossings(
         The crossings.
 
     Raises:
-        WrongUse: A wheel is too stiff to be followed, or has other equations than the paper's.
+        WrongUse: A wheel is too stiff to be followed.
     """
-    if law_of(parameters) != PAPER:
-        raise WrongUse(
-            "crossings are computed for the paper's equations only",
-            "give two rods, no bound, and no functions of your own",
-        )
     require_loose(parameters, seconds * fineness)
     wheels = states.shape[1]
     counts = np.maximum(1, np.ceil(seconds * fineness * rate_per_s(parameters))).astype(np.int64)
     ended = np.ascontiguousarray(states, dtype=np.float64).copy()
     times, found = np.empty((wheels, most)), np.empty((wheels, most, 4))
     seen = np.zeros(wheels, dtype=np.int64)
-    _follow(
+    _following(law_of(parameters))(
         ended,
         np.ascontiguousarray(parameters),
         seconds / counts,

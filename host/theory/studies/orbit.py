@@ -20,6 +20,7 @@ from host.theory.studies.orbit_report import report
 from host.theory.studies.orbit_rows import WAYS, OrbitCell, OrbitPoint, Way
 from host.theory.studies.section_pieces import Settled, follow_wheels, motions_of, swing_s
 from host.theory.studies.section_rows import MotionColumns
+from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -44,6 +45,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[OrbitCell]:
 
     Raises WrongUse if there is no range, or wheels in it do not swing, or are too fast for long.
     """
+    require_two_rods(options)
     values = values_of(options)
     for value in values[[0, -1]].tolist():
         wheel = wheel_of({**options, options["over"]: value})

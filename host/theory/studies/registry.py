@@ -212,6 +212,7 @@ TABLE = {
                 1e4,
                 "how long to follow each of eight wheels after it has settled, s",
             ),
+            *VARIANTS,
         ),
     ),
     "orbit": Entry(
@@ -243,6 +244,7 @@ TABLE = {
                 ),
             ),
             Option("values", 240, 2, 4000, "number of values of the constant"),
+            *VARIANTS,
         ),
     ),
     "basins": Entry(

@@ -29,6 +29,7 @@ from host.theory.studies.section_rows import (
     MotionColumns,
     SectionCell,
 )
+from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
@@ -47,6 +48,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[SectionCell]:
 
     Raises WrongUse if wheels do not swing, or are too fast for long.
     """
+    require_two_rods(options)
     wheel = wheel_of(options)
     require_slow(wheel)
     swing_s(wheel)

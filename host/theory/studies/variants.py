@@ -13,6 +13,6 @@ def require_two_rods(options: Mapping[str, Any]) -> None:
     if options["rods"] == 1:
         raise WrongUse(
             "this study looks at a quarter turn, which repeats itself with two rods only",
-            "leave --rods out; fixpoints, hopf, phase-diagram, lyapunov and lyapunov-plane take"
-            " one rod",
+            "leave --rods out; fixpoints, hopf, phase-diagram, lyapunov, lyapunov-plane and escape"
+            " take one rod",
         )

@@ -7,10 +7,12 @@ import pytest
 
 from host.figures.theory.edge import draw
 from host.runs.contract import Setting
+from host.runs.registry import complete_options
 from host.theory.analysis import edge, least_push
 from host.theory.engine.kicked import memory_s
 from host.theory.model.wheel import PHI, Wheel
 from host.theory.studies import edge as study
+from host.theory.studies.registry import TABLE
 from tests.paper.theory import independent
 from tests.paper.theory.table import rows_of
 
@@ -119,7 +121,7 @@ def test_the_study_answers_with_both_pushes_and_draws_them(cycle, least, path, m
     monkeypatch.setattr(study, "rolling", lambda wheel: cycle)
     monkeypatch.setattr(study, "least", lambda kind, *_: push if kind == "speed" else least)
     monkeypatch.setattr(study, "track", lambda *_: path)
-    setting = Setting(0, {"a": 4.0, "tau": 0.25, "k": 8.0, "f": 0.5, "I": 0.05, "rods": 2})
+    setting = Setting(0, complete_options("edge", TABLE["edge"], {}))
     rows = rows_of(study, setting)
     findings = study.report(rows, setting)
     potentials, speed = findings.numbers["pushes"]

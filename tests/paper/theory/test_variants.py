@@ -19,6 +19,7 @@ from host.theory.analysis.outcomes import settle_and_classify, starting_states
 from host.theory.analysis.tangent import growth, smooth_mean
 from host.theory.analysis.trajectories import trajectory
 from host.theory.engine import sampled
+from host.theory.engine.crossings import crossings
 from host.theory.engine.ensemble import advance
 from host.theory.engine.kicked import Continuous, seen_in
 from host.theory.engine.sampled import Clock
@@ -254,3 +255,15 @@ def test_what_a_law_cannot_do_is_refused_before_work_begins(papers):
     }.items():
         with pytest.raises(WrongUse, match="quarter turn"):
             study.cells(complete_options(name, TABLE[name], {"rods": 1}))
+
+
+def test_crossings_of_a_bounded_wheel_are_scipys():
+    """On sin(2 phi) = 0, every quarter turn."""
+    found = crossings(START[:, None], BOUNDED.columns(1), 4.0)
+
+    def height(_, y):
+        return np.sin(2 * y[PHI])
+
+    exact = independent.follow(START, BOUNDED, 4.0, height).t_events[0]
+    assert found.times_s[0] == pytest.approx(exact, abs=1e-9)
+    assert len(exact) > 3
