@@ -29,6 +29,7 @@ KICKS = (
     {"mode": "phase", "ticks": 4, "shift": -0.5},
     {"mode": "jump", "variable": "x2", "delta": 0.7},
     {"mode": "jump", "variable": "x1", "delta": -2.0},
+    {"mode": "waveform", "param": "beta", "waveform": [0.4, 1.0, 0.4]},
     *(
         {"mode": "pulse", "ticks": 6, "shape": "smooth", "param": name, "value": value}
         for name, value in (("a", 0.5), ("tau_s", 2.0))
