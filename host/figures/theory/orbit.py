@@ -11,7 +11,7 @@ from host.figures.theory.motions import COLOUR, LETTERS, UNITS, handles, write_c
 from host.figures.theory.section import SECTIONS, Coordinate
 from host.runs.contract import Findings
 from host.theory.analysis.attractors import KINDS, REST
-from host.theory.studies.orbit_report import SHOWN, Numbers, Window
+from host.theory.studies.orbit_report import Numbers, Window
 from host.theory.studies.orbit_rows import WAYS, OrbitRow
 
 
@@ -56,7 +56,7 @@ def _draw(axes: Axes, rows: list[OrbitRow], column: Coordinate) -> None:
 def _name_windows(axes: Axes, windows: list[Window]) -> None:
     """Write the period of each window above it."""
     for own in windows:
-        if own["period"] and own["values"] >= SHOWN:
+        if own["period"]:
             axes.text(
                 (own["from"] + own["to"]) / 2,
                 1.0,

@@ -18,7 +18,7 @@ from host.theory.model.wheel import Array, Wheel, wheel_of
 from host.theory.studies.lyapunov_pieces import require_slow
 from host.theory.studies.orbit_report import report
 from host.theory.studies.orbit_rows import WAYS, OrbitCell, OrbitPoint, Way
-from host.theory.studies.section_pieces import Settled, follow_wheels, motions_of, swing_s
+from host.theory.studies.section_pieces import Settled, follow_wheels, settle_longer, swing_s
 from host.theory.studies.section_rows import MotionColumns
 from host.theory.studies.variants import require_two_rods
 
@@ -27,9 +27,7 @@ __all__ = ["cells", "report", "simulate"]
 # Values of the constant in a cell.
 BAND = 20
 # Looks at a wheel, each so many slowest swings long; it has settled when it repeats itself in one.
-# PATIENT more, each twice as long as the one before, are for a wheel that neither does so nor has
-# an exponent above SURE (1/s).
-LOOKS, PATIENT, SWINGS, SURE = 2, 5, 10.0, 0.1
+LOOKS, SWINGS = 2, 10.0
 # A cell comes to its first value by the values before, each for so many slowest swings.
 APPROACH_SWINGS = 0.5
 # What a state is disturbed by.
@@ -79,16 +77,9 @@ def simulate(cell: OrbitCell, setting: Setting) -> list[OrbitPoint]:
     own = slice(cell["first"], cell["first"] + BAND)
     settled = []
     for wheel in wheels[own]:
-        settled.append(_settle(wheel, state + DISTURBANCE, surface, [SWINGS] * LOOKS))
+        settled.append(_settle(wheel, state + DISTURBANCE, surface))
         state = settled[-1].ended[:, None]
-    motions = motions_of(wheels[own], settled)
-    longer = [SWINGS * 2.0**number for number in range(1, PATIENT + 1)]
-    for number, wheel in enumerate(wheels[own]):
-        exponent = motions[number]["exponent"]
-        if exponent is not None and exponent < SURE:
-            state = settled[number].ended[:, None]
-            settled[number] = _settle(wheel, state, surface, longer)
-            (motions[number],) = motions_of([wheel], [settled[number]])
+    motions = settle_longer(wheels[own], settled, surface, FINENESS)
     return [
         {
             **motion,
@@ -108,10 +99,10 @@ def _begin(setting: Setting, way: Way) -> Array:
     return random_starts(1, np.random.default_rng(setting.seed_of({"way": way})))
 
 
-def _settle(wheel: Wheel, state: Array, surface: Surface, looks: list[float]) -> Settled:
-    """The wheel when it repeats itself, or after all looks, each so many slowest swings long."""
-    for swings in looks:
-        seconds = swings * swing_s(wheel)
+def _settle(wheel: Wheel, state: Array, surface: Surface) -> Settled:
+    """The wheel when it repeats itself, or after all looks."""
+    seconds = SWINGS * swing_s(wheel)
+    for _ in range(LOOKS):
         (found,) = follow_wheels([wheel], state, seconds, surface, FINENESS)
         if found.motion is not None:
             break

@@ -12,10 +12,6 @@ from host.theory.engine.crossings import Surface
 from host.theory.studies.orbit_rows import WAYS, OrbitRow, Way, motions_along
 from host.theory.studies.section_report import WORDS
 
-# A window is printed if it holds at least so many values.
-SHOWN = 2
-
-
 # `from` is a word of the language.
 Window = TypedDict(
     "Window",
@@ -104,25 +100,25 @@ def windows(rows: list[OrbitRow]) -> list[Window]:
     return found
 
 
+def _worth_naming(window: Window) -> bool:
+    """Whether a window has a period, or at least two values."""
+    return bool(window["period"]) or window["values"] > 1
+
+
 def _answers(numbers: Numbers) -> list[Answer]:
-    """The windows with at least SHOWN values, and where the ways differ."""
+    """The windows that are worth naming, and where the ways differ."""
     over = numbers["over"]
     answers = [
         Answer("section", numbers["section"]),
         Answer(f"distance of the values of {over}", numbers["step"]),
     ]
-    narrow = 0
-    for own in numbers["windows"]:
-        if own["values"] < SHOWN:
-            narrow += 1
-            continue
+    for own in filter(_worth_naming, numbers["windows"]):
         words = f"{over} = {own['from']:.6g} to {own['to']:.6g}"
         if own["period_s"]:
             first, last = own["period_s"]
             words += f", {first:.6g} s to {last:.6g} s in time"
         period = f", period {own['period']}" if own["period"] else ""
         answers.append(Answer(f"{own['way']}: {own['kind']}{period}", words))
-    answers.append(Answer("windows of one value", float(narrow)))
     for both in numbers["coexistence"]:
         words = f"{over} = {both['from']:.6g} to {both['to']:.6g}"
         answers.append(Answer(f"{both['up']} up, {both['down']} down", words))

@@ -19,7 +19,7 @@ from host.theory.engine.flow import FINENESS
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel, wheel_of
 from host.theory.studies.lyapunov_pieces import require_slow
-from host.theory.studies.section_pieces import Settled, follow_wheels, motions_of, swing_s
+from host.theory.studies.section_pieces import Settled, follow_wheels, settle_longer, swing_s
 from host.theory.studies.section_report import report
 from host.theory.studies.section_rows import (
     NOWHERE,
@@ -36,8 +36,8 @@ __all__ = ["cells", "report", "simulate"]
 WHEELS, BATCHES = 4, 2
 # How long wheels settle: at least this (s), and so many of the slowest swings.
 SETTLE_S, SWINGS = 200.0, 60.0
-# Of a wheel that repeats itself, so many periods are kept.
-PERIODS = 2
+# Points of a cycle that are the same differ by less than EXACT; so many periods of it are kept.
+EXACT, PERIODS = 1e-10, 2
 # So many crossings of each wheel are computed again with shorter steps: few, as a chaotic wheel
 # makes much of a small difference.
 CHECKED, FINER = 2, 1.5
@@ -68,7 +68,7 @@ def simulate(
         return _check(wheel, states, options["on"])
     wheels = [wheel] * WHEELS
     settled = follow_wheels(wheels, states, options["seconds"], options["on"], FINENESS)
-    kinds = motions_of(wheels, settled)
+    kinds = settle_longer(wheels, settled, options["on"], FINENESS, EXACT)
     if cell["part"] == "points":
         return [
             row
@@ -91,7 +91,7 @@ def _rows(number: int, settled: Settled, own: MotionColumns) -> list[Crossing]:
     """The crossings of a wheel."""
     if not len(settled.points.times_s):
         return [{**own, "wheel": number, "number": 0, **NOWHERE}]
-    kept = None if own["period"] is None else PERIODS * own["period"] + 1
+    kept = None if own["period"] is None else -PERIODS * own["period"] - 1
     columns = settled.points.times_s[:, None], settled.crossed, settled.points.states
     return [
         {
@@ -108,7 +108,7 @@ def _rows(number: int, settled: Settled, own: MotionColumns) -> list[Crossing]:
             "section_phi": row[7],
             "section_omega": row[8],
         }
-        for count, row in enumerate(np.hstack(columns)[:kept].tolist())
+        for count, row in enumerate(np.hstack(columns)[kept:].tolist())
     ]
 
 

@@ -8,13 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from host.theory.analysis.hopf import hopf
-from host.theory.analysis.sections import Motion, Points, irregular, motion, points
+from host.theory.analysis.sections import SAME, Motion, Points, irregular, motion, points
 from host.theory.analysis.spectrum import largest_exponents
 from host.theory.engine.crossings import Surface, crossings
 from host.theory.model.wheel import Array, Wheel
 from host.theory.studies.section_rows import MotionColumns
 from sim_motor.compiled import on_one_core
 
+# Looks at a wheel that neither repeats itself nor has an exponent above SURE (1/s): so many slowest
+# swings long at first, each then twice as long as the one before.
+LOOKS, SWINGS, SURE = 5, 20.0, 0.1
 # How long the largest exponent of wheels that do not repeat themselves is measured, s, with steps
 # that are fine enough for it (host.theory.engine.ensemble).
 EXPONENT_S, FINENESS = 150.0, 0.6
@@ -89,3 +92,39 @@ def motions_of(wheels: list[Wheel], settled: list[Settled]) -> list[MotionColumn
             }
         )
     return rows
+
+
+def settle_longer(
+    wheels: list[Wheel],
+    settled: list[Settled],
+    surface: Surface,
+    fineness: float,
+    exact: float = SAME,
+) -> list[MotionColumns]:
+    """What wheels do in the end; those that settle slowly are followed for longer.
+
+    Args:
+        wheels: The wheels.
+        settled: What they did so far; replaced for those that are followed for longer.
+        surface: The section.
+        fineness: Steps per unit of a wheel's rate (see host.theory.engine.flow).
+        exact: How close points have to be that are the same (see Repeat).
+    """
+    found = motions_of(wheels, settled)
+    for number, wheel in enumerate(wheels):
+        exponent = found[number]["exponent"]
+        if _is_exact(settled[number], exact) or (exponent is not None and exponent > SURE):
+            continue
+        for look in range(LOOKS):
+            seconds, state = SWINGS * 2.0**look * swing_s(wheel), settled[number].ended[:, None]
+            (settled[number],) = follow_wheels([wheel], state, seconds, surface, fineness)
+            if _is_exact(settled[number], exact):
+                break
+        (found[number],) = motions_of([wheel], [settled[number]])
+    return found
+
+
+def _is_exact(settled: Settled, exact: float) -> bool:
+    """Whether a wheel rests, or repeats itself so closely."""
+    what = settled.motion
+    return what is not None and (what.repeat is None or what.repeat.off_by < exact)

@@ -199,18 +199,20 @@ def _answers(numbers: Numbers) -> list[Answer]:
     wheels = sum(own["wheels"] for own in numbers["motions"])
     answers = [Answer("section", numbers["section"])]
     for own in numbers["motions"]:
-        words = f"{own['wheels']} of {wheels} wheels"
+        name = _name(own["kind"], own["period"])
+        answers.append(
+            Answer(f"{name}: share of wheels", 100.0 * own["wheels"] / wheels, None, "%")
+        )
         if own["period_s"] is not None:
-            on_section = f"period {own['period']} on the section" if own["period"] else "not on it"
-            words += f", {on_section}, {own['period_s']:.9g} s in time"
-        elif own["exponent"] is not None:
-            words += f", largest exponent {own['exponent']:.3g}/s"
-        answers.append(Answer(own["kind"], words))
+            answers.append(Answer(f"{name}: period in time", own["period_s"], None, "s"))
+        if own["exponent"] is not None:
+            answers.append(Answer(f"{name}: largest exponent", own["exponent"], None, "1/s"))
     rotation = numbers["rotation"]
     if rotation:
+        name = f"{'' if rotation['stable'] else 'un'}stable rotation"
         size = abs(complex(*rotation["multipliers"][0]))
-        words = f"{rotation['frequency_hz']:.9g} Hz, multiplier of modulus {size:.9g}"
-        answers.append(Answer(f"{'' if rotation['stable'] else 'un'}stable rotation", words))
+        answers.append(Answer(f"{name}: frequency", rotation["frequency_hz"], None, "Hz"))
+        answers.append(Answer(f"{name}: modulus of its largest multiplier", size))
     for found in numbers["spectra"]:
         answers += _peaks(found, rotation)
     if numbers["times_off_by_s"] is not None:
@@ -220,22 +222,25 @@ def _answers(numbers: Numbers) -> list[Answer]:
     return answers
 
 
+def _name(kind: MotionKind, period: int | None) -> str:
+    return f"{kind}, period {period}" if period else kind
+
+
 def _peaks(found: SpectrumNumbers, rotation: Rotation | None) -> list[Answer]:
-    """The peaks, in units of the frequency of the cycle, or of the rotation where there is none."""
-    name = found["kind"] + (f", period {found['period']}" if found["period"] else "")
-    unit, words = (found["cycle_hz"], "cycle's") if found["cycle_hz"] else (None, "")
+    """The strongest peaks, and all in units of the frequency of the cycle, else of the rotation."""
+    name = _name(found["kind"], found["period"])
+    unit, words = found["cycle_hz"], "cycle's frequency"
     if unit is None and rotation:
-        unit, words = rotation["frequency_hz"], "rotation's"
+        unit, words = rotation["frequency_hz"], "rotation's frequency"
+    error = found["resolution_hz"] / 2 or None
     answers = []
     if found["cycle_hz"]:
         answers.append(Answer(f"{name}: frequency of the cycle", found["cycle_hz"], None, "Hz"))
     for signal, own in (("x1 and x2", found["potentials"]), ("omega", found["omega"])):
-        listed = [
-            f"{peak['frequency_hz']:.4g}"
-            + (f" ({peak['frequency_hz'] / unit:.4g})" if unit else "")
-            for peak in own[:SHOWN]
-        ]
-        if listed:
-            about = f" (in units of the {words})" if unit else ""
-            answers.append(Answer(f"{name}: peaks of {signal}", ", ".join(listed) + " Hz" + about))
+        hertz = [peak["frequency_hz"] for peak in own[:SHOWN]]
+        if hertz:
+            answers.append(Answer(f"{name}: strongest peak of {signal}", hertz[0], error, "Hz"))
+        if hertz and unit:
+            ratios = ", ".join(f"{one / unit:.4g}" for one in hertz)
+            answers.append(Answer(f"{name}: peaks of {signal} / {words}", ratios))
     return answers

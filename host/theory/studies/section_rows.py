@@ -52,7 +52,7 @@ class Place(TypedDict):
     """Where a wheel crosses the section; None for a wheel that never does.
 
     Attributes:
-        t: when (s).
+        t: when, after the wheel has settled (s).
         x1: first membrane potential (1).
         x2: second membrane potential (1).
         phi: angle (rad).

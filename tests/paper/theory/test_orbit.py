@@ -72,7 +72,7 @@ def test_windows_are_rest_swings_and_rotations(summary):
 def test_the_answer_has_a_line_for_each_window(summary):
     names = [answer["name"] for answer in summary["answers"]]
     assert "up: at rest" in names
-    assert "windows of one value" in names
+    assert "up: forth-and-back, period 1" in names  # of a single value
     assert "down: rolling, period 1" in names
 
 
