@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for name, entry in TABLE.items():
         own = names.add_parser(
             name,
-            help=entry.help,
+            help=entry.help.replace("%", "%%"),
             description=entry.help,
             parents=[common(defaults=False, used=USES)],
         )

@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         add_options(
             names.add_parser(
                 name,
-                help=entry.help,
+                help=entry.help.replace("%", "%%"),
                 description=entry.help,
                 parents=[common(defaults=False, used=USES)],
             ),
