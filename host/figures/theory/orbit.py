@@ -14,6 +14,9 @@ from host.theory.analysis.attractors import KINDS, REST
 from host.theory.studies.orbit_report import Numbers, Window
 from host.theory.studies.orbit_rows import WAYS, OrbitRow
 
+# The room that the period of a window takes, as a part of the axis.
+_LABEL = 0.03
+
 
 def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
@@ -22,13 +25,13 @@ def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**{**SIZE, "figsize": (12.8, 7.2), "dpi": 125})
         panels = figure.subplots(2, 1, sharex=True, sharey=True)
+        values = [row["value"] for row in rows]
+        panels[0].set_xlim(min(values), max(values))
         for axes, way, words in zip(panels, WAYS, ("rises", "falls"), strict=True):
             _draw(axes, [row for row in rows if row["way"] == way], column)
             _name_windows(axes, [own for own in numbers["windows"] if own["way"] == way])
             axes.set_ylabel(label)
             axes.set_title(f"{LETTERS[over]} {words}", fontsize=13, loc="left")
-        values = [row["value"] for row in rows]
-        panels[1].set_xlim(min(values), max(values))
         panels[1].set_xlabel(LETTERS[over] + (f" ({UNITS[over].strip()})" if over in UNITS else ""))
         panels[0].legend(handles=handles({row["kind"] for row in rows}), loc="upper left")
         figure.suptitle(
@@ -54,11 +57,14 @@ def _draw(axes: Axes, rows: list[OrbitRow], column: Coordinate) -> None:
 
 
 def _name_windows(axes: Axes, windows: list[Window]) -> None:
-    """Write the period of each window above it."""
+    """Write the period of each window above it, if there is room."""
+    left, right = axes.get_xlim()
+    free = left
     for own in windows:
-        if own["period"]:
+        middle = (own["from"] + own["to"]) / 2
+        if own["period"] and middle >= free:
             axes.text(
-                (own["from"] + own["to"]) / 2,
+                middle,
                 1.0,
                 str(own["period"]),
                 transform=axes.get_xaxis_transform(),
@@ -67,3 +73,4 @@ def _name_windows(axes: Axes, windows: list[Window]) -> None:
                 fontsize=11,
                 color=COLOUR[own["kind"]],
             )
+            free = middle + _LABEL * (right - left)
