@@ -82,7 +82,7 @@ def test_a_film_shows_the_wheels_as_logged_with_kicks_and_stops(log):
     altered = {
         frame.kick["mode"] for frame in shown if np.isfinite(frame.wheels["left"].seen).all()
     }
-    assert altered == {"position", "phase", "pulse"}
+    assert altered == {"position", "phase", "pulse", "waveform"}
     for frame in shown:
         if frame.kick is None or "right" not in frame.kick["wheels"]:
             assert np.isnan(frame.wheels["right"].seen).all()
