@@ -20,14 +20,10 @@ def limit_duty(torque, max_duty_pct):
         A whole number of percent, never beyond +-max_duty_pct nor +-100; 0 if the torque is NaN.
     """
     duty = max_duty_pct * torque
-    if -100.0 <= duty <= 100.0:
-        whole = round(duty)
-        if -max_duty_pct <= whole <= max_duty_pct:
-            return whole
     if isnan(duty):
         return 0
     bound = int(min(max_duty_pct, 100.0))
-    return bound if duty > 0.0 else -bound
+    return round(max(-bound, min(bound, duty)))
 
 
 class Safety(object):
