@@ -57,10 +57,9 @@ class Sweep:
         swept = [
             Column(axis["name"], axis["unit"], "an option that is swept") for axis in self._swept
         ]
-        names = (column.name for column in (*swept, *columns_of(Quantity)))
-        return [
-            Kind("", "A quantity at a point.", (*swept, *columns_of(Quantity)), frozenset(names))
-        ]
+        columns = (*swept, *columns_of(Quantity))
+        names = frozenset(column.name for column in columns)
+        return [Kind("", "A quantity at a point.", columns, names)]
 
     @property
     def parts(self) -> Parts | None:

@@ -23,9 +23,26 @@ from sim_motor.compiled import jit, parallel_jit, prange
 # phi: a wheel comes to a multiple of a quarter turn. omega: it turns round.
 Surface = Literal["phi", "omega"]
 EQUATIONS: dict[Surface, str] = {"phi": "sin(2 phi) = 0", "omega": "omega = 0"}
-# Newton's method is done if a moment (relative to the step) changes less than this, or after so
-# many steps, some of which bisect.
+# Newton's method is done if a moment (relative to the step) changes less than this, or after
+# _MOST steps; some of them bisect.
 _SAME, _MOST = 1e-14, 60
+
+
+def _rates_of(state: Array, constants: Array) -> Any:
+    """The rates of a state, (4,)."""
+    return rates(
+        state[0],
+        state[1],
+        state[2],
+        state[3],
+        constants[0],
+        constants[1],
+        constants[2],
+        constants[3],
+        constants[4],
+        constants[5],
+        constants[6],
+    )
 
 
 def _step(at: Array, constants: Array, step_s: float, after: Array) -> None:
@@ -39,19 +56,7 @@ def _step(at: Array, constants: Array, step_s: float, after: Array) -> None:
             stages[stage - 1, 1],
             stages[stage - 1, 2],
             stages[stage - 1, 3],
-        ) = rates(
-            after[0],
-            after[1],
-            after[2],
-            after[3],
-            constants[0],
-            constants[1],
-            constants[2],
-            constants[3],
-            constants[4],
-            constants[5],
-            constants[6],
-        )
+        ) = _rates_of(after, constants)
         for row in range(4):
             total = 0.0
             for earlier in range(stage):
@@ -63,20 +68,7 @@ def _height(state: Array, constants: Array, turns: bool) -> tuple[float, float]:
     """How far a state is from the surface, and the rate of that."""
     if not turns:
         return sin(2.0 * state[PHI]), 2.0 * cos(2.0 * state[PHI]) * state[OMEGA]
-    faster = rates(
-        state[0],
-        state[1],
-        state[2],
-        state[3],
-        constants[0],
-        constants[1],
-        constants[2],
-        constants[3],
-        constants[4],
-        constants[5],
-        constants[6],
-    )[OMEGA]
-    return state[OMEGA], faster
+    return state[OMEGA], _rates_of(state, constants)[OMEGA]
 
 
 def _moment(
