@@ -1,6 +1,6 @@
 """The data dictionary of all experiments and studies, as docs/data.md has it.
 
-`python -m host.perform.dictionary > docs/data.md` writes it anew.
+`python -m host.perform.dictionary > docs/data.md` writes it.
 """
 
 from __future__ import annotations

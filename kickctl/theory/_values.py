@@ -13,7 +13,7 @@ from host.theory.model.laws import has_symmetries
 from host.theory.model.wheel import Array, Wheel
 from host.util.arguments import wrong
 
-# A notebook shows arrays of at most so many numbers.
+# A notebook shows arrays of at most this length.
 _SHOWN = 6
 
 

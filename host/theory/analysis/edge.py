@@ -21,16 +21,16 @@ from host.theory.engine.kicked import Continuous, memory_s
 from host.theory.model.wheel import Array, Wheel
 
 _MODEL = Continuous()
-# In a round of bisection each ray has at least so many points between its two ends, and all rays
-# together as many as run side by side for free.
+# In a round of bisection each ray has at least _SECTIONS points between its two ends. Rays together
+# have at least _SIDE_BY_SIDE: these run side by side for free.
 _SECTIONS, _SIDE_BY_SIDE = 8, 64
-# A pair across the edge is this close after a bisection, and is bisected anew at this distance.
+# After a bisection a pair across the edge is NEAR; it is bisected again when it is APART.
 # Closer pairs would differ less than a wheel's computed course from its true one. Should both be
-# on one side all the same, the edge is looked for so many times their distance to either side.
+# on one side all the same, the edge is looked for at these multiples of their distance.
 NEAR, APART = 1e-7, 1e-4
 _BEYOND = np.array([-8.0, -2.0, 0.0, 1.0, 3.0, 9.0])
 _STEP_MEMORIES = 0.05
-# They have parted at this distance, and are followed for at most so long, in memories.
+# They have parted at this distance, and are followed for at most this time, in memories.
 PARTED, _LONGEST = 1.0, 100.0
 
 

@@ -24,7 +24,7 @@ NDComplex = NDArray[np.complex128]
 Kind = Literal["saddle", "stable focus", "stable node", "unstable focus", "unstable node"]
 
 ANGLES = tuple(n * pi / 4 for n in range(8))
-# In a search the turn is divided into this many intervals, of which the first begins a little
+# In a search the turn is divided into this many intervals. The first one begins a little
 # before 0: no fixpoint for reasons of symmetry is at an end of one.
 _INTERVALS, _BEFORE = 1440, 1e-3
 # A time course starts NEAR the fixpoint (relative), and grows or shrinks by FACTOR.

@@ -27,9 +27,9 @@ MOMENTS, PHASES, DIRECTIONS, MORE = 1024, 16, 32, 8
 # At how many amplitudes a push is tried first, the closer the smaller they are. The greatest is
 # MOST times the size of the potentials, or the speed, of the wheel that rolls.
 LEVELS, MOST = 16, 4.0
-# Around the best of the grid there are finer ones, with so many lines to either side, each with a
-# part of the spacing of the one before. The least amplitude so far is among those that are tried,
-# as a multiple of it, so that it cannot get lost. They are sought to a part of themselves.
+# Around the best of the grid there are _ROUNDS finer ones, with _LINES lines to either side; each
+# has 1/_FINER of the spacing before. The amplitudes that are tried are multiples of the least so
+# far, and include it, so that it cannot get lost. They are sought to _WITHIN of themselves.
 _LINES, _FINER, _ROUNDS, _WITHIN = 2, 4, 3, 1e-7
 _AROUND = np.linspace(0.5, 1.1, 37)
 # On the grid they are sought to this part of the greatest one.

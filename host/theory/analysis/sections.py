@@ -81,7 +81,7 @@ class Repeat(NamedTuple):
     """A motion that repeats itself.
 
     Attributes:
-        crossings: after so many the points on the section repeat themselves.
+        crossings: the number after which the points on the section repeat themselves.
         period_s: after this time (s) the wheel repeats itself, whole turns apart.
         quarters: by how many quarter turns it has then turned.
         off_by: the greatest difference between points that are the same.
@@ -124,7 +124,7 @@ def repeat(found: Points, *, settling: bool = False) -> Repeat | None:
 def _repeat(found: Points, length: int, off_by: float) -> Repeat:
     quarters = int(found.quarters[-1] - found.quarters[-1 - length])
     seconds = float(found.times_s[-1] - found.times_s[-1 - length])
-    # The symmetry that has brought the wheel back is a mirror, or so many quarter turns.
+    # The symmetry that has brought the wheel back is a mirror, or a number of quarter turns.
     if found.mirrored[-1] != found.mirrored[-1 - length]:
         times, quarters = 2, 0
     else:

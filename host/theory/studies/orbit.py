@@ -26,9 +26,9 @@ __all__ = ["cells", "report", "simulate"]
 
 # Values of the constant in a cell.
 BAND = 20
-# Looks at a wheel, each so many slowest swings long; it has settled when it repeats itself in one.
+# Looks at a wheel, each SWINGS slowest swings long; it has settled when it repeats itself in one.
 LOOKS, SWINGS = 2, 10.0
-# A cell comes to its first value by the values before, each for so many slowest swings.
+# A cell comes to its first value by the values before, each for this number of slowest swings.
 APPROACH_SWINGS = 0.5
 # What a state is disturbed by.
 DISTURBANCE = np.array([[1e-3], [-1e-3], [1e-3], [1e-3]])

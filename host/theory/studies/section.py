@@ -34,11 +34,11 @@ from host.theory.studies.variants import require_two_rods
 __all__ = ["cells", "report", "simulate"]
 
 WHEELS, BATCHES = 4, 2
-# How long wheels settle: at least this (s), and so many of the slowest swings.
+# How long wheels settle: at least SETTLE_S (s), and SWINGS of the slowest swings.
 SETTLE_S, SWINGS = 200.0, 60.0
-# Points of a cycle that are the same differ by less than EXACT; so many periods of it are kept.
+# Points of a cycle that are the same differ by less than EXACT; PERIODS of it are kept.
 EXACT, PERIODS = 1e-10, 2
-# So many crossings of each wheel are computed again with shorter steps: few, as a chaotic wheel
+# CHECKED crossings of each wheel are computed again with shorter steps: few, as a chaotic wheel
 # makes much of a small difference.
 CHECKED, FINER = 2, 1.5
 

@@ -15,8 +15,8 @@ from host.theory.model.wheel import Array, Wheel
 from host.theory.studies.section_rows import MotionColumns
 from sim_motor.compiled import on_one_core
 
-# Looks at a wheel that neither repeats itself nor has an exponent above SURE (1/s): so many slowest
-# swings long at first, each then twice as long as the one before.
+# Looks at a wheel that neither repeats itself nor has an exponent above SURE (1/s): SWINGS
+# slowest swings long at first, each then twice as long as the one before.
 LOOKS, SWINGS, SURE = 5, 20.0, 0.1
 # How long the largest exponent of wheels that do not repeat themselves is measured, s, with steps
 # that are fine enough for it (host.theory.engine.ensemble).

@@ -36,9 +36,9 @@ class MotionColumns(TypedDict):
 
     Attributes:
         kind: at rest, forth-and-back, rolling, chaotic or quasi-periodic.
-        period: after so many crossings it repeats itself, up to the symmetries; None if it does
+        period: number of crossings until it repeats itself, up to the symmetries; None if it does
             not, or never crosses the section.
-        period_s: after so long it repeats itself, whole turns apart (s).
+        period_s: time until it repeats itself, whole turns apart (s).
         exponent: largest Lyapunov exponent (1/s) of a wheel that does not repeat itself.
     """
 
