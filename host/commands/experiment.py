@@ -3,6 +3,7 @@
 import argparse
 
 from host.commands._efforts import add_effort, question, sized
+from host.commands._figures import add_figure, figure_given
 from host.commands._options import add_take_over, common
 from host.commands._terminal import answer_run, say
 from host.experiments.registry import ROBOT, TABLE
@@ -24,6 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             parents=[common(defaults=False, used=USES)],
         )
         add_options(own, entry)
+        add_figure(own)
         add_effort(own, name, entry)
         if name in ROBOT:
             add_take_over(own)
@@ -47,6 +49,7 @@ def run(options: argparse.Namespace) -> int:
             take_over=getattr(options, "take_over", False),
             say=say,
             ask=question(options),
+            **figure_given(options),
             **arguments,
         ),
     )

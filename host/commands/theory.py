@@ -3,6 +3,7 @@
 import argparse
 from typing import Any
 
+from host.commands._figures import add_figure, figure_given
 from host.commands._options import common
 from host.commands._terminal import answer_run, say
 from host.runs.registry import add_options, options_given
@@ -19,15 +20,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """A command for each study, with its options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="study")
     for name, entry in TABLE.items():
-        add_options(
-            names.add_parser(
-                name,
-                help=entry.help.replace("%", "%%"),
-                description=entry.help,
-                parents=[common(defaults=False, used=USES)],
-            ),
-            entry,
+        own = names.add_parser(
+            name,
+            help=entry.help.replace("%", "%%"),
+            description=entry.help,
+            parents=[common(defaults=False, used=USES)],
         )
+        add_options(own, entry)
+        add_figure(own)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -54,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
             out=options.out,
             scheduler=options.scheduler,
             say=say,
+            **figure_given(options),
             **options_given(options, TABLE[name]),
         ),
         as_json,

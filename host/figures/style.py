@@ -14,7 +14,9 @@ from typing import Any
 from matplotlib import rc_context, rcdefaults, rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
+from host.figures.caption import Caption
 from host.util.whole_files import whole_file
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
@@ -25,9 +27,14 @@ STYLE: Any = {
     "lines.linewidth": 1.8,
     "legend.frameon": False,
     "svg.hashsalt": "kickctl",  # the same drawing is the same file
+    "svg.fonttype": "none",  # text as text
+    "pdf.fonttype": 42,
 }
-# 1600 pixels wide.
-SIZE: Any = {"figsize": (10.0, 6.4), "dpi": 160, "layout": "constrained"}
+# The strip below a figure in which its parameters stand, inches.
+STRIP = 0.25
+# With this strip a slide of 16:9, 1920 by 1080 pixels.
+SIZE: Any = {"figsize": (12.0, 6.75 - STRIP), "dpi": 160, "layout": "constrained"}
+_CORNER: Any = {"ha": "right", "va": "center", "fontsize": 10, "color": "dimgrey"}
 
 
 @contextmanager
@@ -42,12 +49,15 @@ def styled() -> Iterator[None]:
         yield
 
 
-def save(figure: Figure, path: str | Path, *, new: bool = False) -> Path:
+def save(
+    figure: Figure, path: str | Path, caption: Caption | None = None, *, new: bool = False
+) -> Path:
     """Write a figure to a file, which appears when it is whole.
 
     Args:
         figure: The figure.
         path: The file; its ending, such as .png or .svg, says the format.
+        caption: What the figure says about its run, in a strip below it and in the file's metadata.
         new: Whether the file must not exist.
 
     Returns:
@@ -57,8 +67,19 @@ def save(figure: Figure, path: str | Path, *, new: bool = False) -> Path:
         FileTaken: `new`, and there is such a file.
         OSError: The file cannot be written.
     """
+    ending = Path(path).suffix.removeprefix(".").lower() or "png"
+    about: dict[str, Any] = {"metadata": (caption or Caption("", "")).metadata(ending)}
     with styled(), whole_file(path, new=new) as draft:
-        figure.savefig(draft, format=Path(path).suffix.removeprefix(".") or "png")
+        if caption is not None:
+            width, height = figure.get_size_inches()
+            about["bbox_inches"] = Bbox.from_extents(0.0, -STRIP, width, height)
+            place = (1.0 - 0.1 / width, -0.6 * STRIP / height)
+            words = figure.text(*place, caption.parameters, **_CORNER)
+        try:
+            figure.savefig(draft, format=ending, **about)
+        finally:
+            if caption is not None:
+                words.remove()
     return Path(path)
 
 

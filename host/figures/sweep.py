@@ -59,6 +59,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         for axes in grid.flat[len(panels) :]:
             axes.set_axis_off()
         for axes, panel in zip(grid.flat, panels, strict=False):
+            axes.set_label(panel.name)
             if as_map:
                 _draw_map(axes, panel, swept)
             else:
@@ -69,14 +70,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             share_legend(
                 figure, grid.flat, title=_label(swept[1]), loc="outside right center", fontsize=11
             )
-        constants = ", ".join(
-            f"{name} = {_word(one)}" for name, one in numbers["constants"].items()
-        )
         over = " and ".join(axis["name"] for axis in numbers["swept"])
         figure.suptitle(f"{numbers['of']} over {over}", fontsize=16)
         if any(row["failed"] for row in rows):
-            constants += "  (crosses and white: points that failed)"
-        figure.supxlabel(constants, fontsize=9, color="dimgrey")
+            figure.supxlabel("crosses and white: points that failed", fontsize=10)
     return figure
 
 
@@ -174,7 +171,3 @@ def _scale(axes: Axes, which: str, values: NDArray[np.float64]) -> None:
 
 def _label(axis: Axis) -> str:
     return f"{axis['name']} ({axis['unit']})" if axis["unit"] else axis["name"]
-
-
-def _word(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, int | float) else str(value)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from pathlib import Path
 from typing import NamedTuple, cast
 
 from host.experiments.registry import BODIES, ROBOT, SIMULATED
-from host.runs.contract import Cell, Experiment, Findings, Options, Parts, Row
+from host.runs.contract import Cell, Experiment, Options, Parts
 from host.runs.registry import Entry, entry_of
 from host.runs.robot_options import params_of, params_with
-from host.runs.runner import Draw
 from host.theory.studies.registry import TABLE as STUDIES
 
 # The kinds by the name that people know: entries, the package of the modules, that of the figures.
@@ -31,13 +29,13 @@ class Found(NamedTuple):
         kind: A key of KINDS.
         entry: Its options and claims.
         work: Its module.
-        draw: The function that draws its figure. matplotlib is imported when it is called.
+        figures: The name of the module that draws its figure.
     """
 
     kind: str
     entry: Entry
     work: Experiment
-    draw: Draw
+    figures: str
 
     @property
     def parts(self) -> Parts | None:
@@ -58,19 +56,4 @@ def find(name: str) -> Found:
     _, works, figures = KINDS[kind]
     module = "." + name.replace("-", "_")
     work = cast("Experiment", importlib.import_module(works + module))
-    return Found(kind, entry, work, drawing(figures + module))
-
-
-def drawing(module: str) -> Draw:
-    """The function that draws the figure of a module, and writes it."""
-
-    def draw(rows: list[Row], findings: Findings, stem: Path) -> list[Path]:
-        from host.figures.style import save
-
-        figure = importlib.import_module(module).draw(rows, findings)
-        png = save(figure, f"{stem}.png")
-        # The layout takes as long as the drawing, and is the same for both.
-        figure.set_layout_engine("none")
-        return [png, save(figure, f"{stem}.svg")]
-
-    return draw
+    return Found(kind, entry, work, figures + module)

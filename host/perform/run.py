@@ -5,7 +5,7 @@ Then it writes the table, the figure and the claims.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,8 @@ from host.errors import WrongUse
 from host.experiments.efforts import EFFORTS, in_words
 from host.link.addresses import SIM, make_link, sim_options
 from host.link.names import chosen, own_token
-from host.perform.catalogue import BODY, STUDY, drawing, find
+from host.perform.catalogue import BODY, STUDY, find
+from host.perform.drawings import USUAL, drawing, files
 from host.perform.robots import robots
 from host.perform.sweep import FAILURES, Sweep, forgiving
 from host.runs.cluster import require_scheduler
@@ -44,6 +45,8 @@ def perform(
     out: str | Path = RESULTS,
     scheduler: str | None = None,
     take_over: bool = False,
+    formats: str | Sequence[str] = USUAL,
+    panel: str | None = None,
     say: Callable[[str], None] = lambda words: None,
     ask: Callable[[float], None] = lambda seconds: None,
     **arguments: Any,
@@ -59,6 +62,8 @@ def perform(
             there.
         scheduler: The address of a Dask scheduler that computes the cells.
         take_over: Take control of a real robot, also from another host, which hears of it.
+        formats: The formats of the figure: png, svg and pdf.
+        panel: The one panel of the figure to draw; None for all.
         say: Called with messages for people.
         ask: Called before a real robot begins, with about how long it will be busy, s. It raises a
             KickctlError if that is too long.
@@ -82,6 +87,7 @@ def perform(
     swept = axes(found.entry, options)
     sweep = Sweep(name, swept) if swept else None
     experiment = sweep or found.work
+    wanted = files("host.figures.sweep" if swept else found.figures, formats, panel)
     settings: dict[str, Any] = {
         "experiment": name,
         "options": options,
@@ -97,10 +103,9 @@ def perform(
         uri, token = robot.address, own_token(robot) if token is None else token
         simulated = _simulated(name, found.kind, uri)
         setting = setting_of(options, simulated, seed)
-        settings["brick"] = uri
-        if simulated is not None:
-            # By value: your own motor of this name may have other constants tomorrow.
-            settings["motor"] = asdict(setting.constants)
+        # By value: your own motor of this name may have other constants tomorrow.
+        motor = {} if simulated is None else {"motor": asdict(setting.constants)}
+        settings |= {"brick": uri, **motor}
     settings["seed"] = setting.seed
     batch = simulated is not None and experiment.simulate is not None
     if scheduler:
@@ -135,12 +140,12 @@ def perform(
         # The commit says where results come from. It is no part of their key: it also changes with
         # files that compute nothing.
         about = {**settings, "commit": commit()}
+        draw = drawing(wanted, found, setting, settings)
         if sweep is None:
             findings, kinds = found.work.report(rows, setting), kinds_of(found.work)
-            return finish(name, rows, findings, found.draw, study, about, kinds)
-        rows = sweep.table(rows, setting)
-        draw, kinds = drawing("host.figures.sweep"), sweep.kinds
-        return finish("sweep", rows, sweep.report(rows, setting), draw, study, about, kinds)
+            return finish(name, rows, findings, draw, study, about, kinds)
+        table = sweep.table(rows, setting)
+        return finish("sweep", table, sweep.report(table, setting), draw, study, about, sweep.kinds)
 
 
 def _require_cluster(scheduler: str, *, batch: bool) -> None:

@@ -36,6 +36,15 @@ def params_of(options: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
+def defaults_besides(options: Mapping[str, Any]) -> dict[str, float]:
+    """The defaults of the robot's parameters that a run has no option for, as options name them."""
+    return {
+        name: TABLE[parameter].default
+        for name, (parameter, _) in _PARAMETERS.items()
+        if name not in options
+    }
+
+
 def params_with(**changes: float) -> Params:
     """The default parameters with these changes. Raises WrongUse if the robot would refuse them."""
     params = Params()

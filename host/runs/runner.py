@@ -22,7 +22,7 @@ T = TypeVar("T")
 Outcome = tuple[list[Row], list[str]]
 Result = tuple[Cell, Part, list[str]]
 Work = Callable[[Cell], Outcome]
-# Draws the figure of rows and findings, and writes it to STEM.png and STEM.svg. Returns the paths.
+# Draws the figure of rows and findings, and writes it to STEM.png and others. Returns the paths.
 Draw = Callable[[list[Row], Findings, Path], list[Path]]
 
 
@@ -171,6 +171,8 @@ def finish(
             return write()
         except OSError as error:
             unwritten[file] = f"{error.filename or file} cannot be written: {error.strerror}"
+        except KickctlError as error:
+            unwritten[file] = f"no {file}: {error.message}; {error.hint}"
         except Exception as error:  # noqa: BLE001 - drawing may fail in any way
             unwritten[file] = f"{file} failed with {type(error).__name__}: {error}"
         return otherwise

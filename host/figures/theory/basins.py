@@ -95,6 +95,7 @@ def _draw_basins(panels: Any, rows: list[BasinsRow], findings: Findings) -> set[
     }
     used: set[int] = set()
     for axes, (model, title) in zip(panels, titles.items(), strict=True):
+        axes.set_label(f"starts-{model}")
         used |= _draw_starts(axes, starts_of(rows, model))
         axes.set_title(title, fontsize=13)
         axes.set(xlabel=r"angle $\varphi$ at the start", ylabel=r"$\omega/2\pi$ at the start (Hz)")

@@ -22,6 +22,8 @@ from host.theory.studies.branch_report import Numbers
 from host.theory.studies.branch_rows import WAYS, CyclePart, Part
 from host.theory.studies.branch_tables import BranchRow, CycleRow, SpecialRow
 
+PANELS = ("rotations", "onset", "swinging", "periods", "merging", "potentials")
+
 Quantity = Literal["omega_mean", "amplitude", "period"]
 
 _COLOUR: dict[Part, str] = {

@@ -27,6 +27,8 @@ from host.theory.studies.edge_rows import (
     map_of,
 )
 
+PANELS = ("map", "phase", "course")
+
 _COURSES: tuple[tuple[Role, str, str], ...] = (
     (FORWARD, "a little smaller: rolls on", COLOURS[0]),
     (BACKWARD, "a little larger: reverses", COLOURS[1]),

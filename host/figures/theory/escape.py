@@ -13,6 +13,8 @@ from host.runs.contract import Findings
 from host.theory.studies.escape import Numbers, strength_of
 from host.theory.studies.escape_rows import EscapeRow, by_level
 
+PANELS = ("times", "shares")
+
 _FROM = {"rest": "from the well", "roll": "from rolling"}
 
 

@@ -21,6 +21,8 @@ from host.theory.studies.fixpoints_rows import (
     of_one_wheel,
 )
 
+PANELS = ("force", "eigenvalues")
+
 _MARKERS = ((COLOURS[0], "o"), (COLOURS[1], "s"), (COLOURS[2], "^"), (COLOURS[3], "D"))
 
 

@@ -14,6 +14,8 @@ from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from host.theory.studies.hopf_rows import HopfRow, line_of, point_of
 
+PANELS = ("line", "ratio", "coefficient", "frequency")
+
 
 def draw(rows: list[HopfRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""

@@ -33,6 +33,8 @@ from host.theory.studies.lines_rows import (
     specials_of,
 )
 
+PANELS = ("plane", "near-hopf")
+
 _LINES: dict[tuple[str, str], tuple[str, str, str]] = {
     ("Hopf", "Hopf"): (COLOURS[6], "-", "Hopf"),
     ("merging", "merging"): (COLOURS[1], "-", "merging"),

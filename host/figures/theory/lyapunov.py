@@ -11,6 +11,8 @@ from host.runs.contract import Findings
 from host.theory.studies.lyapunov_numbers import Numbers
 from host.theory.studies.lyapunov_rows import LyapunovRow, SeriesRow, series_of
 
+PANELS = ("series", "exponents")
+
 SHOWN_S = 40.0
 
 

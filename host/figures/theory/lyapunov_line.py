@@ -18,6 +18,8 @@ from host.theory.analysis.attractors import BACK, CHAOS, KINDS, REST, ROLL, Kind
 from host.theory.studies.lyapunov_numbers import LineNumbers
 from host.theory.studies.lyapunov_rows import GridRow, LineRow, line_of, lives_of
 
+PANELS = ("line", "survival", "lives")
+
 _COLOUR: dict[Kind, str] = {
     KINDS[REST]: COLOURS[6],
     KINDS[BACK]: COLOURS[4],

@@ -18,6 +18,8 @@ from host.theory.studies.lyapunov_rows import (
     plane_of,
 )
 
+PANELS = ("any", "rolls")
+
 
 def draw(rows: list[PlaneRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""

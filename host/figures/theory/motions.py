@@ -1,8 +1,7 @@
-"""Parts of the figures `section` and `orbit`: colours of motions, and a wheel's constants."""
+"""Parts of the figures `section` and `orbit`: colours of motions, and letters of constants."""
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from host.figures.style import COLOURS
@@ -26,12 +25,3 @@ def handles(kinds: set[MotionKind]) -> list[Line2D]:
         for kind, colour in COLOUR.items()
         if kind in kinds
     ]
-
-
-def write_constants(figure: Figure, constants: dict[str, float]) -> None:
-    """Write the constants of a wheel into the figure's lower right corner, below all panels."""
-    figure.set_layout_engine("constrained", rect=(0.0, 0.03, 1.0, 0.97))
-    words = ", ".join(
-        f"{LETTERS[name]} = {value:g}{UNITS.get(name, '')}" for name, value in constants.items()
-    )
-    figure.text(0.995, 0.005, words, ha="right", va="bottom", fontsize=11)

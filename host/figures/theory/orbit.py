@@ -7,12 +7,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import SIZE, styled
-from host.figures.theory.motions import COLOUR, LETTERS, UNITS, handles, write_constants
+from host.figures.theory.motions import COLOUR, LETTERS, UNITS, handles
 from host.figures.theory.section import SECTIONS, Coordinate
 from host.runs.contract import Findings
 from host.theory.analysis.attractors import KINDS, REST
 from host.theory.studies.orbit_report import Numbers, Window
 from host.theory.studies.orbit_rows import WAYS, OrbitRow
+
+PANELS = ("up", "down")
 
 # The room that the period of a window takes, as a part of the axis.
 _LABEL = 0.03
@@ -23,7 +25,7 @@ def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
     numbers: Numbers = findings.numbers
     over, (column, label, equation) = numbers["over"], SECTIONS[numbers["on"]]
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (12.8, 7.2), "dpi": 125})
+        figure = Figure(**SIZE)
         panels = figure.subplots(2, 1, sharex=True, sharey=True)
         values = [row["value"] for row in rows]
         panels[0].set_xlim(min(values), max(values))
@@ -37,7 +39,6 @@ def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
         figure.suptitle(
             f"Orbit diagram on the Poincaré section {equation}, up to the symmetries", fontsize=16
         )
-        write_constants(figure, numbers["constants"])
     return figure
 
 

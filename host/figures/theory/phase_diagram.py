@@ -25,6 +25,8 @@ from host.theory.studies.phase_diagram_rows import (
     points,
 )
 
+PANELS = ("std", "mean")
+
 Quantity = Literal["omega_std", "omega_mean"]
 _QUANTITIES: tuple[tuple[Quantity, str], ...] = (
     ("omega_std", r"std($\omega$) (rad/s)"),

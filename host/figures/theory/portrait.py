@@ -72,6 +72,7 @@ def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
 
 
 def _draw(axes: Axes, rows: list[PointRow], found: SummaryRow) -> None:
+    axes.set_label(f"k={found['k']:g}")
     _draw_lines(axes, rows)
     _draw_fixpoints(axes, rows)
     most = found["fastest"] / (2 * pi)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import SIZE, styled
-from host.figures.theory.motions import COLOUR, handles, write_constants
+from host.figures.theory.motions import COLOUR, handles
 from host.runs.contract import Findings
 from host.theory.engine.crossings import Surface
 from host.theory.model.wheel import Array
@@ -22,6 +22,8 @@ from host.theory.studies.section_rows import (
     crossings_of,
     spectrum_of,
 )
+
+PANELS = ("section", "returns", "potentials", "omega")
 
 Coordinate = Literal["section_omega", "section_phi"]
 Signal = Literal["potentials", "omega_power"]
@@ -39,7 +41,7 @@ def draw(rows: list[SectionRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     numbers: Numbers = findings.numbers
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (12.8, 7.2), "dpi": 125})
+        figure = Figure(**SIZE)
         (section, returns), (potentials, omega) = figure.subplots(2, 2, height_ratios=(1.5, 1.0))
         _draw_points(section, returns, crossings_of(rows), numbers)
         last = max(
@@ -55,7 +57,6 @@ def draw(rows: list[SectionRow], findings: Findings) -> Figure:
         figure.suptitle(
             f"Poincaré section {SECTIONS[numbers['on']][2]}, up to the symmetries", fontsize=16
         )
-        write_constants(figure, numbers["constants"])
     return figure
 
 

@@ -28,6 +28,8 @@ from host.theory.studies.tick_rows import (
     over_ticks,
 )
 
+PANELS = ("thresholds", "growth", "speed", "latency")
+
 Part = Literal["tick", "latency"]
 Threshold = Literal["k_c", "k_rolls", "k_stops"]
 Column = Literal[Threshold, "hz"]

@@ -182,7 +182,7 @@ def test_the_figure_fits_a_projector(drawn, tmp_path):
     png = (tmp_path / "kick.png").read_bytes()
     assert png.startswith(b"\x89PNG\r\n\x1a\n")
     width, height = struct.unpack(">II", png[16:24])
-    assert width == 1600
+    assert width == 1920
     assert 800 <= height <= 1200
     shown = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
     assert {"A kick", "time since the kick (s)"} <= {text.get_text() for text in shown}

@@ -1,0 +1,67 @@
+"""Which files a figure is written to, and the parameters of a run in its corner."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from host.errors import WrongUse
+from host.figures.caption import in_words
+from host.perform.catalogue import find
+from host.perform.drawings import files, parameters
+from host.perform.run import perform
+from host.runs.contract import Setting
+from host.runs.registry import complete_options
+from host.theory.studies import hopf
+
+
+def test_what_cannot_be_drawn_is_refused_before_work_begins(tmp_path, monkeypatch):
+    monkeypatch.setattr(hopf, "simulate", None)
+    with pytest.raises(WrongUse, match="cannot be written as 'jpg'"):
+        perform("hopf", formats="png,jpg", out=tmp_path)
+    with pytest.raises(WrongUse, match="no panel 'x'") as caught:
+        perform("hopf", panel="x", out=tmp_path)
+    assert caught.value.hint == "its panels are line, ratio, coefficient, frequency"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_panel_has_a_file_of_its_own(tmp_path):
+    found = perform("hopf", panel="frequency", formats=["pdf", "PNG"], out=tmp_path)
+    assert [Path(path).name for path in found["figures"]] == [
+        "hopf-frequency.pdf",
+        "hopf-frequency.png",
+    ]
+    assert json.loads(Path(found["summary"]).read_text(encoding="utf-8"))["unwritten"] == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("portrait", {}, "a = 4   τ = 0.25 s   f = 0.5 s   I = 0.05 s²"),
+        (
+            "branch",
+            {"along": "a", "k": 2.0, "rods": 1},
+            "τ = 0.25 s   k = 2   f = 0.5 s   I = 0.05 s²   rods: 1   dry friction 0.1",
+        ),
+        ("lines", {}, "a = 4   f = 0.5 s   I = 0.05 s²"),
+        ("hopf", {"tau": [0.1, 0.2]}, "a = 4   f = 0.5 s   I = 0.05 s²"),
+        ("timeline", {"tick": 0.02}, "a = 4   τ = 0.25 s   k = 8   tick 0.02 s"),
+        ("primitives", {}, "a = 4   τ = 0.25 s   k = 8   tick 0.03 s"),
+        (
+            "timeline",
+            {"preset": "paper"},
+            "a = 4   τ = 0.25 s   k = 8   tick 0.03 s   rods 0.006 s older",
+        ),
+        ("bifurcation", {}, "a = 4   τ = 0.25 s   tick 0.03 s"),
+        ("leave-chaos", {}, "a = 4   τ = 1 s   k = 15   tick 0.03 s"),
+        ("train-start", {}, ""),
+    ],
+)
+def test_the_corner_has_the_parameters_that_the_run_had(name, options, words):
+    found = find(name)
+    setting = Setting(1, complete_options(name, found.entry, options))
+    assert in_words(parameters(found, setting, name)) == words
+
+
+def test_formats_are_written_once_and_in_their_order():
+    assert files("host.figures.theory.hopf", "svg, png,svg", None).formats == ("svg", "png")
