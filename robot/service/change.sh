@@ -103,7 +103,7 @@ adopt() { # adopt RELEASE FOLDER: make a release of an upload, if it is sound
     sha256sum --quiet -c SHA256SUMS ||
         discard "$2" "the upload arrived damaged" \
             "try again; if it happens each time, the card may be failing"
-    python3 -m compileall -q robot || {
+    python3 -m robot.compile || {
         card_takes_writes || discard "$2" "the brick's card cannot be written: $why" \
             "delete old files there; if it happens each time, the card may be failing"
         discard "$2" "the brick's Python cannot read this release" \
