@@ -3,7 +3,8 @@
 CPython 3.5 takes longer for a call than for what most equations compute. So this puts the functions
 of robot/controller.py into robot/wheel.py where they are called, as a compiler of C does: the same
 operations in the same order give the same numbers to the last bit. The result is the usual byte
-code file of wheel.py. Python uses it until wheel.py changes, and does without it if it is gone.
+code file of wheel.py: Python compiles wheel.py as it is if the file is gone or wheel.py changes,
+and the file itself ends the program if controller.py changes.
 """
 
 import ast
@@ -15,6 +16,17 @@ from importlib.machinery import SourceFileLoader
 from importlib.util import cache_from_source
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
+# What comes after wheel.py's docstring: Python itself looks at wheel.py alone.
+_GUARD = """
+import os
+import robot.controller
+_source = os.stat(robot.controller.__file__)
+if (_source.st_size, int(_source.st_mtime)) != {}:
+    raise SystemExit(
+        "robot/controller.py has changed, and Wheel.step contains it as it was: run"
+        " `python3 -m robot.compile`, then start again"
+    )
+"""
 
 
 class _Rename(ast.NodeTransformer):
@@ -75,10 +87,8 @@ class _Inline(ast.NodeTransformer):
 
     def _look_up(self, node):
         """(names of the parameters, statements) of a function that a node calls, else empty."""
-        name = (
-            node.func.id if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else ""
-        )
-        function = self.functions.get(name)
+        called = node.func if isinstance(node, ast.Call) else None
+        function = self.functions.get(called.id) if isinstance(called, ast.Name) else None
         if function is None:
             return [], []
         return [each.arg for each in function.args.args], function.body[1:]  # [0]: its docstring
@@ -112,7 +122,11 @@ class _Loader(SourceFileLoader):
 
     def source_to_code(self, data, path, **options):  # type: ignore[override]
         with open(os.path.join(FOLDER, "controller.py"), "rb") as file:
-            return compile(inline(file.read(), data), path, "exec", dont_inherit=True)
+            there = os.fstat(file.fileno())
+            module = inline(file.read(), data)
+        guard = _GUARD.format((there.st_size, int(there.st_mtime)))
+        module.body[1:1] = ast.parse(guard).body
+        return compile(module, path, "exec", dont_inherit=True)
 
 
 def main():

@@ -73,15 +73,32 @@ def test_what_is_called_twice_in_a_value_is_computed_once():
     assert calls == [1]
 
 
-def test_python_takes_what_was_compiled(tmp_path):
+def test_python_takes_what_was_compiled_until_a_source_changes(tmp_path):
     shutil.copytree(FOLDER, str(tmp_path / "robot"), ignore=shutil.ignore_patterns("__py*"))
     environment = dict(os.environ, PYTHONDONTWRITEBYTECODE="1")
 
     def run(*arguments):
-        return subprocess.check_output(
-            [sys.executable, *arguments], cwd=str(tmp_path), env=environment
-        ).decode("ascii")
+        process = subprocess.run(
+            [sys.executable, *arguments],
+            cwd=str(tmp_path),
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            check=False,
+        )
+        return process.returncode, process.stdout.decode("utf-8")
 
-    assert "step_wheel" in run("-c", SHOW).split()
-    run("-m", "robot.compile")
-    assert "step_wheel" not in run("-c", SHOW).split()
+    def edit(name):
+        source = tmp_path / "robot" / name
+        source.write_bytes(source.read_bytes() + b"\n")
+
+    assert "step_wheel" in run("-c", SHOW)[1].split()
+    assert run("-m", "robot.compile") == (0, "")
+    assert "step_wheel" not in run("-c", SHOW)[1].split()
+    edit("wheel.py")
+    assert "step_wheel" in run("-c", SHOW)[1].split()
+    assert run("-m", "robot.compile") == (0, "")
+    edit("controller.py")
+    status, words = run("-c", SHOW)
+    assert status == 1
+    assert "python3 -m robot.compile" in words
