@@ -34,7 +34,9 @@ from host.experiments.robot.wall_rows import (
     HitRow,
     HitsCell,
     OneHit,
+    RunTick,
     SeriesCell,
+    SeriesRun,
     TrialCell,
     WallCell,
     WallRow,
@@ -71,6 +73,8 @@ HITS_OF_A_PART = 100
 # cover, so that the wheels come to the wall at all phases.
 NEAREST_M, TURN_M = 1.2, 2 * pi * WHEEL_RADIUS_M
 REST_S, WATCH_S, LOOK_S, SERIES_S = 1.5, 8.0, 0.6, 40.0
+# How many runs are tried for a series that shows a reversal.
+RUNS = 10
 # The paper asks that this share of this many hits bounces.
 TARGET, BOUNCES = 0.95, 50
 BEST_HITS = 4
@@ -110,12 +114,13 @@ def cells(options: Options, *, batch: bool) -> list[WallCell]:
     return work
 
 
-def world(cell: OneHit | SeriesCell) -> dict[str, str]:
-    """Two walls, farther apart for each hit.
+def world(cell: OneHit | SeriesRun) -> dict[str, str]:
+    """Two walls, farther apart for each hit or run.
 
     A real robot needs a wall ahead that it meets squarely, half a metre away or more.
     """
-    farther_m = 0.0 if cell["part"] == "series" else 2 * TURN_M * cell["hit"] / cell["hits"]
+    part = cell["run"] / RUNS if cell["part"] == "series" else cell["hit"] / cell["hits"]
+    farther_m = 2 * TURN_M * part
     axle = {} if cell["axle"] is None else {"axle": str(cell["axle"])}
     return {
         "walls": f"{NEAREST_M + farther_m:.4f}",
@@ -133,7 +138,7 @@ def simulate(cell: HitsCell | SeriesCell, setting: Setting) -> list[Row]:
 def parts(cell: HitsCell | SeriesCell, setting: Setting, begun: Part | None) -> Iterator[Part]:
     """The same, some hits at a time."""
     if cell["part"] == "series":
-        yield Part(as_rows(read_series(*_run_into_wall(cell, setting, stop=False))))
+        yield Part(as_rows(_reversing_run(cell, setting)))
         return
     first = len(begun.rows) if begun else 0
     for end in [*range(first + HITS_OF_A_PART, cell["hits"], HITS_OF_A_PART), cell["hits"]]:
@@ -147,7 +152,17 @@ def parts(cell: HitsCell | SeriesCell, setting: Setting, begun: Part | None) -> 
         first = end
 
 
-def _run_into_wall(cell: OneHit | SeriesCell, setting: Setting, *, stop: bool) -> Motion:
+def _reversing_run(cell: SeriesCell, setting: Setting) -> list[RunTick]:
+    """The first run in which a wall reverses the robot; the last of RUNS if none does."""
+    for number in range(RUNS):
+        run: SeriesRun = {**cell, "run": number}
+        ticks = read_series(*_run_into_wall(run, setting, stop=False))
+        if any(tick["bounce"] for tick in ticks):
+            break
+    return [{**tick, "run": number} for tick in ticks]
+
+
+def _run_into_wall(cell: OneHit | SeriesRun, setting: Setting, *, stop: bool) -> Motion:
     """Send a simulated robot off; to `stop`, end when it has bounced, else after SERIES_S."""
     seed = setting.seed_of(cell)
     scene = Scene(**{name: float(value) for name, value in world(cell).items()})

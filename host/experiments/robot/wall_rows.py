@@ -58,6 +58,12 @@ class SeriesCell(Condition):
     part: Literal["series"]
 
 
+class SeriesRun(SeriesCell):
+    """One run of it, numbered from 0."""
+
+    run: int
+
+
 class TrialCell(TypedDict):
     """One hit of a robot, whose floor and body are as they are.
 
@@ -116,6 +122,16 @@ class Tick(TypedDict):
     bounce: bool
 
 
+class RunTick(Tick):
+    """One tick of a series, with the number of its run.
+
+    Attributes:
+        run: number of the run, from 0; the first one in which a wall reverses the robot is kept.
+    """
+
+    run: int
+
+
 @final
 class HitRow(NumberedHit):
     """A hit with its cell's columns; of those, a real robot's cell has only k.
@@ -140,7 +156,7 @@ class HitRow(NumberedHit):
 
 
 @final
-class SeriesRow(SeriesCell, Tick):
+class SeriesRow(SeriesCell, RunTick):
     """A row of part `series`."""
 
 

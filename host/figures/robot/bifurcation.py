@@ -1,15 +1,20 @@
-"""Torque and speed against k, with k lowered and raised.
+"""Torque and speed against k, with k lowered and raised, over the paper's k, and near k_c.
 
-Right: near k_c, without signs, and with the limit cycles; unstable ones are dashed.
+The measured limit cycles, those that feedback held and those that wheels ran on by themselves,
+scatter by some per mille in k. Each direction's line is a polynomial that is fitted to them.
 """
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
 
 from host.experiments.robot.bifurcation import SIGN, Numbers
 from host.experiments.robot.bifurcation_rows import (
@@ -17,91 +22,80 @@ from host.experiments.robot.bifurcation_rows import (
     BranchRow,
     SweepRow,
     held_cycles,
-    least_k,
     sweep_rows,
 )
-from host.figures.style import COLOURS, SIZE, share_legend, styled
-from host.kicking.outcome import FORWARD
+from host.figures.style import COLOURS, SIZE, styled
 from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
+
+PANELS = ("torque", "torque-2", "torque-near", "speed", "speed-2", "speed-near")
 
 Quantity = Literal["torque", "hz"]
 
 _COLOUR = {"forward": COLOURS[0], "backward": COLOURS[1], "rest": "black"}
-_WAYS: tuple[tuple[str, dict[str, Any]], ...] = (
-    ("down", {"marker": "o", "fillstyle": "full", "markersize": 6}),
-    ("up", {"marker": "^", "fillstyle": "none", "markersize": 8}),
+_WAYS: tuple[tuple[str, str, dict[str, Any]], ...] = (
+    ("down", "$k$ lowered", {"marker": "o", "fillstyle": "full", "markersize": 5}),
+    ("up", "$k$ raised", {"marker": "^", "fillstyle": "none", "markersize": 7}),
 )
-_WORDS = {"down": "lowered", "up": "raised"}
-_NEAR_K = (-0.015, 0.03)  # around k_c
+_CYCLE: Any = {"marker": "s", "fillstyle": "none", "markersize": 5, "linestyle": ""}
+_UNSTABLE: Any = (0, (2, 1))
+# The paper's enlarged panel, and the surroundings of k_c.
+_PAPER_K = (0.0, 2.0)
+_NEAR_K = (-0.012, 0.03)
+# Fits take cycles up to this k. Held ones count more: one stands for a speed.
+_FITTED_K, _HELD_WEIGHT, _DEGREE = 2.2, 3.0, 4
+_LABELS: dict[Quantity, tuple[str, str, float, float]] = {
+    "torque": ("torque $M$", "$|M|$", 1.1, 0.4),
+    "hz": (r"speed $\omega/2\pi$ (Hz)", r"$|\omega|/2\pi$ (Hz)", 2.3, 0.65),
+}
+
+
+class Line(NamedTuple):
+    """The fitted limit cycles of one direction, from the slowest on; `fold` is that of least k."""
+
+    k: NDArray[np.float64]
+    hz: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    fold: int
 
 
 def draw(rows: list[BifurcationRow], findings: Findings) -> Figure:
     """Draw the rows."""
     numbers: Numbers = findings.numbers
     k_c = numbers["k_c"]["by descent"]
+    greatest_k = max((row["k"] for row in sweep_rows(rows)), default=8.0)
+    spans = ((-0.1, greatest_k + 0.2), _PAPER_K, (k_c + _NEAR_K[0], k_c + _NEAR_K[1]))
+    lines = {motion: line for motion in SIGN if (line := _fit(rows, motion)) is not None}
     with styled():
         figure = Figure(**SIZE)
-        upper, lower = figure.subplots(2, 2, sharex="col")
-        _draw_quantity(upper, rows, "torque", "torque $M$", "$|M|$", 1.1, 0.45)
-        speeds = (r"speed $\omega/2\pi$ (Hz)", r"$|\omega|/2\pi$ (Hz)")
-        _draw_quantity(lower, rows, "hz", *speeds, 2.3, 0.75)
-        for axes in (*upper, *lower):
-            axes.axvline(k_c, color="dimgrey", linestyle=":", linewidth=1.4)
-        stall: Any = {"color": "grey", "alpha": 0.25, "linewidth": 0}
-        for axes in upper:
-            axes.axhspan(-STALL_TORQUE, STALL_TORQUE, label=f"stall, $|M|<{STALL_TORQUE}$", **stall)
-        greatest_k = max((row["k"] for row in rows if row["part"] == "sweep"), default=8.0)
-        upper[0].set_xlim(-0.1, greatest_k + 0.2)
-        upper[1].set_xlim(k_c + _NEAR_K[0], k_c + _NEAR_K[1])
-        upper[1].xaxis.set_major_locator(MultipleLocator(0.01))
-        upper[1].text(k_c - 0.002, 0.43, f"$k_c$ = {k_c:.3f}", ha="right", va="top")
-        for axes in lower:
+        grid = figure.subplots(2, 3, sharex="col")
+        quantities: tuple[Quantity, ...] = ("torque", "hz")
+        for panels, quantity in zip(grid, quantities, strict=True):
+            label, absolute, most, most_near = _LABELS[quantity]
+            for axes, span in zip(panels, spans, strict=True):
+                near = axes is panels[-1]
+                _draw_sweeps(axes, rows, quantity, signed=not near)
+                if axes is not panels[0]:
+                    _draw_lines(axes, lines, quantity, signed=not near)
+                axes.axvline(k_c, color="dimgrey", linestyle=":", linewidth=1.4)
+                axes.set(xlim=span, ylim=(-0.03 * most_near, most_near) if near else (-most, most))
+            _draw_held(panels[-1], held_cycles(rows), quantity)
+            panels[0].set_ylabel(label)
+            panels[-1].set_ylabel(absolute)
+        for axes in grid[0]:
+            axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", linewidth=0, zorder=0)
+        for axes in grid[1]:
             axes.set_xlabel("spring constant $k$")
+        grid[1, 2].xaxis.set_major_locator(MultipleLocator(0.01))
+        grid[0, 2].text(k_c - 0.001, 0.38, f"$k_c$ = {k_c:.3f}", ha="right", va="top", fontsize=11)
         figure.align_ylabels()
-        below: Any = {"loc": "outside lower center", "ncols": 4, "columnspacing": 1.5}
-        share_legend(figure, upper, fontsize=11, **below)
+        handles = _handles(rows, fitted=bool(lines))
+        figure.legend(handles=handles, loc="outside lower left", ncols=5, fontsize=11)
         figure.suptitle(
             "Locomotion ends in a jump at $k_c$; above it, a robot at rest may stay there",
             fontsize=16,
         )
     return figure
-
-
-def _draw_quantity(
-    panels: tuple[Axes, Axes],
-    rows: list[BifurcationRow],
-    quantity: Quantity,
-    label: str,
-    absolute: str,
-    most: float,
-    most_near: float,
-) -> None:
-    """Draw a quantity over all k (left), and without its sign near k_c (right)."""
-    wide, near = panels
-    _draw_sweeps(wide, rows, quantity, signed=True)
-    _draw_sweeps(near, rows, quantity, signed=False)
-    _draw_cycles(near, held_cycles(rows), quantity)
-    wide.set(ylabel=label, ylim=(-most, most))
-    near.set(ylabel=absolute, ylim=(-0.03 * most_near, most_near))
-
-
-def _draw_sweeps(
-    axes: Axes, rows: list[BifurcationRow], quantity: Quantity, *, signed: bool
-) -> None:
-    sweep = sweep_rows(rows)
-    for way, style in _WAYS:
-        for state, colour in _COLOUR.items():
-            points = [row for row in sweep if row["way"] == way and _state(row) == state]
-            values = [row[quantity] if signed else abs(row[quantity]) for row in points]
-            axes.plot(
-                [row["k"] for row in points],
-                values,
-                color=colour,
-                linestyle="",
-                label=f"{state}, $k$ {_WORDS[way]}",
-                **style,
-            )
 
 
 def _state(row: SweepRow) -> str:
@@ -110,27 +104,61 @@ def _state(row: SweepRow) -> str:
     return "forward" if row["hz"] > 0 else "backward"
 
 
-def _draw_cycles(axes: Axes, held_cycles: list[BranchRow], quantity: Quantity) -> None:
-    """Draw each direction's limit cycles, dashed where they are slower than that of least k."""
+def _draw_sweeps(
+    axes: Axes, rows: list[BifurcationRow], quantity: Quantity, *, signed: bool
+) -> None:
+    for way, _, style in _WAYS:
+        for state, colour in _COLOUR.items():
+            points = [row for row in sweep_rows(rows) if row["way"] == way and _state(row) == state]
+            values = [row[quantity] if signed else abs(row[quantity]) for row in points]
+            axes.plot([row["k"] for row in points], values, color=colour, linestyle="", **style)
+
+
+def _fit(rows: list[BifurcationRow], motion: str) -> Line | None:
+    """The limit cycles of a direction; None if too few of them were held."""
+    held = [row for row in held_cycles(rows) if row["motion"] == motion]
+    ran = [row for row in sweep_rows(rows) if _state(row) == motion and row["k"] <= _FITTED_K]
+    if len(held) <= _DEGREE + 1:
+        return None
+    hz, torque, k = (np.abs([row[name] for row in (*held, *ran)]) for name in ("hz", "torque", "k"))
+    weights = [_HELD_WEIGHT] * len(held) + [1.0] * len(ran)
+    speeds = np.linspace(hz.min(), hz.max(), 500)
+    ks = np.exp(np.polyval(np.polyfit(hz, np.log(k), _DEGREE, w=weights), speeds))
+    torques = np.asarray(np.polyval(np.polyfit(hz, torque, _DEGREE, w=weights), speeds))
+    return Line(ks, speeds, torques, int(ks.argmin()))
+
+
+def _draw_lines(axes: Axes, lines: dict[str, Line], quantity: Quantity, *, signed: bool) -> None:
+    """Draw the fitted limit cycles, dashed where they are unstable: slower than that of least k."""
+    for motion, line in lines.items():
+        values = getattr(line, quantity) * (SIGN[motion] if signed else 1)
+        colour = _COLOUR[motion]
+        axes.plot(line.k[line.fold :], values[line.fold :], color=colour)
+        slow = slice(line.fold + 1)
+        axes.plot(line.k[slow], values[slow], color=colour, linestyle=_UNSTABLE)
+
+
+def _draw_held(axes: Axes, cycles: list[BranchRow], quantity: Quantity) -> None:
     for motion in SIGN:
-        cycles = [row for row in held_cycles if row["motion"] == motion]
-        cycles.sort(key=lambda row: row["held_hz"])
-        node = least_k(cycles)
-        if node is None:
-            continue
-        fold = cycles.index(node)
-        unstable, stable = cycles[: fold + 1], cycles[fold:]
-        for part, line, label in (
-            (unstable, (0, (2, 1)), "unstable cycle"),
-            (stable, "-", "stable cycle"),
-        ):
-            style: Any = {"linestyle": line, "color": _COLOUR[motion]}
-            axes.plot(
-                [row["k"] for row in part],
-                [abs(row[quantity]) for row in part],
-                label=f"{motion}, {label}",
-                **style,
-            )
-        if motion == FORWARD:
-            spot = cycles[0]["k"] + 0.0008, abs(cycles[0][quantity])
-            axes.text(*spot, "unstable", va="center", fontsize=12)
+        own = [row for row in cycles if row["motion"] == motion]
+        values = [abs(row[quantity]) for row in own]
+        axes.plot([row["k"] for row in own], values, color=_COLOUR[motion], **_CYCLE)
+
+
+def _handles(rows: list[BifurcationRow], *, fitted: bool) -> list[Any]:
+    """The legend's entries for what is drawn."""
+    drawn = {_state(row) for row in sweep_rows(rows)}
+    handles: list[Any] = [
+        Patch(color=colour, label=state) for state, colour in _COLOUR.items() if state in drawn
+    ]
+    handles += [
+        Line2D([], [], color="grey", linestyle="", label=words, **style)
+        for _, words, style in _WAYS
+    ]
+    if held_cycles(rows):
+        handles.append(Line2D([], [], color="grey", label="held by feedback", **_CYCLE))
+    if fitted:
+        handles.append(Line2D([], [], color="grey", label="limit cycle, fitted"))
+        handles.append(Line2D([], [], color="grey", linestyle=_UNSTABLE, label="unstable"))
+    handles.append(Patch(color="lightgrey", label=f"stall, $|M|<{STALL_TORQUE:g}$"))
+    return handles

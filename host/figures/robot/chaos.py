@@ -1,13 +1,23 @@
-"""The chaotic mode: torque, return map, how long switching lasts, how twins part, the map."""
+"""The chaotic mode: the robot's torque beside the model's, and what explains it.
+
+The model's panel shows a wheel of the paper's model at the same a, tau and k, with the paper's I
+and f, after it has settled. The table has the robot's wheels alone; `kickctl theory lyapunov` has
+such a series of the model.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from textwrap import wrap
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.experiments.robot.chaos_numbers import tally
-from host.experiments.robot.chaos_pieces import SEEN, TWIN_S, UNSEEN
+from host.experiments.robot.chaos_pieces import SEEN
 from host.experiments.robot.chaos_rows import (
     ChaosRow,
     MapRow,
@@ -25,56 +35,72 @@ from host.experiments.robot.switching import CONDITIONS, OLDER, ORDINARY
 from host.figures.style import COLOURS, SIZE, styled
 from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
+from host.theory.analysis.trajectories import SAMPLE_S, trajectory
+from host.theory.model.laws import array_rates, law_of
+from host.theory.model.turning import turning
+from host.theory.model.wheel import OMEGA, Wheel
 from host.util.intervals import wilson
 from sim_motor.settling import COUNT_RAD
 
-STRETCH_S = 20.0
-_SLIDE = (16.0, 9.0)
-_BEGINS_S = {ORDINARY: 0.0, OLDER: 60.0}
-# Condition and jump of the twins that are drawn, with a label and its place.
-_TWINS = (
-    (OLDER, SEEN, OLDER, (2.2, 0.8)),
-    (ORDINARY, SEEN, ORDINARY, (8.0, 6e-5)),
-    (OLDER, UNSEEN, "a jump that no reading shows", (2.4, 1e-7)),
-)
-_SMALL = 12
+STRETCH_S = 15.0
+_BEGINS_S = {OLDER: 60.0}
+# How long the model's wheel settles, s.
+_SETTLES_S = 60.0
+_SMALL = 11
 
 
 def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
-    """Draw the rows of a simulated brick, or of a robot, which has neither twins nor map."""
+    """Draw the rows of a simulated brick, or of a robot, which has its two wheels alone."""
     wheels = series_of_wheels(rows)
-    places = map_rows(rows)
     params = findings.numbers["parameters"]
+    panels = _explanations(rows, params)
     with styled():
-        figure = Figure(**{**SIZE, "figsize": _SLIDE})
-        grid = figure.add_gridspec(2, 3)
-        courses = grid[0, :2].subgridspec(2, 1)
+        figure = Figure(**SIZE)
+        halves = figure.add_gridspec(2, 1, height_ratios=(1, 1.35))
+        courses = halves[0].subgridspec(1, len(wheels) + 1)
         for place, ((condition, side), series) in enumerate(wheels.items()):
-            axes = figure.add_subplot(courses[place])
-            title = condition if places else f"{side} wheel"
-            _draw_torque(axes, series, title, _BEGINS_S.get(condition, 0.0), last=place == 1)
-        axes = figure.add_subplot(grid[0, 2])
-        if places:
-            older = [own for (condition, _), own in wheels.items() if condition == OLDER]
-            _draw_return_map(axes, older, OLDER)
-            end_s = max(series[-1]["t_s"] for series in wheels.values())
-            _draw_lives(figure.add_subplot(grid[1, 0]), rows, end_s)
-            _draw_twins(figure.add_subplot(grid[1, 1]), twins_rows(rows), params)
-            _draw_map(figure.add_subplot(grid[1, 2]), places)
-        else:
-            _draw_return_map(axes, list(wheels.values()), "both wheels")
-            _draw_intervals(figure.add_subplot(grid[1, :]), list(wheels.values()))
-        figure.suptitle(
-            "Chaos at $a$ = {a:g}, $k$ = {k:g}, $\\tau$ = {tau_s:g} s: do the wheels switch"
-            " irregularly?".format(**params),
-            fontsize=18,
-        )
+            axes = figure.add_subplot(courses[place], label=f"torque-{place + 1}")
+            title = f"robot, {side} wheel" if _is_pair(wheels) else f"robot, {condition}"
+            _draw_torque(axes, series, title, _BEGINS_S.get(condition, 0.0))
+        figure.axes[0].set_ylabel("torque $M$")
+        _draw_model(figure.add_subplot(courses[-1], label="model"), params)
+        places = halves[1].subgridspec(1, len(panels))
+        for place, (name, drawn) in enumerate(panels.items()):
+            drawn(figure.add_subplot(places[place], label=name))
+        figure.suptitle("Do the wheels switch irregularly? (grey: the motor stalls)", fontsize=16)
     return figure
 
 
-def _draw_torque(
-    axes: Axes, series: list[SeriesRow], title: str, begin_s: float, *, last: bool
-) -> None:
+def _is_pair(wheels: dict[tuple[str, str], list[SeriesRow]]) -> bool:
+    """Whether the series are both wheels of one robot."""
+    return len({side for _, side in wheels}) > 1
+
+
+def _explanations(
+    rows: list[ChaosRow], params: dict[str, float]
+) -> dict[str, Callable[[Axes], None]]:
+    """What draws the lower panels, by their names: those that there are rows for."""
+    wheels, twins, places = series_of_wheels(rows), twins_rows(rows), map_rows(rows)
+    shown = {
+        condition if not _is_pair(wheels) else f"{side} wheel": series
+        for (condition, side), series in wheels.items()
+    }
+    if places:
+        shown = {OLDER: shown[OLDER]}
+    end_s = max(series[-1]["t_s"] for series in wheels.values())
+    panels: dict[str, Callable[[Axes], None]] = {"return-map": partial(_draw_return_map, shown)}
+    if not places:
+        panels["intervals"] = partial(_draw_intervals, shown)
+    if any(lives_rows(rows, name) for name in CONDITIONS):
+        panels["lives"] = partial(_draw_lives, rows, end_s)
+    if twins:
+        panels["twins"] = partial(_draw_twins, twins, params)
+    if places:
+        panels["map"] = partial(_draw_map, places)
+    return panels
+
+
+def _draw_torque(axes: Axes, series: list[SeriesRow], title: str, begin_s: float) -> None:
     """Draw STRETCH_S seconds from begin_s on, or the last ones if the series ends before that."""
     t_s = np.array([row["t_s"] for row in series])
     torque = np.array([row["torque"] for row in series])
@@ -82,80 +108,91 @@ def _draw_torque(
     inside = (t_s >= begin_s) & (t_s <= begin_s + STRETCH_S)
     axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", linewidth=0)
     axes.plot(t_s[inside], torque[inside], color="black", linewidth=1.4, drawstyle="steps-post")
-    axes.set_xlim(begin_s, begin_s + STRETCH_S)
-    axes.set_ylim(-1.15, 1.15)
-    axes.set_ylabel("torque $M$")
-    if last:
-        axes.set_xlabel("time (s)")
-    axes.set_title(f"{title} (grey: the motor stalls)", fontsize=14, loc="left")
+    axes.set(xlim=(begin_s, begin_s + STRETCH_S), ylim=(-1.15, 1.15), xlabel="time (s)")
+    axes.set_title(title, fontsize=13)
 
 
-def _draw_return_map(axes: Axes, shown: list[list[SeriesRow]], of: str) -> None:
+def _draw_model(axes: Axes, params: dict[str, float]) -> None:
+    wheel = Wheel(k=params["k"], tau=params["tau_s"], a=params["a"])
+    start = turning(np.array([0.01]), np.zeros(1), wheel)[:, 0]
+    path = trajectory(start, wheel, _SETTLES_S + STRETCH_S)[-round(STRETCH_S / SAMPLE_S) :].T
+    force = wheel.I * array_rates(law_of(wheel))(*path, *wheel)[OMEGA] + wheel.f * path[OMEGA]
+    t_s = _SETTLES_S + SAMPLE_S * np.arange(len(force))
+    axes.axhline(0.0, color="lightgrey", linewidth=1)
+    axes.plot(t_s, force, color="black", linewidth=1.4)
+    axes.set(xlim=(_SETTLES_S, _SETTLES_S + STRETCH_S), xlabel="time (s)")
+    axes.set_ylabel(r"torque $F^\mathrm{tan}$")
+    axes.set_title(f"model, $I$ = {wheel.I:g} s², $f$ = {wheel.f:g} s", fontsize=13)
+
+
+def _draw_return_map(shown: dict[str, list[SeriesRow]], axes: Axes) -> None:
     """Draw the angle of each turning point against the one before."""
-    for series, colour in zip(shown, COLOURS, strict=False):
+    for (name, series), colour, marker in zip(shown.items(), COLOURS, ".x", strict=False):
         angles = np.degrees(turning_points_rad(series))
-        axes.plot(angles[:-1], angles[1:], ".", color=colour, markersize=4)
-    axes.set_xlabel("turning point, modulo 90 (deg)")
-    axes.set_ylabel("the next turning point (deg)")
+        style: Any = {"color": colour, "marker": marker, "markersize": 4, "linestyle": ""}
+        axes.plot(angles[:-1], angles[1:], **style, label=name)
+    axes.set(xlabel="turned at (°, mod 90)", ylabel="turned next at (°)")
     axes.set_xticks((0, 30, 60, 90))
     axes.set_yticks((0, 30, 60, 90))
-    axes.set_title(f"return map: {of}", fontsize=14, loc="left")
+    if len(shown) > 1:
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=_SMALL)
+    else:
+        axes.set_title(next(iter(shown)), fontsize=_SMALL)
 
 
-def _draw_intervals(axes: Axes, shown: list[list[SeriesRow]]) -> None:
+def _draw_intervals(shown: dict[str, list[SeriesRow]], axes: Axes) -> None:
     """Draw histograms of the times between switches."""
-    for series, colour in zip(shown, COLOURS, strict=False):
-        axes.hist(
-            intervals_s(series),
-            bins=np.arange(0.0, 4.0, 0.1).tolist(),
-            histtype="step",
-            color=colour,
-            linewidth=2,
-            label=series[0]["side"],
-        )
-    axes.set_xlabel("time between switches (s)")
-    axes.set_ylabel("count")
-    axes.legend()
+    for (name, series), colour, line in zip(shown.items(), COLOURS, ("-", "--"), strict=False):
+        bins = np.arange(0.0, 4.0, 0.1).tolist()
+        style: Any = {"histtype": "step", "color": colour, "linewidth": 2, "linestyle": line}
+        axes.hist(intervals_s(series), bins=bins, label=name, **style)
+    axes.set(xlabel="time between switches (s)", ylabel="count")
+    if len(shown) > 1:
+        axes.legend(fontsize=_SMALL)
 
 
-def _draw_lives(axes: Axes, rows: list[ChaosRow], end_s: float) -> None:
+def _draw_lives(rows: list[ChaosRow], end_s: float, axes: Axes) -> None:
     """Draw which share of the wheels still switches in the end, under each condition."""
-    names = list(CONDITIONS)[::-1]
+    names = [name for name in CONDITIONS if lives_rows(rows, name)]
     for place, name in enumerate(names):
         own = tally(lives_rows(rows, name))
-        share, colour = own["to_the_end"] / own["wheels"], COLOURS[CONDITIONS[name].rod_lag_s > 0]
+        older = CONDITIONS[name].rod_lag_s > 0
         low, high = wilson(own["to_the_end"], own["wheels"])
-        axes.barh(place, 100 * share, color=colour, alpha=0.5)
-        axes.plot((100 * low, 100 * high), (place, place), color="black", linewidth=1.5)
-    axes.set_yticks(range(len(names)), names, fontsize=_SMALL)
-    axes.set_xlim(0, 100)
-    axes.set_xlabel(f"wheels that switch for {end_s / 60:.0f} min (%)")
-    axes.set_title("how many last (line: 95 % interval)", fontsize=14, loc="left")
+        share = 100 * own["to_the_end"] / own["wheels"]
+        axes.barh(place, share, 0.8, color=COLOURS[0 if older else 1], alpha=0.5)
+        axes.plot((100 * low, 100 * high), (place + 0.3,) * 2, color="black", linewidth=1.5)
+        axes.text(2, place, name, fontsize=9.5, va="center")
+    axes.set_yticks([])
+    axes.set(xlim=(0, 100), ylim=(max(len(names), 5) - 0.5, -0.5))
+    axes.set_xlabel("wheels (%), 95 % intervals")
+    axes.set_title(f"wheels that switch for {end_s / 60:.0f} min", fontsize=_SMALL)
 
 
 def _draw_twins(
-    axes: Axes, twins: dict[tuple[str, float], list[TwinsRow]], params: dict[str, float]
+    twins: dict[tuple[str, float], list[TwinsRow]], params: dict[str, float], axes: Axes
 ) -> None:
     """Draw the median, and 10 to 90 %, of the distance of twins."""
-    for (condition, jump, label, place), colour in zip(_TWINS, COLOURS, strict=False):
-        pairs = twins[condition, jump]
+    for (condition, jump), pairs in twins.items():
+        colour = COLOURS[1 if condition == ORDINARY else 0]
         since_s = np.unique([row["since_s"] for row in pairs])
         distances = np.array([row["distance"] for row in pairs]).reshape(-1, len(since_s))
         low, median, high = np.quantile(distances, (0.1, 0.5, 0.9), axis=0)
-        axes.plot(since_s, median, color=colour)
-        axes.text(*place, label, color=colour, fontsize=_SMALL, va="bottom")
+        if not median.any():  # a jump that no reading shows
+            continue
+        line = "-" if jump == SEEN else "--"
+        label = "\n".join(wrap(f"{jump:g}: {condition}", 22))
+        axes.plot(since_s, median, color=colour, linestyle=line, label=label)
         axes.fill_between(since_s, low, high, color=colour, alpha=0.2, linewidth=0)
     seen = params["tick_s"] / params["tau_s"] * COUNT_RAD
-    axes.axhline(seen, color="black", linestyle=":", linewidth=1.2)
-    axes.text(TWIN_S, seen, "one degree, one tick", fontsize=_SMALL, ha="right", va="top")
-    axes.set_yscale("log")
-    axes.set_ylim(1e-8, 10)
-    axes.set_xlabel("time since a jump of $x_1$ (s)")
-    axes.set_ylabel("distance of the potentials")
-    axes.set_title("how twins part", fontsize=14, loc="left")
+    axes.axhline(seen, color="black", linestyle=":", linewidth=1.2, label="one degree, one tick")
+    axes.set(yscale="log", ylim=(1e-9, 1e6), xlim=(0, since_s[-1]))
+    axes.set_yticks((1e-8, 1e-6, 1e-4, 1e-2, 1))
+    axes.set(xlabel="time since $x_1$ jumps (s)", ylabel="distance of $(x_1, x_2)$")
+    axes.set_title("how twins part", fontsize=_SMALL)
+    axes.legend(fontsize=9, loc="upper right", handlelength=1.5, labelspacing=0.2)
 
 
-def _draw_map(axes: Axes, places: dict[tuple[float, float], list[MapRow]]) -> None:
+def _draw_map(places: dict[tuple[float, float], list[MapRow]], axes: Axes) -> None:
     """Draw the share of chaotic wheels over the rods' lag and the battery's voltage."""
     lags_s = sorted({lag_s for lag_s, _ in places})
     voltages_v = sorted({battery_v for _, battery_v in places})
@@ -167,9 +204,11 @@ def _draw_map(axes: Axes, places: dict[tuple[float, float], list[MapRow]]) -> No
     image = axes.imshow(
         100 * shares, origin="lower", aspect="auto", cmap="cividis", vmin=0, vmax=100
     )
-    axes.set_xticks(range(len(lags_s)), [f"{1000 * lag:g}" for lag in lags_s])
+    axes.set_xticks(
+        range(len(lags_s)), [f"{1000 * lag:g}" for lag in lags_s], fontsize=10, rotation=50
+    )
     axes.set_yticks(range(len(voltages_v)), [f"{volts:g}" for volts in voltages_v])
     axes.set_xlabel("rods older by (ms)")
     axes.set_ylabel("battery (V)")
-    axes.figure.colorbar(image, ax=axes, label="chaotic wheels (%)", fraction=0.06, pad=0.02)
-    axes.set_title("where it is chaotic", fontsize=14, loc="left")
+    axes.figure.colorbar(image, ax=axes, label="chaotic wheels (%)", fraction=0.08, pad=0.02)
+    axes.set_title("where it is chaotic", fontsize=_SMALL)

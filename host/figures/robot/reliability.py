@@ -12,12 +12,15 @@ from host.runs.contract import Findings
 from host.util.intervals import wilson
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
+PANELS = ("rates", "times")
+
 _CURVES: tuple[tuple[str, str, bool | None], ...] = (
     ("position inverted", POSITION, None),
     ("phase shift, + if forward, \N{MINUS SIGN} if backward", PHASE, True),
     ("phase shift, \N{MINUS SIGN} if forward, + if backward", PHASE, False),
 )
-_MARKERS = "os^"
+# Markers and colours as in the paper, which has the first two.
+_STYLES = (("o", COLOURS[2]), ("^", COLOURS[1]), ("s", COLOURS[0]))
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -57,13 +60,13 @@ def _draw_rate(
     low, high = 100 * np.array([wilson(*count) for count in counts]).T
     errors = np.abs([shares - low, high - shares])
     place = np.array(LENGTHS) + 0.08 * (index - 1)
-    axes.errorbar(
-        place, shares, errors, color=COLOURS[index], marker=_MARKERS[index], capsize=4, label=label
-    )
+    marker, colour = _STYLES[index]
+    axes.errorbar(place, shares, errors, color=colour, marker=marker, capsize=4, label=label)
 
 
 def _draw_times(axes: Axes, rows: list[Row], index: int, mode: str, named: bool | None) -> None:
     """Draw median and quartiles of the settling times."""
+    marker, colour = _STYLES[index]
     for ticks in LENGTHS:
         times = [
             row["settling_s"]
@@ -73,11 +76,5 @@ def _draw_times(axes: Axes, rows: list[Row], index: int, mode: str, named: bool 
         if times:
             low, median, high = np.quantile(times, (0.25, 0.5, 0.75))
             bars = [[median - low], [high - median]]
-            axes.errorbar(
-                ticks + 0.08 * (index - 1),
-                median,
-                bars,
-                color=COLOURS[index],
-                marker=_MARKERS[index],
-                capsize=4,
-            )
+            place = ticks + 0.08 * (index - 1)
+            axes.errorbar(place, median, bars, color=colour, marker=marker, capsize=4)

@@ -1,4 +1,4 @@
-"""One round of the three kicks as in the paper's timeline.
+"""One round of the three kicks as in the paper's timeline, each wheel in a panel of its own.
 
 Beside it stands how far the wheels slipped and how long they took to settle.
 """
@@ -20,17 +20,28 @@ from host.experiments.robot.timeline_rows import (
     settled_kicks,
     tick_rows,
 )
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
-from robot.kicks import MEMBRANE, PHASE, POSITION
+from robot.kicks import MEMBRANE, PHASE, POSITION, WHEELS
 
+PANELS = (
+    *(f"{mode}-{side}" for mode in KICKS for side in WHEELS),
+    "slips",
+    "settling",
+)
 # The colours of the paper's figure.
-_X1_LEFT: Any = {"color": "saddlebrown", "linewidth": 1.6, "label": "$x_1$ left"}
-_X2_LEFT: Any = {"color": "darkorange", "linewidth": 1.6, "label": "$x_2$ left"}
-_X1_RIGHT: Any = {"color": "mediumblue", "linewidth": 1.6, "label": "$x_1$ right"}
-_X2_RIGHT: Any = {"color": "deepskyblue", "linewidth": 1.6, "label": "$x_2$ right"}
-_M_LEFT: Any = {"color": "black", "linewidth": 4.0, "label": "$M$ left"}
-_M_RIGHT: Any = {"color": "grey", "linewidth": 2.0, "label": "$M$ right"}
+_STYLES: dict[str, dict[str, dict[str, Any]]] = {
+    "left": {
+        "left_x1": {"color": "saddlebrown", "label": "$x_1$ left"},
+        "left_x2": {"color": "darkorange", "label": "$x_2$ left", "linestyle": "--"},
+        "left_torque": {"color": "black", "linewidth": 3.0, "label": "$M$ left"},
+    },
+    "right": {
+        "right_x1": {"color": "mediumblue", "label": "$x_1$ right"},
+        "right_x2": {"color": "deepskyblue", "label": "$x_2$ right", "linestyle": "--"},
+        "right_torque": {"color": "grey", "linewidth": 3.0, "label": "$M$ right"},
+    },
+}
 _KICK = "crimson"
 _MODES = {MEMBRANE: (COLOURS[0], "o"), POSITION: (COLOURS[1], "s"), PHASE: (COLOURS[2], "^")}
 
@@ -39,22 +50,24 @@ def draw(rows: list[TimelineRow], findings: Findings) -> Figure:
     """Draw the rows."""
     with styled():
         figure = Figure(**SIZE)
-        halves = figure.add_gridspec(1, 2, width_ratios=(1.7, 1))
-        left = halves[0].subgridspec(3, 1)
-        panels = [figure.add_subplot(left[index]) for index in range(len(KICKS))]
-        for axes, mode in zip(panels, KICKS, strict=True):
-            _draw_series(axes, tick_rows(rows, mode))
+        halves = figure.add_gridspec(1, 2, width_ratios=(2.6, 1))
+        courses: Any = (
+            halves[0].subgridspec(len(KICKS), len(WHEELS)).subplots(sharex=True, sharey=True)
+        )
+        for panels, mode in zip(courses, KICKS, strict=True):
+            for axes, side in zip(panels, WHEELS, strict=True):
+                _draw_series(axes, tick_rows(rows, mode), side)
             ticks = max((row["ticks"] for row in kick_rows(rows, mode)), default=1)
             title = f"{mode} kicks, {ticks} tick{'s' if ticks > 1 else ''}"
-            axes.set_title(title, loc="left", fontsize=12, pad=3)
-        panels[1].set_ylabel("potentials $x$, torque $M$")
-        panels[-1].set_xlabel("time since the first kick (s)")
-        handles, labels = panels[0].get_legend_handles_labels()
+            panels[0].set_title(title, loc="left", fontsize=12, pad=3)
+        courses[1, 0].set_ylabel("potentials $x$, torque $M$")
+        for axes in courses[-1]:
+            axes.set_xlabel("time since the first kick (s)")
         below: Any = {"loc": "outside lower left", "ncols": 7, "columnspacing": 1.1}
-        figure.legend(handles, labels, fontsize=11, handlelength=1.3, **below)
-        right = halves[1].subgridspec(2, 1)
-        _draw_slips(figure.add_subplot(right[0]), rows)
-        _draw_settling(figure.add_subplot(right[1]), rows)
+        share_legend(figure, courses[0], fontsize=11, handlelength=1.6, **below)
+        others = halves[1].subgridspec(2, 1)
+        _draw_slips(figure.add_subplot(others[0]), rows)
+        _draw_settling(figure.add_subplot(others[1]), rows)
         rounds = len({row["trial"] for row in rows})
         figure.suptitle(
             f"Three kicks, there and back: one of {rounds} rounds, and all of them", fontsize=16
@@ -62,14 +75,10 @@ def draw(rows: list[TimelineRow], findings: Findings) -> Figure:
     return figure
 
 
-def _draw_series(axes: Axes, ticks: list[TickRow]) -> None:
+def _draw_series(axes: Axes, ticks: list[TickRow], side: str) -> None:
     t = [row["t_s"] for row in ticks]
-    axes.plot(t, [row["left_x1"] for row in ticks], **_X1_LEFT)
-    axes.plot(t, [row["left_x2"] for row in ticks], **_X2_LEFT)
-    axes.plot(t, [row["right_x1"] for row in ticks], **_X1_RIGHT)
-    axes.plot(t, [row["right_x2"] for row in ticks], **_X2_RIGHT)
-    axes.plot(t, [row["left_torque"] for row in ticks], **_M_LEFT)
-    axes.plot(t, [row["right_torque"] for row in ticks], **_M_RIGHT)
+    for name, style in _STYLES[side].items():
+        axes.plot(t, [row[name] for row in ticks], **{"linewidth": 1.5, **style})  # type: ignore[literal-required]
     labelled = False
     for row, after in pairwise(ticks):
         if row["kicked"]:
@@ -82,7 +91,7 @@ def _draw_series(axes: Axes, ticks: list[TickRow]) -> None:
                 label="" if labelled else "kick",
             )
             labelled = True
-    axes.set_ylim(-1.1, 1.1)
+    axes.set_ylim(-1.25, 1.25)
     axes.margins(x=0)
 
 
@@ -111,5 +120,5 @@ def _draw_settling(axes: Axes, rows: list[TimelineRow]) -> None:
         places = place + rng.uniform(-0.2, 0.2, len(times))
         axes.plot(places, times, marker, color=colour, markersize=5, alpha=0.8)
         longest = max([longest, *times])
-    axes.set_xticks(range(len(_MODES)), list(_MODES), fontsize=12)
+    axes.set_xticks(range(len(_MODES)), list(_MODES), fontsize=11)
     axes.set(ylabel="settling time (s)", ylim=(0, 1.1 * longest), xlim=(-0.5, len(_MODES) - 0.5))

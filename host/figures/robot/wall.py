@@ -1,7 +1,8 @@
 """A robot at a wall: the torque M while it drives to and fro, and where a wall reverses it.
 
 Maps show the share of hits that reverse it over the axles' stiffness and the floor's grip, the
-width of the front, and the battery's voltage.
+width of the front, and the battery's voltage. The share of a field's hits scatters by chance: a
+field is framed unless its 95 % interval says that fewer reverse than the claim asks for.
 """
 
 from __future__ import annotations
@@ -35,8 +36,10 @@ from host.experiments.robot.wall_rows import (
     series_under,
 )
 from host.figures.heat_map import draw_heat_map
-from host.figures.style import COLOURS, SIZE, share_legend, styled
+from host.figures.style import COLOURS, SIZE, styled
+from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
+from host.util.intervals import wilson
 
 
 class Plane(NamedTuple):
@@ -74,10 +77,9 @@ _PLANES = (
     ),
 )
 _SHOWN = (
-    (PAPER, "wheels fixed to the motors"),
-    (ON_AXLES, f"wheels on axles of {ON_AXLES['axle']:g} N/m"),
+    (PAPER, "rigid axles"),
+    (ON_AXLES, f"axles of {ON_AXLES['axle']:g} N/m"),
 )
-_SLIDE: Any = {**SIZE, "figsize": (13.33, 7.5), "dpi": 120}
 _REGION: Any = {"color": COLOURS[1], "linewidth": 3.5, "solid_capstyle": "projecting"}
 _KNOWN: Any = {"color": COLOURS[2], "linewidth": 6, "clip_on": False, "solid_capstyle": "butt"}
 
@@ -86,7 +88,7 @@ def draw(rows: list[WallRow], findings: Findings) -> Figure:
     """Draw series and maps of simulated rows, or the hits alone of a robot's rows."""
     simulated = bool(series_under(rows, PAPER))
     with styled():
-        figure = Figure(**(_SLIDE if simulated else SIZE))
+        figure = Figure(**SIZE)
         hits = hits_under(rows, PAPER) or hits_under(rows, ON_AXLES)
         title = f"A wall reverses the robot ($k$ = {rows[0]['k']:g}) in {_words(hits)} hits"
         if simulated:
@@ -95,7 +97,7 @@ def draw(rows: list[WallRow], findings: Findings) -> Figure:
         if simulated:
             _draw_simulated(figure, rows)
         else:
-            _draw_hits(figure.subplots(), hits)
+            _draw_hits(figure.add_subplot(label="hits"), hits)
     return figure
 
 
@@ -106,24 +108,28 @@ def _words(hits: list[HitRow]) -> str:
 
 def _draw_simulated(figure: Figure, rows: list[WallRow]) -> None:
     grid = figure.add_gridspec(2, 6, height_ratios=(5, 11))
-    series = [figure.add_subplot(grid[0, 3 * place : 3 * place + 3]) for place in range(2)]
+    series = [
+        figure.add_subplot(grid[0, 3 * place : 3 * place + 3], label=f"torque-{place + 1}")
+        for place in range(len(_SHOWN))
+    ]
     for axes, (condition, words) in zip(series, _SHOWN, strict=True):
         _draw_series(axes, series_under(rows, condition), condition, words)
-    series[0].set_ylabel("torque $M$ (1)")
-    share_legend(series[0], series, ncols=3, fontsize=11, loc="upper right", handlelength=1.4)
+    series[0].set_ylabel("torque $M$")
+    series[0].legend(ncols=4, fontsize=10, loc="upper right", handlelength=1.4, columnspacing=1.2)
     for place, plane in enumerate(_PLANES):
-        _draw_plane(figure.add_subplot(grid[1, 2 * place : 2 * place + 2]), rows, plane)
+        axes = figure.add_subplot(grid[1, 2 * place : 2 * place + 2], label=plane.name)
+        _draw_plane(axes, rows, plane)
     handles = [
         figure.axes[-1].plot([], [], **style, label=label)[0]
         for style, label in (
-            (_REGION, f"{100 * TARGET:.0f} % of {MAP_HITS} hits or more"),
+            (_REGION, f"{100 * TARGET:.0f} % lies in the 95 % interval of the {MAP_HITS} hits"),
             (
                 _KNOWN,
-                "computed for LEGO axles; published (grip), assumed (front), nominal (battery)",
+                "known or assumed of this robot",
             ),
         )
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=13)
+    figure.legend(handles=handles, loc="outside lower left", ncols=2, fontsize=12)
 
 
 def _draw_series(axes: Axes, ticks: list[SeriesRow], condition: Condition, words: str) -> None:
@@ -133,7 +139,7 @@ def _draw_series(axes: Axes, ticks: list[SeriesRow], condition: Condition, words
         "right": [row["right_torque"] for row in ticks],
     }
     bounced = [row["t_s"] for row in ticks if row["bounce"]]
-    axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
+    _draw_stall(axes)
     for number, time in enumerate(bounced):
         label = "reversal" if number == 0 else None
         axes.axvline(time, color=COLOURS[1], linewidth=1.6, zorder=0, label=label)
@@ -141,11 +147,16 @@ def _draw_series(axes: Axes, ticks: list[SeriesRow], condition: Condition, words
         axes.plot(t, torques[side], color=color, linewidth=width, label=f"{side} wheel")
     count = f"{len(bounced)} reversal{'' if len(bounced) == 1 else 's'}"
     front = f"grip {condition['grip']:g}, front {condition['bumper']:g} m"
-    axes.set_title(f"{words}, {front}: {count}", loc="left", fontsize=13)
+    axes.set_title(f"{words}, {front}: {count}", loc="left", fontsize=12)
     axes.set_xlabel("time (s)")
     axes.set_ylim(-1.1, 1.9)
     axes.set_yticks((-1, 0, 1))
     axes.set_xlim(0, t[-1])
+
+
+def _draw_stall(axes: Axes) -> None:
+    label = f"stall, $|M|<{STALL_TORQUE:g}$"
+    axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", linewidth=0, zorder=0, label=label)
 
 
 def _draw_plane(axes: Axes, rows: list[WallRow], plane: Plane) -> None:
@@ -153,13 +164,14 @@ def _draw_plane(axes: Axes, rows: list[WallRow], plane: Plane) -> None:
     counts = [count_bounces(hits_under(rows, condition)) for condition in MAPS[plane.name]]
     shares = np.array([done / tried if tried else np.nan for done, tried in counts])
     table = shares.reshape(len(plane.values), len(AXLES))
-    draw_heat_map(axes, 100 * table, 100.0, fontsize=12)
-    _outline(axes, table >= TARGET)
-    axes.set_title(f"reversed (%): {plane.title}", fontsize=13)
+    draw_heat_map(axes, 100 * table, 100.0, fontsize=11)
+    reached = [bool(tried) and wilson(done, tried)[1] >= TARGET for done, tried in counts]
+    _outline(axes, np.reshape(reached, table.shape))
+    axes.set_title(f"reversed (%): {plane.title}", fontsize=12)
     stiffnesses = ["rigid" if axle is None else f"{axle:g}" for axle in AXLES]
     axes.set_xticks(np.arange(len(AXLES)) + 0.5, stiffnesses, rotation=40)
     axes.set_yticks(np.arange(len(plane.values)) + 0.5, [f"{value:g}" for value in plane.values])
-    axes.set_xlabel("stiffness of the axles at the rim (N/m)")
+    axes.set_xlabel("axles' stiffness at the rim (N/m)")
     axes.set_ylabel(plane.label)
     known = [place for place, axle in enumerate(AXLES) if axle and _within(axle, RANGE)]
     axes.plot((known[0], known[-1] + 1), (0, 0), **_KNOWN)
@@ -183,7 +195,7 @@ def _outline(axes: Axes, inside: Any) -> None:
 
 def _draw_hits(axes: Axes, hits: list[HitRow]) -> None:
     """Draw M before and after each hit at which the wall was felt."""
-    axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
+    _draw_stall(axes)
     numbers = np.arange(1, len(hits) + 1)
     before = np.array([row["before"] for row in hits], dtype=float)
     after = np.array([row["after"] for row in hits], dtype=float)

@@ -124,12 +124,20 @@ def test_a_speed_that_was_not_held_is_no_point_of_the_branch(branch):
     assert least_k(held_cycles([slipped, shaken])) is None
 
 
-def test_the_figure_separates_unstable_cycles_from_stable_ones(sweep, folds, branch):
-    rows = [*sweep, *folds, *branch.values()]
+def test_the_figure_separates_unstable_cycles_from_stable_ones(folds, branch):
+    """The cycles lie on a smooth line whose least k is at 0.3 Hz."""
+    cycles = [
+        {**branch[0.24], "held_hz": hz, "hz": hz, "torque": hz / 2, "k": 0.47 + (hz - 0.3) ** 2}
+        for hz in bifurcation.SPEEDS_HZ
+    ]
+    rows = [*folds, *cycles]
     figure = draw(rows, bifurcation.report(rows, SETTING))
-    lines = {line.get_label(): len(line.get_xdata()) for line in figure.axes[1].lines}
-    assert (lines["forward, unstable cycle"], lines["forward, stable cycle"]) == (2, 2)
-    assert figure.get_size_inches()[0] * figure.dpi == 1600
+    stable, unstable = (
+        next(line.get_ydata() for line in figure.axes[5].lines if line.get_linestyle() == style)
+        for style in ("-", "--")
+    )
+    assert (min(unstable), max(unstable)) == pytest.approx((0.2, 0.3), abs=0.01)
+    assert (min(stable), max(stable)) == pytest.approx((0.3, 0.8), abs=0.01)
 
 
 def test_a_ladder_has_as_many_rungs_as_asked_for_and_is_denser_at_small_k():

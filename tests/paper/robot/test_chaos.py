@@ -219,7 +219,8 @@ def test_r14_holds_for_a_robot_whose_wheels_switch_irregularly(delayed):
     (claim,) = chaos.report(rows, SETTING).claims
     assert (claim.measured, claim.holds) == (1.0, None)
     assert "minutes = 10 or more (here 2.5)" in claim.note
-    assert len(draw(rows, findings).axes) == 4
+    panels = [axes.get_label() for axes in draw(rows, findings).axes]
+    assert panels == ["torque-1", "torque-2", "model", "return-map", "intervals"]
 
 
 def test_r14_does_not_hold_for_a_robot_that_rolls_nor_for_one_that_rolls_to_and_fro_evenly(delayed):
@@ -267,7 +268,16 @@ def test_all_pieces_together_judge_the_brick_as_it_is_and_say_where_it_would_hol
     )
     assert (lagged, own) == ([chaos_pieces.MAP_WHEELS], [0])
     json.dumps(findings.numbers, allow_nan=False)
-    assert len(draw(rows, findings).axes) == 7
+    panels = [axes.get_label() for axes in draw(rows, findings).axes]
+    assert panels[:3] == ["torque-1", "torque-2", "model"]
+    assert panels[3:-1] == ["return-map", "lives", "twins", "map"]  # the last is a colour bar
+    paper = [
+        row
+        for row in rows
+        if row.get("condition") == OLDER and row.get("jump") != chaos_pieces.UNSEEN
+    ]
+    panels = [axes.get_label() for axes in draw(paper, findings).axes]
+    assert panels == ["torque-1", "model", "return-map", "intervals", "lives", "twins"]
 
 
 def test_a_robot_gives_both_wheels_from_its_start():

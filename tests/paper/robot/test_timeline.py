@@ -94,8 +94,7 @@ def test_the_same_seed_gives_the_same_rows_which_survive_json(rows):
 
 def test_the_figure_shows_the_round(rows):
     figure = draw(rows, timeline.report(rows, SETTING))
-    assert figure.get_size_inches()[0] * figure.dpi == 1600
-    assert [len(axes.lines) for axes in figure.axes[:3]] == 3 * [6]
+    assert [len(axes.lines) for axes in figure.axes[:6]] == 6 * [3]
 
 
 def test_slips_no_greater_than_the_drift_are_no_slips():

@@ -173,6 +173,12 @@ def test_on_a_smooth_floor_the_tyres_spin_at_the_wall():
     assert all(row["after"] > row["before"] > 0.5 for row in rows)
 
 
+def test_a_series_shows_a_reversal_and_says_in_which_run():
+    rows = wall.simulate({"part": "series", "k": 2.0, **wall_rows.PAPER}, SETTING)
+    assert any(row["bounce"] for row in rows)
+    assert {row["run"] for row in rows} == {1}
+
+
 def rows_of(bounced, stuck, **fields):
     felt = {"hit": 0, "before": 0.8, "took_s": 1.0, "apart_rad": 0.1, **fields}
     good = {**felt, "ended": wall_hits.BOUNCED, "reversed": True, "after": -0.8}
