@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import logging
-import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from multiprocessing import active_children, get_context
 from typing import Any, NamedTuple
 
 from host.errors import KickctlError, NotDone
-from host.runs.processes import begin_process, beginning_processes
+from host.lab.worker import Answer, Done, Worker
 from robot.record import Record
 from sim_motor.constants import Constants
 
 # How many questions may wait. Each takes about half a second of a core.
 MOST_WAITING = 4
 _NICENESS = 5
-
-Done = Callable[[dict[str, Any] | KickctlError], None]
 
 
 class Question(NamedTuple):
@@ -41,22 +34,10 @@ class Forecasts:
     """Answers questions one after the other. The process begins with the first need, or `begin`."""
 
     def __init__(self) -> None:
-        self._pool: ProcessPoolExecutor | None = None
-        self._others: set[Any] = set()
+        self._worker = Worker("predicts kicks", _NICENESS, _warm_up)
+        self.begin, self.close = self._worker.begin, self._worker.close
         self._waiting = 0
         self._lock = threading.Lock()
-        self._closed = False
-
-    def begin(self) -> None:
-        """Begin the process, and compile or load there what predictions need."""
-        with self._lock:
-            if self._pool is not None or self._closed:
-                return
-            with beginning_processes():
-                self._others = set(active_children())
-                # Spawned, because a fork would copy locks that other threads hold.
-                self._pool = ProcessPoolExecutor(1, get_context("spawn"), begin_process)
-                self._pool.submit(_warm_up)
 
     def ask(self, question: Question, done: Done) -> None:
         """Predict a kick.
@@ -66,59 +47,24 @@ class Forecasts:
             done: Gets {shares, of}, see host.kicking.prediction.Prediction, or the error. It is
                 called in any thread, and must return at once.
         """
-        self.begin()
         with self._lock:
-            pool = self._pool
             busy = self._waiting >= MOST_WAITING
             self._waiting += not busy
-        if busy or pool is None:
+        if busy:
             done(NotDone("the simulation has too much to predict", "wait a moment, and try again"))
             return
-        try:
-            future = pool.submit(_answer, question)
-        except RuntimeError:  # its process has died, or the lab ends
-            future = Future()
-            future.cancel()
-        future.add_done_callback(lambda future: self._end(pool, future, done))
 
-    def _end(
-        self,
-        pool: ProcessPoolExecutor,
-        future: Future[dict[str, Any] | KickctlError],
-        done: Done,
-    ) -> None:
-        result: dict[str, Any] | KickctlError
-        try:
-            result = future.result()
-        except (BrokenProcessPool, CancelledError):
-            result = NotDone(
-                "the process that predicts kicks has ended", "try again: that starts a new one"
-            )
+        def answered(answer: Answer) -> None:
             with self._lock:
-                if self._pool is pool:
-                    self._pool = None
-        except Exception as error:  # the page that waits must hear of any failure
-            logging.getLogger("kickctl").exception("a kick could not be predicted")
-            result = NotDone(f"the simulation failed: {error!r}"[:300], "please report this")
-        with self._lock:
-            self._waiting -= 1
-        done(result)
+                self._waiting -= 1
+            done(answer)
 
-    def close(self) -> None:
-        """End the process, also in the middle of a prediction."""
-        with self._lock:
-            self._closed = True
-            pool, self._pool = self._pool, None
-        if pool is not None:
-            for process in set(active_children()) - self._others:
-                process.terminate()
-            pool.shutdown(cancel_futures=True)
+        self._worker.ask(_answer, question, answered)
 
 
 def _warm_up() -> None:
     from host.kicking.prediction import warm_up
 
-    os.nice(_NICENESS)  # the robot and the page come first
     warm_up()
 
 
