@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotable
-from host.kicking.outcome import STOPPED
 from host.lab import requests
 from host.lab.baton import Baton
+from host.lab.guesses import Guesses
 from host.lab.keys import DRIVE, Keys
-from host.lab.page_end import Departed, Page, Score
+from host.lab.page_end import Departed, Page
 from host.lab.presets import PRESETS, PRIMITIVES, describe_presets, describe_primitives
 from host.lab.station import HISTORY, STOP, Station
 
@@ -27,8 +27,6 @@ MAX_STRANGERS = 64
 # How long a connection may take to join (s), and how often states are sent at least.
 JOIN_S = 5.0
 STATE_S = 1.0
-# How many kicks may wait for their outcome.
-GUESSES_KEPT = 64
 Message = dict[str, Any]
 
 
@@ -54,8 +52,7 @@ class Session:
         self._states: dict[str, Message] = {}
         self._states_due = 0.0
         self._counted = (0, 0)
-        self._guesses: dict[str, tuple[str | None, Score]] = {}
-        self._likeliest: dict[str, dict[str, str]] = {}
+        self._guesses = Guesses()
 
     # Connections.
 
@@ -139,26 +136,13 @@ class Session:
             for page in self.pages.values():
                 self._greet(page)
         else:
-            if message["type"] == "prediction" and message["kick_id"] in self._guesses:
-                self._likeliest[message["kick_id"]] = {
-                    side: max(shares, key=shares.__getitem__)
-                    for side, shares in message["shares"].items()
-                }
+            if message["type"] == "prediction":
+                self._guesses.take_prediction(message)
             self.broadcast(message)
 
     def _tell_outcome(self, outcome: Message) -> None:
         """Tell each page what a kick did, what was guessed, and how often it guessed right."""
-        guess, score = self._guesses.pop(outcome["kick_id"], (None, None))
-        likeliest = self._likeliest.pop(outcome["kick_id"], None)
-        right = None
-        if guess is not None and score is not None and outcome["result"]:
-            right = _came_true(dict.fromkeys(outcome["result"], guess), outcome)
-            score.guesses += 1
-            score.right += right
-            if likeliest is not None:
-                score.predicted += 1
-                score.simulation += _came_true(likeliest, outcome)
-        told = {**outcome, "guess": guess, "right": right}
+        told = self._guesses.settle(outcome)
         self.stations[outcome["robot"]].verdicts.append(told)
         for page in self.pages.values():
             page.send({**told, "score": asdict(page.score)})
@@ -279,11 +263,7 @@ class Session:
         station.attend()
         if command == "kick":
             arguments["id"] = uuid.uuid4().hex
-            self._guesses[arguments["id"]] = guess, page.score
-            while len(self._guesses) > GUESSES_KEPT:
-                oldest = next(iter(self._guesses))
-                del self._guesses[oldest]
-                self._likeliest.pop(oldest, None)
+            self._guesses.note(arguments["id"], guess, page.score)
 
         def answered(result: Message | KickctlError) -> None:
             page.answer(request, result)
@@ -383,15 +363,6 @@ class Session:
         if counted != self._counted:
             self._counted = counted
             self.broadcast({"type": "pages", "driving": driving, "watching": counted[1]})
-
-
-def _came_true(expected: dict[str, str], outcome: Message) -> bool:
-    """Whether what was expected is true of each kicked wheel. One at rest has stopped, too."""
-    return all(
-        expected.get(side) == result
-        or (expected.get(side) == "stops" and outcome["after"][side] == STOPPED)
-        for side, result in outcome["result"].items()
-    )
 
 
 def _without_time(state: Message) -> Message:
