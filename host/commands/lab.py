@@ -25,6 +25,8 @@ HELP = (
     "open a page on which you watch running robots, kick them, and see their attractors. Without"
     " --brick it is a simulated robot. ^C ends the lab, and the exit status is 0"
 )
+# Robots, pages and predictions come before basins.
+_BASINS_NICENESS = 10
 # How long a robot may take to answer before the command says that it is not there yet (s).
 _FIND_S = 3.0
 
@@ -64,15 +66,20 @@ def run(options: argparse.Namespace) -> int:
     """Serve the page until ^C. Raises KickctlError if that cannot begin."""
     from host.lab.forecasts import Forecasts
     from host.lab.server import Lab
+    from host.lab.worker import Worker
 
     with ExitStack() as stack:
-        forecasts = Forecasts()
+        forecasts, basins = Forecasts(), Worker("computes basins", _BASINS_NICENESS)
         stack.callback(forecasts.close)
+        stack.callback(basins.close)
         stations = [_station(robot, options, stack) for robot in _robots(options)]
-        lab = stack.enter_context(Lab(stations, options.port, options.host, forecasts=forecasts))
+        lab = stack.enter_context(
+            Lab(stations, options.port, options.host, forecasts=forecasts, basins=basins)
+        )
         with suppress(KeyboardInterrupt):
             _tell(lab, stations, options)
             forecasts.begin()
+            basins.begin()
             lab.wait()
     return 0
 

@@ -141,6 +141,11 @@ def warm_up(motor: Constants | None = None) -> None:
     predict(records, Params().values(), {"mode": MEMBRANE}, motor)
 
 
+def watch_s(params: Params) -> float:
+    """How long a wheel needs until nearly every disturbance is over, s."""
+    return min(_PATIENCE_S, _WATCH_S + _MEMORY_TAU * float(params.tau_s))
+
+
 def _column(records: Sequence[Record], name: str) -> list[float]:
     return [getattr(record, name) for record in records]
 
@@ -248,8 +253,7 @@ def _after(
     rng: np.random.Generator,
 ) -> list[int]:
     """The direction of each simulated wheel when it has had the time to settle."""
-    watch_s = min(_PATIENCE_S, _WATCH_S + _MEMORY_TAU * params.tau_s)
-    ticks = (kick.begin + kick.ticks if kick else 0) + round(watch_s / params.tick_s)
+    ticks = (kick.begin + kick.ticks if kick else 0) + round(watch_s(params) / params.tick_s)
     wheels = len(volts)
     times = _random_times(records, wheels, ticks, params.tick_s, motors[0].latency_s, rng)
     try:

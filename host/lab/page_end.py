@@ -68,6 +68,7 @@ class Page:
         places: How far it has read the ring of each robot, by the robot's name.
         waiting: The messages that are still to be sent.
         predicts: Whether it waits for a prediction.
+        basins: The robot whose basins it wants; empty for none.
         closed: Whether it has been refused or is gone: nothing more comes for it.
         awake: Called when something waits.
     """
@@ -81,6 +82,7 @@ class Page:
         self.places: dict[str, int] = {}
         self.waiting: deque[dict[str, Any]] = deque()
         self.predicts = False
+        self.basins = ""
         self.closed = False
         self.awake: Callable[[], object] = lambda: None
         self.allowance = Allowance(now)

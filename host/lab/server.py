@@ -19,6 +19,7 @@ from host.lab.keys import Keys
 from host.lab.session import Session
 from host.lab.station import Station
 from host.lab.web import PAGE_FOLDER, Site
+from host.lab.worker import Worker
 
 LOOPBACK = "127.0.0.1"
 TICK_S = 0.1
@@ -37,6 +38,7 @@ class Lab:
             nobody else may.
         folder: The page's files.
         forecasts: Where kicks are predicted; None if nowhere. It is the caller's, too.
+        basins: Where basins are computed; None if nowhere. It is the caller's, too.
 
     Attributes:
         session: What pages and robots have to do with each other.
@@ -51,6 +53,7 @@ class Lab:
         host: str | None = None,
         folder: Path = PAGE_FOLDER,
         forecasts: Forecasts | None = None,
+        basins: Worker | None = None,
     ) -> None:
         self.keys = Keys()
         self.session = Session(self.keys, stations)
@@ -59,6 +62,7 @@ class Lab:
         self._stations = stations
         for station in stations:
             station.forecasts = forecasts
+            station.basins = basins
         self._port = port
         self._hosts = [LOOPBACK, *([host] if host not in (None, LOOPBACK) else [])]
         self._loop = asyncio.new_event_loop()

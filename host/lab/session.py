@@ -14,6 +14,7 @@ from typing import Any
 
 from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotable
 from host.lab import requests
+from host.lab.basin_pictures import BasinPictures
 from host.lab.baton import Baton
 from host.lab.guesses import Guesses
 from host.lab.keys import DRIVE, Keys
@@ -53,6 +54,10 @@ class Session:
         self._states_due = 0.0
         self._counted = (0, 0)
         self._guesses = Guesses()
+        self._basins = {
+            name: BasinPictures(station, self._tell_basins)
+            for name, station in self.stations.items()
+        }
 
     # Connections.
 
@@ -139,6 +144,14 @@ class Session:
             if message["type"] == "prediction":
                 self._guesses.take_prediction(message)
             self.broadcast(message)
+        if message["type"] in ("welcome", "event"):
+            for name in {page.basins for page in self.pages.values() if page.basins}:
+                self._basins[name].follow()
+
+    def _tell_basins(self, message: Message) -> None:
+        for page in self.pages.values():
+            if page.basins == message["robot"]:
+                page.send(message)
 
     def _tell_outcome(self, outcome: Message) -> None:
         """Tell each page what a kick did, what was guessed, and how often it guessed right."""
@@ -173,6 +186,8 @@ class Session:
             page.answer(request, {"logs": self.logs()})
         elif kind == "predict":
             self._predict(page, message, request)
+        elif kind == "basins":
+            self._want_basins(page, message)
         else:
             raise WrongUse(f"there is no message '{quotable(kind)}'", requests.RELOAD)
 
@@ -299,6 +314,15 @@ class Session:
             page.answer(request, result)
 
         station.predict(kick, answered)
+
+    def _want_basins(self, page: Page, message: Message) -> None:
+        page.basins = ""
+        if message.get("robot") is not None:
+            page.basins = self._station(message).name
+            pictures = self._basins[page.basins]
+            if pictures.latest is not None:
+                page.send(pictures.latest)
+            pictures.follow()
 
     def _hand(self, page: Page, message: Message, now: float) -> None:
         station = self._station(message)

@@ -19,12 +19,13 @@ from host.kicking.modes import leave
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
 from host.kicking.robot_motor import MEASURE
-from host.lab import derived
+from host.lab import basin_question, derived
 from host.lab.forecasts import Forecasts, Question
 from host.lab.kicks import Kicks, motor_known, stall
 from host.lab.recording import Recording
 from host.lab.ring import Ring
 from host.lab.stopper import of_this_lab, plain
+from host.lab.worker import Worker
 from host.logs.tap import Event
 from robot import __version__, params
 from robot.record import STATES, STRUCT, Record
@@ -90,6 +91,7 @@ class Station:
         recording: The log that is being written, or None.
         logs: The logs that this lab has recorded, by the names of their files.
         forecasts: Where kicks are predicted; None if nowhere.
+        basins: Where basins are computed; None if nowhere.
         verdicts: The latest predictions and outcomes, for pages that join later.
         trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
     """
@@ -105,6 +107,7 @@ class Station:
         self.ring = Ring(STRUCT.size + _DERIVED.size)
         self.pages: Pages | None = None
         self.forecasts: Forecasts | None = None
+        self.basins: Worker | None = None
         self.recording: Recording | None = None
         self.logs: dict[str, Recording] = {}
         self._label = label
@@ -281,6 +284,19 @@ class Station:
 
         if self.forecasts is not None and question is not None:
             self.forecasts.ask(question, done)
+
+    def basin_question(self, side: int) -> basin_question.Question:
+        """Whose basins are to be computed, with so many starts along each axis. Raises NotDone."""
+        motor = motor_known(self._hello)
+        if not self._known:
+            raise NotDone("the robot has not been found yet", "")
+        if self._walls_m is not None:
+            raise NotDone("basins are of a wheel by itself, and this robot has walls", "")
+        if motor is None:
+            raise NotDone("nobody here knows the motors of this robot", MEASURE)
+        values = self._follower.params
+        decisive = {name: values[name] for name in basin_question.DECISIVE}
+        return basin_question.Question(decisive, motor, self._status.get("battery_v"), side)
 
     def note_asker(self, page: int) -> None:
         """A page, or LAB, is about to stop the robot."""

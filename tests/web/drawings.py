@@ -5,7 +5,7 @@ from pathlib import Path
 
 PAGE = Path(__file__).resolve().parents[2] / "host/lab/page"
 ADDRESS = "http://drawings.test/"
-DRAWINGS = ("wheel", "strips", "plane", "floor", "score")
+DRAWINGS = ("wheel", "strips", "plane", "floor", "score", "basins")
 # A state is plain data, in which lists of numbers stand for typed arrays. A drawing is kept as
 # `drawn`, for questions about it.
 SCRIPT = (
@@ -178,6 +178,8 @@ SCORE = {
     },
 }
 
+BASINS = {"side": 4, "ends": "ffbbffbbffbbrrnn", "stale": False}
+
 WAVE = [sin(number / 8) for number in range(600)]
 WITH_GAPS = [float("nan") if number % 50 < 5 else value for number, value in enumerate(WAVE)]
 KICKS = [
@@ -220,6 +222,12 @@ STATES = {
         SCORE,
         {**SCORE, "wheels": [{"name": "left", "shares": None, "outcome": None}], "stale": True},
         {**SCORE, "of": 0},
+    ],
+    "basins": [
+        {},
+        BASINS,
+        {**BASINS, "ends": "nnnnnnnnnnnnnnnn"},
+        {**BASINS, "stale": True},
     ],
 }
 

@@ -3,6 +3,8 @@
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
+from tests.web.test_basins import Halves
+
 
 def assert_no_findings(page):
     """Have axe-core look at the page as it is."""
@@ -13,7 +15,9 @@ def assert_no_findings(page):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing_in_any_main_state(visit, lab, station, scheme):
+    station.basins = Halves()
     visitor = visit(color_scheme=scheme)
+    visitor.until("r.basins")
     page = visitor.page
     page.click(".own summary")
     page.click("#parameters summary")

@@ -6,6 +6,7 @@ from math import cos, hypot, pi, sin
 import pytest
 
 from tests.web.drawings import (
+    BASINS,
     DRAWINGS,
     KICKS,
     SCORE,
@@ -76,7 +77,7 @@ def test_the_same_state_is_the_same_picture(page, name):
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_what_is_out_of_date_is_grey(page, name):
     state = {"wheel": WHEEL, "strips": strips(left_x1=WAVE), "plane": plane(WAVE, WAVE)}
-    state |= {"floor": floor(WAVE, WAVE), "score": SCORE}
+    state |= {"floor": floor(WAVE, WAVE), "score": SCORE, "basins": BASINS}
     _draw(page, name, {**state[name], "stale": True}, **LARGE)
     assert page.evaluate("colourful()") == "[]"
 
@@ -334,3 +335,18 @@ def test_guess_and_outcome_are_marked(page):
     marks = _added(page, "score", {**SCORE, **plain}, {**SCORE, **marked}, **LARGE)
     assert min(x for x, y in marks if y < 374) > 1100
     assert max(x for x, y in marks if y > 374) < 700
+
+
+def test_ends_differ_without_their_colours(page):
+    def grey(letter):
+        return _draw(page, "basins", {"side": 2, "ends": 4 * letter, "stale": True}, **SMALL)
+
+    assert len({grey(letter) for letter in "fbrn"}) == 4
+
+
+def test_a_line_parts_basins_where_they_meet(page):
+    # The first row is the lowest.
+    _draw(page, "basins", {"side": 4, "ends": "ffff" * 3 + "bbbb"}, **SHARP)
+    across = [y for x, y in _places(page, "ink") if x == 401]
+    assert across
+    assert all(abs(y - 150) <= 1 for y in across)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.web.test_basins import Halves
 from tests.web.test_page import Forecast, kick
 
 # Notes each text that a drawing writes: its height, and where its letters are, in CSS pixels. After
@@ -75,6 +76,7 @@ FRAMES = """
 def projector(request, visit, lab, station):
     """A page on a projector."""
     station.forecasts = Forecast({"reverses": 31, "continues": 1, "stops": 0}, 32)
+    station.basins = Halves()
     width, height = request.param
     visitor = visit(viewport={"width": width, "height": height})
     if visitor.page.get_attribute("#projector", "aria-pressed") == "false":

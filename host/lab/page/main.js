@@ -1,5 +1,6 @@
 /** The page of the lab: wires the source, what is known, the panels and the drawings. */
 
+import { createBasins } from "./basins.js";
 import { createBaton } from "./baton.js";
 import { byId, element, setText } from "./dom.js";
 import { draw as drawFloor } from "./draw/floor.js";
@@ -7,6 +8,7 @@ import { draw as drawPlane } from "./draw/plane.js";
 import { draw as drawStrips } from "./draw/strips.js";
 import { draw as drawWheel } from "./draw/wheel.js";
 import { Frames } from "./frames.js";
+import { onBasins } from "./ground.js";
 import { Hand } from "./hand.js";
 import { createKicks } from "./kick_panel.js";
 import { Lab } from "./lab.js";
@@ -55,6 +57,7 @@ const panels = [
     createParameters(byId("parameters"), lab),
     createState(byId("state"), lab),
     createBaton(byId("baton"), lab),
+    createBasins(byId("basins"), byId("lag-plane"), lab),
     createRecording(byId("recording"), lab),
     () => stop.update(),
 ];
@@ -99,7 +102,7 @@ const drawings = [
     ["left-wheel", drawWheel, () => views.wheels.left, 21, 19],
     ["right-wheel", drawWheel, () => views.wheels.right, 21, 19],
     ["strips", drawStrips, () => views.strips, 30, 16],
-    ["lag-plane", drawPlane, () => views.lag, 17, 10],
+    ["lag-plane", onBasins(drawPlane), () => views.lag, 17, 10],
     ["phi-plane", drawPlane, () => views.phi, 17, 10],
     ["x-plane", drawPlane, () => views.x, 17, 10],
     ["floor", drawFloor, () => views.floor, 17, 10],

@@ -5,8 +5,8 @@ import { keep, recall } from "./storage.js";
 import { media, theme } from "./theme.js";
 
 const PROJECTOR = "lab.projector";
-// The names of the theme's colours that the key beside the wheels shows.
-const MARKS = ["target", "actual", "force", "memory"];
+// The names of the theme's colours that keys beside drawings show.
+const MARKS = ["target", "actual", "force", "memory", "forward", "backward", "rest"];
 const WIDE = matchMedia("(min-width: 1600px)");
 // Where the style sheet lays the parts out below each other, too.
 const NARROW = matchMedia("(max-width: 68rem)");

@@ -18,6 +18,7 @@ export function snapshot({ store }, stop, frames, views) {
         records: robot.ring.length,
         missed: robot.missed,
         kicks: robot.kicks,
+        basins: robot.basins,
     }));
     const drawing = { frames: frames.count, p95_ms: frames.p95(), shown_s: views?.time ?? null };
     const known = { link, role, page, baton, refused, note, score, selected, robots, drawing };

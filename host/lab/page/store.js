@@ -27,6 +27,8 @@ export class RobotView {
         /** @type {object[]} Kicks, oldest first, each with its `prediction` and `outcome`. */
         this.kicks = [];
         this.missed = 0;
+        /** @type {?object} The newest `basins` message. */
+        this.picture = null;
         /** Where a kick made the membrane potentials jump, in the places of the ring. */
         this.jumped = { left: new Uint8Array(CAPACITY), right: new Uint8Array(CAPACITY) };
         /** How often the robot has been heard of: a record or a state. */
@@ -47,6 +49,15 @@ export class RobotView {
     /** @returns {string} What the robot does: one of STATES, or empty before the first record. */
     get state() {
         return STATES[this.ring.newest("state")] ?? this.status.state ?? "";
+    }
+
+    /** @returns {?object} The basins of the robot as it is now, null if these are not known. */
+    get basins() {
+        const { params: now } = this.status;
+        const { params = null } = this.picture ?? {};
+        return params && Object.keys(params).every((name) => params[name] === now[name])
+            ? this.picture
+            : null;
     }
 
     /** @returns {number} The control period in force, s. */
@@ -224,6 +235,11 @@ export class Store {
     _outcome(message) {
         this.byName(message.robot)?.takeVerdict(message);
         this.score = message.score ?? this.score;
+    }
+
+    _basins(message) {
+        const view = this.byName(message.robot);
+        if (view) view.picture = message;
     }
 
     _lost({ robot, records }) {

@@ -64,10 +64,20 @@ export const texts = {
     phiPlane: "Angle and speed",
     xPlane: "Memory",
     sliceNote: "a slice",
-    slice: "slices of four dimensions",
     lagNote:
-        "The four dimensions are angle, speed, x₁ and x₂. Lag says how far the angle that the" +
-        " neurons remember lies behind the wheel. A membrane kick makes it jump by half a turn.",
+        "Each plane is a slice of four dimensions: angle, speed, x₁ and x₂. Lag is how far the" +
+        " angle that the neurons remember lies behind the wheel. A membrane kick makes it jump by" +
+        " half a turn.",
+    basins: "Basins",
+    basinsLabel: "Basins: where each start leads",
+    ends: { forward: "forward", backward: "backward", rest: "rest", neither: "to and fro" },
+    share: (part) => ` ${part < 0.005 ? "<1" : number(100 * part, 0)} %`,
+    basinsOf: (shares) => `Of all starts in this slice, these parts lead to: ${shares.join(", ")}`,
+    basinsSlice: ({ phi_rad, radius }) =>
+        `Where a wheel by itself ends from each start: φ = ${number(phi_rad, 0)}, x₁ and x₂ on a` +
+        ` circle of radius ${number(radius)}.`,
+    computing: ({ a, tau_s, k }) => `For a = ${a}, τ = ${tau_s} s, k = ${k}: being computed …`,
+    noBasins: (why) => `No basins: ${why}.`,
     floor: "Path on the floor",
     floorNote: "From the turns of the wheels since the lab began. A wheel that slips misleads it.",
 

@@ -29,6 +29,9 @@ const LIGHT = {
     reverses: "#b0125b",
     continues: "#00628f",
     stops: "#6b7077",
+    forward: "#2a7f62",
+    backward: "#8f56a8",
+    rest: "#6b7077",
 };
 const DARK = {
     paper: "#14171a",
@@ -53,6 +56,9 @@ const DARK = {
     reverses: "#ff7fb4",
     continues: "#5fb9ea",
     stops: "#a9aeb5",
+    forward: "#4fbf97",
+    backward: "#c08adc",
+    rest: "#a9aeb5",
 };
 const DECORATION = ["paper", "grid", "rim", "band"];
 const FAMILY = '"Helvetica Neue", "Liberation Sans", Arial, "DejaVu Sans", sans-serif';

@@ -99,6 +99,7 @@ export class Views {
         for (const plane of [this.lag, this.phi, this.x]) {
             Object.assign(plane, { start, count, stale: this.stale });
         }
+        this.lag.basins = robot.basins;
         const fastest = Math.max(
             ...SIDES.map((side) => Math.abs(this.wheels[side].omega_rad_s) || 0),
         );

@@ -40,6 +40,8 @@ const PIECE = 16;
  * @typedef {Object} PlaneState
  * @property {Axis} x the horizontal axis
  * @property {Axis} y the vertical axis
+ * @property {?{sheet: CanvasImageSource, high: number}} ground a picture under the traces, over the
+ *     whole horizontal axis, from -high to high of the vertical one
  * @property {Trace[]} traces rings of equal length; NaN interrupts a trace
  * @property {number} start index of the oldest record in the rings
  * @property {number} count how many records to draw
@@ -60,7 +62,12 @@ export function draw(canvas, state, theme) {
     const { ctx, width, height, colours } = theme.start(canvas, state.stale);
     const pen = { ctx, colours, theme };
     const [x, y] = [range(state.x), range(state.y)];
-    const box = layout(state, theme, width, height, x, y);
+    const box = layout(state, theme, width, height);
+    const { sheet, high } = state.ground ?? {};
+    if (sheet) {
+        const up = (high / y.long) * box.height;
+        ctx.drawImage(sheet, box.left, box.top + box.height / 2 - up, box.width, 2 * up);
+    }
     axes(pen, state, box, x, y);
     ctx.save();
     ctx.beginPath();
@@ -77,7 +84,17 @@ function range(axis) {
     return { low, high, long: high - low, wrap: Boolean(axis?.wrap), pi: Boolean(axis?.pi) };
 }
 
-function layout(state, theme, width, height, x, y) {
+/**
+ * Where the axes' box lies.
+ *
+ * @param {PlaneState} state
+ * @param {Object} theme see theme.js
+ * @param {number} width of the drawing, CSS pixels
+ * @param {number} height of the drawing, CSS pixels
+ * @returns {{left: number, top: number, width: number, height: number}} CSS pixels
+ */
+export function layout(state, theme, width, height) {
+    const [x, y] = [range(state.x), range(state.y)];
     const text = theme.text;
     const box = { left: 3.4 * text, top: 2.2 * text };
     box.width = width - box.left - text;
