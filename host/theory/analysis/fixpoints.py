@@ -13,9 +13,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from host.errors import WrongUse
+from host.theory.analysis.bisection import last_alike
 from host.theory.model.laws import law_of, rates_of
 from host.theory.model.symbolic import jacobian_at
 from host.theory.model.wheel import OMEGA, Array, Wheel, resting
@@ -104,7 +104,7 @@ def angles(wheel: Wheel) -> tuple[float, ...]:
     ends = np.linspace(-_BEFORE, 2 * pi - _BEFORE, _INTERVALS + 1)
     pushes = [push(phi) for phi in ends.tolist()]
     found = [
-        brentq(push, *interval, xtol=1e-15)
+        last_alike(lambda phi: push(phi) > 0.0, *interval)
         for interval, (one, other) in zip(pairwise(ends.tolist()), pairwise(pushes), strict=True)
         if one * other < 0.0
     ]

@@ -14,7 +14,6 @@ from math import cos, inf, isfinite, log, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from host.errors import WrongUse
 from host.theory.analysis.bisection import last_alike
@@ -137,11 +136,15 @@ def _crossing(wheel: Wheel) -> tuple[float, float, float]:
 
     k, at, omega = inf, 0.0, 0.0
     for phi in angles(wheel._replace(k=1.0)):
-        growing = [pair(phi, k).real > 0.0 for k in _TRIED.tolist()]
+
+        def grows(k: float, phi: float = phi) -> bool:
+            return pair(phi, k).real > 0.0
+
+        growing = [grows(k) for k in _TRIED.tolist()]
         for index in np.flatnonzero(np.diff(growing)).tolist():
             low, high = _TRIED[index : index + 2].tolist()
             if isfinite(pair(phi, low).real) and isfinite(pair(phi, high).real):
-                own = float(brentq(lambda k, phi=phi: pair(phi, k).real, low, high, xtol=1e-15))
+                own = last_alike(grows, low, high)
                 # Fixpoints that are alike differ by rounding.
                 if own < (1.0 - 1e-9) * k:
                     k, at, omega = own, phi, float(pair(phi, own).imag)

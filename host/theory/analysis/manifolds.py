@@ -28,8 +28,10 @@ SETTLE_S = 60.0
 # A wheel with a faster mean speed (rad/s) rolls.
 ROLLING_MEAN = 0.1
 # Lines of the grid of starts over a quarter turn, and over the speeds of one sign. Each piece of a
-# boundary is then bisected this many times.
-GRID, BISECTIONS = 160, 20
+# boundary is then bisected this many times, to 1e-6 rad.
+GRID, BISECTIONS = 160, 14
+# Steps per unit of a wheel's rate: so many put a boundary where finer ones do, to 1e-6 rad.
+LABELLING = 0.6
 
 
 def unstable_manifolds(
@@ -69,8 +71,8 @@ def basin_labels(phi: Array, omega: Array, wheel: Wheel) -> NDArray[np.int64]:
         that rolls forward and -1e6 for one that rolls backward, (wheels,).
     """
     parameters = wheel.columns(len(phi))
-    half = advance(turning(phi, omega, wheel), parameters, SETTLE_S / 2)
-    full = advance(half, parameters, SETTLE_S / 2)
+    half = advance(turning(phi, omega, wheel), parameters, SETTLE_S / 2, LABELLING)
+    full = advance(half, parameters, SETTLE_S / 2, LABELLING)
     mean = (full[PHI] - half[PHI]) / (SETTLE_S / 2)
     wells = np.rint((half[PHI] + full[PHI]) / 2 / QUARTER)
     labels = np.where(np.abs(mean) > ROLLING_MEAN, 1e6 * np.sign(mean), wells)

@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import get_num_threads
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
@@ -23,9 +24,6 @@ from sim_motor.compiled import parallel_jit, prange
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
 # the fewest takes many more steps than it needs, for the sake of the others.
 LANES, FEWEST, ALIKE = 64, 16, 0.75
-# Every run of numbers from the sequence of its multiples, without their whole parts, is about as
-# evenly spread as can be.
-_GOLDEN = 0.6180339887498949
 # Steps per unit of a wheel's rate (see `rate_per_s`): at FINE, averages of regular motion have nine
 # digits.
 FINE = 1.0
@@ -96,18 +94,25 @@ def _advancing(method: Any, rates_of: Any) -> Any:
     steps = method.stepping(rates_of)
 
     def advance_all(
-        states: Array, parameters: Array, seconds: float, counts: Any, edges: Any, order: Any
+        states: Array,
+        parameters: Array,
+        seconds: float,
+        counts: Any,
+        edges: Any,
+        order: Any,
+        begins: Any,
     ) -> None:
         """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each.
 
-        Each core takes consecutive blocks of `order`.
+        A core takes the blocks of `order` from begins[core] to begins[core + 1].
         """
-        for place in prange(len(order)):
-            block = order[place]
-            first, end = edges[block], edges[block + 1]
-            own, constants = states[:, first:end].copy(), parameters[:, first:end].copy()
-            steps(own, constants, seconds / counts[block], counts[block])
-            states[:, first:end] = own
+        for core in prange(len(begins) - 1):
+            for place in range(begins[core], begins[core + 1]):
+                block = order[place]
+                first, end = edges[block], edges[block + 1]
+                own, constants = states[:, first:end].copy(), parameters[:, first:end].copy()
+                steps(own, constants, seconds / counts[block], counts[block])
+                states[:, first:end] = own
 
     return parallel_jit(advance_all)
 
@@ -138,6 +143,26 @@ def _edges(needed: Array) -> Whole:
         alike = int(np.searchsorted(needed[:end], ALIKE * needed[end - 1]))
         edges.append(max(0, end - LANES, min(alike, end - FEWEST)))
     return np.array(edges[::-1])
+
+
+def _shares(work: Whole) -> tuple[Whole, Whole]:
+    """About the same work for each core: the longest blocks first, each to the core with the least.
+
+    Args:
+        work: That of each block.
+
+    Returns:
+        The blocks of all cores, one core after the other; where those of a core begin, and where
+        the last one's end.
+    """
+    shares: list[list[int]] = [[] for _ in range(get_num_threads())]
+    loads = [0] * len(shares)
+    for block in np.argsort(-work, kind="stable").tolist():
+        core = loads.index(min(loads))
+        shares[core].append(block)
+        loads[core] += int(work[block])
+    begins = np.cumsum([0, *map(len, shares)])
+    return np.array([block for share in shares for block in share], dtype=np.int64), begins
 
 
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
@@ -201,8 +226,6 @@ def _advanced(
         raise too_stiff(seconds, parameters[:, order[-1]], needed[-1])
     edges = _edges(needed)
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
-    # Neighbours cost about the same, so a core must not get neighbours only.
-    blocks = np.argsort(np.arange(len(counts)) * _GOLDEN % 1.0)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
     _advancing(method, rates_of)(
         found,
@@ -210,7 +233,7 @@ def _advanced(
         float(seconds),
         counts,
         edges,
-        blocks,
+        *_shares(counts * np.diff(edges)),
     )
     found = found[:, np.argsort(order)]
     if not np.isfinite(found).all():

@@ -32,9 +32,9 @@ __all__ = ["cells", "report", "simulate"]
 
 # The paper's inset.
 INSET_K, INSET_TAU = 5.0, 0.5
-# Time constants in a cell. With both ways a cell has two blocks of wheels, one for each core; with
-# fewer, one instruction would do fewer wheels.
-BAND = 32
+# Time constants in a cell. Half of the work is at the shortest ones: a band of a few has too few
+# blocks of wheels to share them out among the cores.
+BAND = 256
 # The k of a part of a cell: they take some seconds.
 KS_OF_A_PART = 10
 # Each wheel is pushed by this angle (rad): one that starts exactly at rest would stay there.
@@ -86,7 +86,7 @@ def parts(cell: PhaseDiagramCell, setting: Setting, begun: Part | None) -> Itera
     elif options["start"] == "sweep":
         yield from _sweep(cell, options, begun)
     else:
-        yield Part(as_rows(_one_start(cell, options)))
+        yield from _one_start(cell, options, begun)
 
 
 def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Iterator[Part]:
@@ -114,19 +114,22 @@ def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Itera
             found = []
 
 
-def _one_start(cell: BandCell, options: dict[str, Any]) -> list[Point]:
-    """All k at once, each wheel from rest or from rolling."""
+def _one_start(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Iterator[Part]:
+    """Many k at once, each wheel from rest or from rolling."""
     ks, all_taus = axes_of(cell["panel"], options)
     taus = all_taus[cell["first"] : cell["end"]]
     count, line = len(taus), _hopf_line(options, taus)
     way: Way = options["start"]
-    parameters = _parameters(options, np.tile(taus, len(ks)), np.repeat(ks, count))
-    start = _at_rest(parameters) if way == "rest" else rolling_states(parameters)
-    result = _averages(start, parameters, options)
-    found: list[Point] = []
-    for i, k in enumerate(ks.tolist()):
-        found += _points(way, k, taus, line, _part(result, i * count, (i + 1) * count))
-    return found
+    done = 0 if begun is None else len(begun.rows) // count
+    for first in range(done, len(ks), KS_OF_A_PART):
+        own = ks[first : first + KS_OF_A_PART]
+        parameters = _parameters(options, np.tile(taus, len(own)), np.repeat(own, count))
+        start = _at_rest(parameters) if way == "rest" else rolling_states(parameters)
+        result = _averages(start, parameters, options)
+        found: list[Point] = []
+        for i, k in enumerate(own.tolist()):
+            found += _points(way, k, taus, line, _part(result, i * count, (i + 1) * count))
+        yield Part(as_rows(found), None, min(1.0, (first + KS_OF_A_PART) / len(ks)))
 
 
 def _part(whole: Averages, first: int, end: int) -> Averages:

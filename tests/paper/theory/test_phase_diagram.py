@@ -117,9 +117,11 @@ def test_a_cell_done_twice_is_the_same_bits():
     )
 
 
-def test_a_cell_that_is_resumed_in_the_middle_is_the_same_bits(monkeypatch):
+@pytest.mark.parametrize("start", ["sweep", "rest"])
+def test_a_cell_that_is_resumed_in_the_middle_is_the_same_bits(monkeypatch, start):
     monkeypatch.setattr(phase_diagram, "KS_OF_A_PART", 2)
-    setting = Setting(1, {**OPTIONS, "points": 5, "transient": 5.0, "seconds": 5.0})
+    options = {"points": 5, "start": start, "transient": 5.0, "seconds": 5.0}
+    setting = Setting(1, {**OPTIONS, **options})
     cell = {"panel": "plane", "first": 0, "end": 5}
     first, *rest = phase_diagram.parts(cell, setting, None)
     assert [part.share for part in (first, *rest)] == [0.4, 0.8, 1.0]
