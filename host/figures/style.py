@@ -74,6 +74,12 @@ def save(
             width, height = figure.get_size_inches()
             about["bbox_inches"] = Bbox.from_extents(0.0, -STRIP, width, height)
             place = (1.0 - 0.1 / width, -0.6 * STRIP / height)
+            # The layout takes as long as the drawing, and is the same for all formats. After it the
+            # strip must not move legends that are outside of all panels.
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")
+            for legend in figure.legends:
+                legend.set_bbox_to_anchor((0.0, 0.0, 1.0, 1.0), figure.transFigure)
             words = figure.text(*place, caption.parameters, **_CORNER)
         try:
             figure.savefig(draft, format=ending, **about)

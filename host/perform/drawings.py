@@ -96,12 +96,7 @@ def drawing(wanted: Files, found: Found, setting: Setting, settings: Mapping[str
             settings,
             parameters(found, setting, settings["experiment"]),
         )
-        written = []
-        for ending in wanted.formats:
-            written.append(save(figure, f"{name}.{ending}", caption))
-            # The layout takes as long as the drawing, and is the same for all formats.
-            figure.set_layout_engine("none")
-        return written
+        return [save(figure, f"{name}.{ending}", caption) for ending in wanted.formats]
 
     return draw
 

@@ -5,14 +5,17 @@ Laid out like the paper's figure of the homoclinic route, from locomotion down t
 
 from __future__ import annotations
 
-from math import pi
+from collections.abc import Iterable
+from math import ceil, floor, pi
 from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.interpolate import CubicSpline
 
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
+from host.figures.theory.manifold_sides import sides
 from host.runs.contract import Findings
 from host.theory.analysis.phases import Phase
 from host.theory.model.wheel import Array
@@ -39,20 +42,26 @@ _MARKERS: dict[Marked, tuple[str, str]] = {
 }
 # Which slice of the four dimensions is shown (host.theory.model.turning).
 _SLICE = (
-    "Slice for the stable manifolds, where trajectories start too: the potentials of a wheel that"
-    " has always\nturned at its present speed,"
+    "Stable manifolds: in the slice of wheels that have always turned at their present speed,"
     r" $x_1 = (\cos\varphi + \omega\tau\sin\varphi)/(1 + \omega^2\tau^2)$,"
-    r" $x_2 = (\sin\varphi - \omega\tau\cos\varphi)/(1 + \omega^2\tau^2)$."
-    "\nUnstable manifolds, limit cycles and trajectories are projections."
+    r" $x_2 = (\sin\varphi - \omega\tau\cos\varphi)/(1 + \omega^2\tau^2)$,"
+    "\nwhere trajectories start too. Unstable manifolds, limit cycles and trajectories:"
+    " projections, over the first turn of each."
 )
-_STABLE, _UNSTABLE, _CYCLE = COLOURS[4], COLOURS[0], "#c00000"
+_SIDES = ("forward", "backward")
+_STABLE, _UNSTABLE = (COLOURS[4], "#f0d000"), (COLOURS[0], "#5fbf8f")
+_CYCLE = "#c00000"
+# A curve is drawn until it has moved this far from its start (rad), or this far in all.
+_TURN, _WAY = 2 * pi, 6 * pi
+# Between two points of a drawn curve, rad.
+_FINE = 0.05
 
 
 def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     found = sorted(summaries(rows), key=lambda row: -row["k"])
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 2.4 + 2.6 * len(found))})
+        figure = Figure(**SIZE)
         panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
         for axes, row in zip(panels, found, strict=True):
             _draw(axes, points(rows, row["k"]), row)
@@ -60,52 +69,67 @@ def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
         panels[-1].set_xticks(
             np.arange(-4, 5) * pi / 4, [f"{degrees}°" for degrees in range(-180, 181, 45)]
         )
-        figure.legend(
-            *panels[0].get_legend_handles_labels(),
+        share_legend(
+            figure,
+            panels,
             loc="outside lower center",
-            ncols=3,
-            fontsize=12,
+            ncols=5,
+            fontsize=10.5,
             title=_SLICE,
-            title_fontsize=11,
+            title_fontsize=10,
         )
     return figure
 
 
 def _draw(axes: Axes, rows: list[PointRow], found: SummaryRow) -> None:
     axes.set_label(f"k={found['k']:g}")
-    _draw_lines(axes, rows)
-    _draw_fixpoints(axes, rows)
     most = found["fastest"] / (2 * pi)
+    _draw_lines(axes, rows, most)
+    _draw_fixpoints(axes, rows)
     axes.set(xlim=(-pi, pi), ylim=(-most, most), ylabel=r"$\nu = \omega/2\pi$ (Hz)")
-    axes.set_title(rf"$k$ = {found['k']:g}: {_NAMES[found['kind']]}", fontsize=14)
+    axes.set_title(rf"$k$ = {found['k']:g}: {_NAMES[found['kind']]}", fontsize=13)
 
 
-def _draw_lines(axes: Axes, rows: list[PointRow]) -> None:
-    """Manifolds, trajectories and limit cycles."""
+def _draw_lines(axes: Axes, rows: list[PointRow], most: float) -> None:
+    """Manifolds, trajectories and limit cycles. most: the greatest speed shown, Hz."""
     edges = _points(rows, "stable manifold")
-    for turns in range(-2, 3):
-        for sign in (1.0, -1.0):
-            axes.plot(
-                sign * edges[:, 0] + turns * pi / 2,
-                sign * edges[:, 1],
-                ".",
-                color=_STABLE,
-                markersize=2.2,
-            )
-    axes.plot([], [], color=_STABLE, label="stable manifolds of the saddles, in a slice")
+    edges = np.concatenate([edges, -edges])
+    forward = sides(edges, most)
+    for own, colour, side in zip((forward, ~forward), _STABLE, _SIDES, strict=True):
+        for turns in range(-2, 3):
+            phi = edges[own, 0] + turns * pi / 2
+            axes.plot(phi, edges[own, 1], ".", color=colour, markersize=3.6, markeredgewidth=0)
+        if own.any():
+            axes.plot([], [], color=colour, linewidth=2.6, label=f"stable manifolds, {side}")
     for line in sorted({row["line"] for row in rows if row["part"] == "trajectory"}):
-        _draw_turned(axes, _points(rows, "trajectory", line), (0,), color="black", linewidth=0.9)
-    axes.plot([], [], color="black", linewidth=0.9, label="trajectories")
-    for line in (0, 1):
         _draw_turned(
-            axes, _points(rows, "unstable manifold", line), range(4), color=_UNSTABLE, linewidth=1.4
+            axes,
+            _curve(_points(rows, "trajectory", line)),
+            (0,),
+            color="black",
+            linewidth=0.9,
+            label="trajectories",
         )
-    axes.plot([], [], color=_UNSTABLE, label="unstable manifolds")
+    for line, (colour, side) in enumerate(zip(_UNSTABLE, _SIDES, strict=True)):
+        _draw_turned(
+            axes,
+            _curve(_points(rows, "unstable manifold", line)),
+            range(4),
+            color=colour,
+            linewidth=1.4,
+            label=f"unstable manifolds, {side}",
+        )
     cycle = _points(rows, "limit cycle")
     if len(cycle):
         for sign in (1.0, -1.0):
-            _draw_turned(axes, sign * cycle, range(4), color=_CYCLE, linewidth=2.6)
-    axes.plot([], [], color=_CYCLE, linewidth=2.6, label="limit cycles")
+            _draw_turned(
+                axes,
+                sign * _curve(cycle),
+                range(4),
+                color=_CYCLE,
+                linewidth=2.6,
+                label="limit cycles",
+            )
 
 
 def _draw_fixpoints(axes: Axes, rows: list[PointRow]) -> None:
@@ -113,18 +137,18 @@ def _draw_fixpoints(axes: Axes, rows: list[PointRow]) -> None:
         angles = np.array([row["phi"] for row in rows if _marked(row) == kind])
         angles = np.concatenate([angles, angles - 2 * pi])
         angles = angles[np.abs(angles) < pi + 0.01]
-        label = "saddles" if kind == "saddle" else f"{kind} rest"
-        axes.plot([], [], marker, color="black", markerfacecolor=face, markersize=8, label=label)
         if len(angles):
             axes.plot(
                 angles,
                 np.zeros_like(angles),
-                marker,
+                marker=marker,
                 color="black",
                 markerfacecolor=face,
                 markersize=8,
                 clip_on=False,
                 zorder=5,
+                linestyle="",
+                label="saddles" if kind == "saddle" else f"{kind} rest",
             )
 
 
@@ -147,9 +171,26 @@ def _points(rows: list[PointRow], part: LinePart, line: int = 0) -> Array:
     return np.array(own).reshape(-1, 2)
 
 
-def _draw_turned(axes: Axes, points: Array, quarters: Any, **style: Any) -> None:
-    """A line in copies that are turned by quarter turns; its angle is wrapped into one turn."""
+def _curve(points: Array) -> Array:
+    """A curve of states at equal times, smooth and not longer than can be told apart."""
+    moved = np.abs(points[:, 0] - points[0, 0])
+    way = np.append(0.0, np.cumsum(np.abs(np.diff(points[:, 0]))))
+    shown = points[: int(np.argmax((moved > _TURN) | (way > _WAY))) or None]
+    if len(shown) < 3:
+        return shown
+    times = np.arange(len(shown))
+    each = int(np.ceil(np.abs(np.diff(shown[:, 0])).max() / _FINE))
+    fine = np.linspace(0.0, times[-1], each * times[-1] + 1)
+    return np.asarray(CubicSpline(times, shown)(fine))
+
+
+def _draw_turned(axes: Axes, points: Array, quarters: Iterable[int], **style: Any) -> None:
+    """A curve in copies that are turned by quarter turns, and by as many turns as it passes."""
+    least, most = points[:, 0].min(), points[:, 0].max()
     for quarter in quarters:
-        phi = (points[:, 0] + quarter * pi / 2 + pi) % (2 * pi) - pi
-        jumps = np.flatnonzero(np.abs(np.diff(phi)) > pi) + 1
-        axes.plot(np.insert(phi, jumps, np.nan), np.insert(points[:, 1], jumps, np.nan), **style)
+        turned = points[:, 0] + quarter * pi / 2
+        for turn in range(
+            floor((-pi - most - quarter * pi / 2) / (2 * pi)),
+            ceil((pi - least - quarter * pi / 2) / (2 * pi)) + 1,
+        ):
+            axes.plot(turned + turn * 2 * pi, points[:, 1], **style)
