@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from host.figures.style import COLOURS, styled
+from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from host.theory.analysis.outcomes import BACK, BACKWARD, FORWARD, OTHER, REST, Outcome
 from host.theory.studies.basins_report import Numbers, reversals
@@ -31,23 +31,25 @@ from host.theory.studies.basins_rows import (
 )
 from robot.kicks import MEMBRANE, PHASE, POSITION
 
+_LABELS = {(POSITION, 0): "position", (PHASE, 1): "phase-plus", (PHASE, -1): "phase-minus"}
 _KINDS = {
     (POSITION, 0): "positions inverted",
     (PHASE, 1): r"phase shifted $+3\pi/4$",
     (PHASE, -1): r"phase shifted $-3\pi/4$",
 }
 # Wells, by their angle within the turn; then directions; then what is neither.
-_WELLS = ("#009e73", "#f0e442", "#cc79a7", "#e5e5e5")
-_SHADES = (*_WELLS, COLOURS[0], COLOURS[1], "#555555", COLOURS[5])
+# Their lightness differs, too.
+_WELLS = ("#006d4f", "#f0e442", "#cc79a7", "#e5e5e5")
+_SHADES = (*_WELLS, COLOURS[0], COLOURS[4], "#111111", "#ffffff")
 _SHADE_OF: dict[Outcome, int] = {FORWARD: 4, BACKWARD: 5, OTHER: 6, REST: 7, BACK: 7}
 _CURVES: dict[ModelName, Any] = {
     CONTINUOUS: {"color": "black"},
-    SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 6},
+    SAMPLED: {"color": COLOURS[2], "marker": "o", "linestyle": "", "markersize": 5},
 }
 _MAP = ListedColormap(_SHADES)
 # Which slice of the four dimensions is shown (host.theory.analysis.outcomes.starting_states).
 _SLICE = (
-    r"Basins: the slice of starts with the potentials of rest at their angle,"
+    r"Starts: in the slice with the potentials of rest at their angle,"
     r" $x_1 = \cos\varphi$, $x_2 = \sin\varphi$."
 )
 
@@ -56,30 +58,40 @@ def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
     """The figure of the study's rows; without the kicks, if no wheel rolls."""
     numbers: Numbers = findings.numbers
     with styled():
-        figure = Figure(figsize=(12.0, 9.0), dpi=1600 / 12, layout="constrained")
-        figure.supxlabel(_SLICE, fontsize=11)
+        figure = Figure(**SIZE)
         if len(numbers["no_wheel_rolls"]) == len(MODEL_NAMES):
             panels: Any = figure.subplots(1, 2, sharey=True)
             used = _draw_basins(panels, rows, findings)
-            figure.legend(handles=_patches(used), loc="outside lower center", ncols=4)
+            figure.legend(
+                handles=_patches(used),
+                loc="outside lower center",
+                ncols=4,
+                title=_SLICE,
+                title_fontsize=11,
+            )
             figure.suptitle(
                 "Which start leads where; at these constants no wheel rolls that could be kicked",
                 fontsize=17,
             )
             return figure
-        panels = figure.subplots(3, 4, width_ratios=(1.7, 1, 1, 1))
+        panels = figure.subplots(3, 4, width_ratios=(1.5, 1, 1, 1))
+        figure.supxlabel(_SLICE, fontsize=11)
+        for axes in panels.flat:
+            axes.tick_params(labelsize=10)
         used = _draw_basins(panels[:2, 0], rows, findings)
         for line, model in zip(panels, MODEL_NAMES, strict=False):
             for axes, kind in zip(line[1:], _KINDS, strict=True):
+                axes.set_label(f"kicks-{_LABELS[kind]}-{model}")
                 used |= _draw_kicks(axes, kicks_of(rows, model, *kind), model)
-            line[1].set_ylabel(f"length of the kick (ms)\n{model}")
+                axes.set_ylabel(f"{model}:\nlength (ms)", fontsize=11)
         for (top, middle, bottom), (kind, name) in zip(
             panels[:, 1:].T, _KINDS.items(), strict=True
         ):
             top.set_title(name, fontsize=12)
-            middle.set_xlabel("phase of rolling (°)")
+            middle.set_xlabel("phase of rolling (°)", fontsize=11)
+            bottom.set_label(f"reversed-{_LABELS[kind]}")
             _draw_shares(bottom, rows, kind)
-        panels[2, 1].set_ylabel("reversed (%)")
+            bottom.set_ylabel("reversed (%)", fontsize=11)
         _explain(panels[2, 0], used, rows)
         figure.suptitle(
             "Which start, and which kick of a wheel that rolls forward, leads where", fontsize=17
@@ -97,8 +109,9 @@ def _draw_basins(panels: Any, rows: list[BasinsRow], findings: Findings) -> set[
     for axes, (model, title) in zip(panels, titles.items(), strict=True):
         axes.set_label(f"starts-{model}")
         used |= _draw_starts(axes, starts_of(rows, model))
-        axes.set_title(title, fontsize=13)
-        axes.set(xlabel=r"angle $\varphi$ at the start", ylabel=r"$\omega/2\pi$ at the start (Hz)")
+        axes.set_title(title, fontsize=12)
+        axes.set_xlabel(r"angle $\varphi$ at the start", fontsize=11)
+        axes.set_ylabel("$\\omega/2\\pi$ at\nthe start (Hz)", fontsize=11)
     return used
 
 
@@ -156,7 +169,8 @@ def _draw_shares(axes: Axes, rows: list[BasinsRow], kind: tuple[str, int]) -> No
             [100 * share for share in shares.values()],
             **style,
         )
-    axes.set(xlabel="length of the kick (ms)", xlim=(0, 400), ylim=(-3, 103))
+    axes.set_xlabel("length of the kick (ms)", fontsize=11)
+    axes.set(xlim=(0, 400), ylim=(-3, 103))
 
 
 def _patches(used: set[int]) -> list[Artist]:
@@ -168,7 +182,10 @@ def _patches(used: set[int]) -> list[Artist]:
         "irregular, or not settled",
         "rests, or goes forth and back",
     ]
-    return [Patch(facecolor=_SHADES[shade], label=names[shade]) for shade in sorted(used)]
+    return [
+        Patch(facecolor=_SHADES[shade], edgecolor="grey", label=names[shade])
+        for shade in sorted(used)
+    ]
 
 
 def _explain(axes: Axes, used: set[int], rows: list[BasinsRow]) -> None:
@@ -191,8 +208,9 @@ def _explain(axes: Axes, used: set[int], rows: list[BasinsRow]) -> None:
         handles=handles,
         loc="upper left",
         title=title,
-        fontsize=12,
-        title_fontsize=12,
+        fontsize=10.5,
+        title_fontsize=10.5,
         alignment="left",
+        borderaxespad=0.0,
     )
     legend.set_in_layout(False)

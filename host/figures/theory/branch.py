@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from host.figures.style import COLOURS, share_legend, styled
+from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.figures.theory.branch_panels import DASHED, draw_line, draw_turning
 from host.runs.contract import Findings
 from host.theory.studies import branch_tables as tables
@@ -53,7 +53,9 @@ _LETTER = {
     "I": "inertia $I$",
     "f": "friction $f$",
 }
-_SIZE: Any = {"figsize": (10.0, 7.4), "dpi": 160, "layout": "constrained"}
+# Rotations with dry friction are thinner, so that they stand out without colours, too.
+_WIDTH: dict[CyclePart, float] = {"FB": 1.8, "LLM": 2.4, "dry": 1.1}
+_MARKED: Any = {"linestyle": "", "markerfacecolor": "white", "zorder": 4}
 
 
 def draw(rows: list[BranchRow], findings: Findings) -> Figure:
@@ -61,11 +63,11 @@ def draw(rows: list[BranchRow], findings: Findings) -> Figure:
     numbers: Numbers = findings.numbers
     along = numbers["along"]
     with styled():
-        figure = Figure(**_SIZE)
+        figure = Figure(**SIZE)
         wide, near, swing, period, line, turning = figure.subplots(2, 3).flat
         for axes, name, label in (
             (wide, "rotations", r"mean $\omega$ (rad/s)"),
-            (near, "rotations, at their onset", r"mean $\omega$ (rad/s)"),
+            (near, "rest, and rotations both ways", r"mean $\omega$ (rad/s)"),
             (swing, "forth-and-back cycles", r"amplitude of $\varphi$ (rad)"),
             (period, "periods", "period (s)"),
         ):
@@ -73,9 +75,12 @@ def draw(rows: list[BranchRow], findings: Findings) -> Figure:
             axes.set_xlabel(_LETTER[along], fontsize=12)
             axes.set_ylabel(label, fontsize=12)
         _draw_formula(wide, rows)
-        for axes in (wide, near):
-            _draw_branches(axes, rows, "omega_mean", ("LLM", "dry"))
+        _draw_branches(wide, rows, "omega_mean", ("LLM", "dry"))
+        for sign in (1.0, -1.0):
+            _draw_branches(near, rows, "omega_mean", ("LLM", "dry"), sign)
+        _draw_rest(near, rows)
         _draw_rest(swing, rows)
+        _draw_saddle(swing)
         _draw_branches(swing, rows, "amplitude", ("FB",))
         _draw_branches(period, rows, "period", ("FB", "LLM", "dry"))
         period.set_yscale("log")
@@ -88,20 +93,28 @@ def draw(rows: list[BranchRow], findings: Findings) -> Figure:
         for row in tables.mergings(rows, "merging"):
             _mark(swing, row, pi / 4)
         _zoom(rows, near, swing, period)
+        if along == "k":  # as the paper's figure of the robot
+            near.set_xlim(left=0.0)
         draw_line(line, tables.merging_line(rows))
         draw_turning(turning, tables.turned_at(rows))
         for axes in (wide, near, swing, period, line, turning):
             axes.tick_params(labelsize=11)
-        share_legend(
-            figure,
-            (wide, near, swing),
-            loc="outside lower center",
-            ncols=4,
-            fontsize=11,
-            columnspacing=1.4,
-        )
+        _explain(figure, (wide, near, swing))
         figure.suptitle(_headline(along, numbers["mergings"]), fontsize=15)
     return figure
+
+
+def _explain(figure: Figure, panels: tuple[Axes, ...]) -> None:
+    """One legend: a line for each branch, a black marker for each bifurcation."""
+    for axes in panels:
+        if any(line.get_linestyle() == "--" for line in axes.get_lines()):
+            axes.plot([], [], color="black", linestyle=DASHED, label="unstable")
+        for marker, name in _MARK.values():
+            if name in axes.get_legend_handles_labels()[1]:
+                axes.plot([], [], marker, color="black", label=name, **_MARKED)
+    share_legend(
+        figure, panels, loc="outside lower center", ncols=6, fontsize=11, columnspacing=1.4
+    )
 
 
 def _headline(along: str, mergings: list[float]) -> str:
@@ -112,8 +125,13 @@ def _headline(along: str, mergings: list[float]) -> str:
 
 
 def _draw_branches(
-    axes: Axes, rows: list[BranchRow], quantity: Quantity, parts: tuple[CyclePart, ...]
+    axes: Axes,
+    rows: list[BranchRow],
+    quantity: Quantity,
+    parts: tuple[CyclePart, ...],
+    sign: float = 1.0,
 ) -> None:
+    """Branches and their bifurcations. sign: of the height, -1 for rotations backward."""
     for part in parts:
         for way in WAYS:
             cycles = tables.cycles_along(rows, part, way)
@@ -122,14 +140,20 @@ def _draw_branches(
                 for row in tables.ends(rows)
                 if row["type"] == "merging" and (row["part"], row["way"]) == (part, way)
             ]
-            _draw_cycles(axes, cycles, quantity, part, ends)
+            _draw_cycles(axes, cycles, quantity, part, ends, sign)
         for point in tables.cycle_points(rows):
             if point["part"] == part:
-                _mark(axes, point, point[quantity])
+                height = point[quantity]
+                _mark(axes, point, None if height is None else sign * height)
 
 
 def _draw_cycles(
-    axes: Axes, cycles: list[CycleRow], quantity: Quantity, part: CyclePart, ends: list[float]
+    axes: Axes,
+    cycles: list[CycleRow],
+    quantity: Quantity,
+    part: CyclePart,
+    ends: list[float],
+    sign: float,
 ) -> None:
     """Cycles along one way, stretch by stretch. ends: where the way ends in a merging."""
     last: list[CycleRow] = []
@@ -139,17 +163,18 @@ def _draw_cycles(
         style: Any = {
             "color": _COLOUR[part],
             "linestyle": "-" if stable else DASHED,
-            "label": _NAME[part] + ("" if stable else ", unstable"),
+            "linewidth": _WIDTH[part],
+            "label": _NAME[part] if stable else None,
         }
-        heights = np.array([row[quantity] for row in stretch], dtype=float)
+        heights = sign * np.array([row[quantity] for row in stretch], dtype=float)
         axes.plot([row["value"] for row in stretch], heights, **style)
         last = points[-1:]
         if quantity == "omega_mean" and points[-1] is cycles[-1]:
             # At a merging rotations end at rest, and logarithmically so.
             axes.plot(
                 [points[-1]["value"], *ends][-2:],
-                [points[-1]["omega_mean"], 0.0][: 1 + len(ends)],
-                **style,
+                [sign * points[-1]["omega_mean"], 0.0][: 1 + len(ends)],
+                **{**style, "label": None},
             )
 
 
@@ -158,13 +183,11 @@ def _mark(axes: Axes, row: SpecialRow, height: float | None) -> None:
     axes.plot(
         row["value"],
         np.nan if height is None else height,
-        linestyle="",
         marker=marker,
         color=_COLOUR[row["part"]],
-        markerfacecolor="white",
         markersize=13 if row["type"] == "merging" else 8,
-        label=name + (", dry friction" if row["part"] == "dry" else ""),
-        zorder=4,
+        label=name,
+        **_MARKED,
     )
 
 
@@ -185,7 +208,7 @@ def _draw_formula(axes: Axes, rows: list[BranchRow]) -> None:
 
 
 def _draw_rest(axes: Axes, rows: list[BranchRow]) -> None:
-    """The fixpoint at 0, and the saddle at pi/4."""
+    """The fixpoint at 0."""
     hopfs = tables.hopfs(rows)
     points: list[tuple[float, bool | None]] = [
         (row["value"], row["stable"]) for row in tables.rests(rows) if row["phi"] == 0.0
@@ -199,14 +222,17 @@ def _draw_rest(axes: Axes, rows: list[BranchRow]) -> None:
             [0.0, 0.0],
             color=_COLOUR["fixpoints"],
             linestyle="-" if stable else DASHED,
-            label="rest" if stable else "rest, unstable",
+            label="rest" if stable else None,
         )
-    axes.axhline(pi / 4, color=_COLOUR["fixpoints"], linestyle=DASHED)
-    axes.text(
-        0.02, pi / 4 - 0.02, "saddle", transform=axes.get_yaxis_transform(), va="top", fontsize=11
-    )
     for row in hopfs:
         _mark(axes, row, 0.0)
+
+
+def _draw_saddle(axes: Axes) -> None:
+    axes.axhline(pi / 4, color=_COLOUR["fixpoints"], linestyle=DASHED)
+    axes.set_ylim(top=1.2 * pi / 4)
+    place: Any = {"transform": axes.get_yaxis_transform(), "ha": "center", "va": "bottom"}
+    axes.text(0.5, pi / 4 + 0.02, "saddle", fontsize=11, **place)
 
 
 def _zoom(rows: list[BranchRow], near: Axes, swing: Axes, period: Axes) -> None:
@@ -223,7 +249,7 @@ def _zoom(rows: list[BranchRow], near: Axes, swing: Axes, period: Axes) -> None:
     inside = [row for row in tables.cycles(rows) if low - margin < row["value"] < high + margin]
     speeds = [row["omega_mean"] for row in inside if row["part"] != "FB"]
     if speeds:
-        near.set_ylim(-0.06 * max(speeds), 1.08 * max(speeds))
+        near.set_ylim(-1.08 * max(speeds), 1.08 * max(speeds))
     periods = [row["period"] for row in inside]
     if periods:
         period.set_ylim(0.9 * min(periods), 1.2 * max(periods))

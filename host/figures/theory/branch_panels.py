@@ -26,7 +26,8 @@ def draw_line(axes: Axes, line: list[LineRow]) -> None:
             [row["k"] / row["k_hopf"] for row in stretch],
             color=COLOURS[3] if positive else COLOURS[5],
             linewidth=2.5,
-            label="unstable cycles, folds" if positive else "stable cycles",
+            linestyle=(0, (1.0, 0.5)) if positive else "-",
+            label="unstable, folds" if positive else "stable",
         )
         last = points[-1:]
     axes.axhline(1.0, color="black", linewidth=1.0)
@@ -37,10 +38,10 @@ def draw_line(axes: Axes, line: list[LineRow]) -> None:
     if line:
         axes.legend(
             fontsize=10.5,
-            title="near the merging:",
+            title="cycles near it:",
             title_fontsize=10.5,
             loc="upper right",
-            handlelength=1.0,
+            handlelength=1.5,
         )
 
 
@@ -49,7 +50,7 @@ def draw_turning(axes: Axes, turned: dict[float, list[TurnedRow]]) -> None:
     for colour, k in zip(COLOURS, sorted(turned), strict=False):
         own = sorted(turned[k], key=lambda row: row["phi"])
         angles = [degrees(row["phi"]) for row in own]
-        axes.plot(angles, [row["x1"] for row in own], color=colour, label=f"$k$ = {k:g}")
+        axes.plot(angles, [row["x1"] for row in own], color=colour, label=f"$k$ = {k:g}, formula")
         dots = own[:: max(1, len(own) // 24)]
         axes.plot(
             [degrees(row["phi"]) for row in dots],
@@ -61,10 +62,13 @@ def draw_turning(axes: Axes, turned: dict[float, list[TurnedRow]]) -> None:
         if own[0]["x1_rolling"] is not None:
             rolling = np.array([row["x1_rolling"] for row in own], dtype=float)
             axes.plot(angles, rolling, color=colour, linestyle=DASHED)
-    axes.set_title(
-        "potentials: formula, numbers ($\\bullet$),\nand of a rolling wheel (dashed)", fontsize=12
-    )
+    axes.plot([], [], color="dimgrey", linestyle="", marker=".", label="numbers")
+    if any(own[0]["x1_rolling"] is not None for own in turned.values()):
+        axes.plot([], [], color="dimgrey", linestyle=DASHED, label="a rolling wheel")
+    axes.set_title("potential of a turned wheel", fontsize=12)
     axes.set_xlabel(r"angle $\varphi$ (°)", fontsize=12)
     axes.set_ylabel("$x_1$", fontsize=12)
     axes.set_xticks((0, 90, 180, 270, 360))
-    axes.legend(fontsize=10.5, loc="upper center", handlelength=1.0)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.75 * (high - low))
+    axes.legend(fontsize=10, loc="upper center", handlelength=1.5, ncols=2, columnspacing=1.0)

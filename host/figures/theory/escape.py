@@ -6,9 +6,10 @@ Right, the share of wheels that have not yet escaped, which at a constant rate i
 from __future__ import annotations
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.figure import Figure
 
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import SIZE, styled
 from host.runs.contract import Findings
 from host.theory.studies.escape import Numbers, strength_of
 from host.theory.studies.escape_rows import EscapeRow, by_level
@@ -22,12 +23,13 @@ def draw(rows: list[EscapeRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     numbers: Numbers = findings.numbers
     found, law = numbers["levels"], numbers["arrhenius"]
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(found)))
     letter = r"D_M" if found[0]["noise"] else r"D_\varphi"
     with styled():
         figure = Figure(**SIZE)
         means, shares = figure.subplots(1, 2)
         for number, (row, own) in enumerate(zip(found, by_level(rows), strict=True)):
-            colour, inverse = COLOURS[number % len(COLOURS)], 1.0 / strength_of(row) ** 2
+            colour, inverse = tuple(shades[number]), 1.0 / strength_of(row) ** 2
             if row["mean_s"] is None:
                 means.plot(inverse, row["low_s"], "^", color=colour, markersize=9)
             else:

@@ -35,11 +35,11 @@ from host.theory.studies.lines_rows import (
 
 PANELS = ("plane", "near-hopf")
 
-_LINES: dict[tuple[str, str], tuple[str, str, str]] = {
+_LINES: dict[tuple[str, str], tuple[str, Any, str]] = {
     ("Hopf", "Hopf"): (COLOURS[6], "-", "Hopf"),
     ("merging", "merging"): (COLOURS[1], "-", "merging"),
     ("FB", "fold"): (COLOURS[0], "--", "folds, forth and back"),
-    ("LLM", "fold"): (COLOURS[2], "--", "folds, rotations"),
+    ("LLM", "fold"): (COLOURS[2], (0, (5, 1, 1, 1, 1, 1)), "folds, rotations"),
     ("LLM", "neimark-sacker"): (COLOURS[3], "-.", "Neimark-Sacker, rotations"),
     ("FB", "neimark-sacker"): (COLOURS[3], ":", "Neimark-Sacker, forth and back"),
     ("LLM", "pitchfork"): (COLOURS[4], "-.", "pitchforks, rotations"),
@@ -76,7 +76,7 @@ def draw(rows: list[LinesRow], findings: Findings) -> Figure:
         return wheel.k / critical_k(wheel)
 
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (12.5, 7.0)})
+        figure = Figure(**SIZE)
         plane, close = figure.subplots(1, 2)
         x_to, y_to = _draw_phases(plane, rows)
         for axes, x_of in ((plane, _x), (close, above)):
@@ -91,7 +91,7 @@ def draw(rows: list[LinesRow], findings: Findings) -> Figure:
             xlim=(min(near) - 0.01, min(max(near), _CLOSE) + 0.01),
             yscale="log",
         )
-        share_legend(figure, [plane, close], loc="outside lower center", ncols=4, fontsize=11)
+        share_legend(figure, [plane, close], loc="outside lower center", ncols=5, fontsize=10.5)
         figure.suptitle("Bifurcations of a wheel in the plane of two constants", fontsize=16)
     return figure
 
@@ -148,7 +148,7 @@ def _draw_lines(
         axes.plot(
             [x_of(row) for row in found],
             [row["y"] for row in found],
-            style,
+            linestyle=style,
             color=colour,
             label=label,
         )

@@ -34,7 +34,7 @@ def draw(rows: list[LineRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     numbers: LineNumbers = findings.numbers
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (12.0, 7.5)})
+        figure = Figure(**SIZE)
         grid = figure.add_gridspec(2, 2, height_ratios=(1.2, 1.0))
         _draw_line(figure.add_subplot(grid[0, :]), line_of(rows), numbers)
         draw_survival(figure.add_subplot(grid[1, 0]), lives_of(rows), numbers)

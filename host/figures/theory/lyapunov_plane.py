@@ -24,7 +24,7 @@ PANELS = ("any", "rolls")
 def draw(rows: list[PlaneRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (12.0, 5.6)})
+        figure = Figure(**SIZE)
         _draw_planes(figure, list(figure.subplots(1, 2, sharey=True)), plane_of(rows))
         figure.suptitle("The largest exponent of the model", fontsize=16)
     return figure

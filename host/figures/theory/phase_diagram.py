@@ -35,7 +35,10 @@ _QUANTITIES: tuple[tuple[Quantity, str], ...] = (
 # The phases that are named in each panel.
 _NAMED: dict[Panel, tuple[Phase, ...]] = {"plane": ("LLM", "C"), "inset": ("S", "FB", "LLM")}
 _DARK: Any = {"frameon": True, "facecolor": "#444444", "labelcolor": "white"}
-_INSET = (0.5, 0.48, 0.47, 0.45)
+# Where the inset and its colour bar are, in parts of the panel.
+_INSET, _BAR = (0.47, 0.48, 0.4, 0.45), (0.885, 0.48, 0.02, 0.45)
+# Colours reach at least so far (rad/s), or rest would look like motion.
+_LEAST = 0.1
 
 
 def draw(rows: list[PhaseDiagramRow], findings: Findings) -> Figure:
@@ -44,13 +47,13 @@ def draw(rows: list[PhaseDiagramRow], findings: Findings) -> Figure:
     numbers: Numbers = findings.numbers
     wheel = wheel_of(numbers["constants"])
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (12.5, 6.4)})
+        figure = Figure(**SIZE)
         panels = figure.subplots(1, 2, sharey=True)
         for axes, (quantity, label) in zip(panels, _QUANTITIES, strict=True):
             image = _draw_panel(axes, diagram, "plane", quantity, wheel)
             figure.colorbar(image, ax=axes, label=label, location="top", shrink=0.8)
             _draw_edge_of_chaos(axes, of_panel(diagram, "plane", "down"))
-            _draw_inset(axes.inset_axes(_INSET), diagram, quantity, wheel)
+            _draw_inset(figure, axes, diagram, quantity, wheel)
             axes.set_xlabel(r"spring constant $k$")
         figure.axes[0].set_ylabel(r"time constant $\tau$ (s)")
         figure.legend(
@@ -75,6 +78,7 @@ def _draw_panel(
         extent=(0.0, float(ks[-1] + ks[0]), 0.0, float(taus[-1] + taus[0])),
         aspect="auto",
         vmin=0.0,
+        vmax=max(_LEAST, float(np.nanmax(values))),
         cmap="inferno",
         interpolation="nearest",
     )
@@ -84,14 +88,16 @@ def _draw_panel(
     return image
 
 
-def _draw_inset(inset: Axes, diagram: list[PointRow], quantity: Quantity, wheel: Wheel) -> None:
-    image = _draw_panel(inset, diagram, "inset", quantity, wheel)
-    inset.set_title(
-        f"colours to {image.get_clim()[1]:.2g} rad/s", color="white", fontsize=10, pad=3
-    )
-    inset.tick_params(colors="white", labelsize=10)
-    for spine in inset.spines.values():
-        spine.set(color="white", visible=True)
+def _draw_inset(
+    figure: Figure, axes: Axes, diagram: list[PointRow], quantity: Quantity, wheel: Wheel
+) -> None:
+    """The inset, with a colour bar of its own."""
+    inset, bar = axes.inset_axes(_INSET), axes.inset_axes(_BAR)
+    figure.colorbar(_draw_panel(inset, diagram, "inset", quantity, wheel), cax=bar)
+    for part in (inset, bar):
+        part.tick_params(colors="white", labelsize=10)
+        for spine in part.spines.values():
+            spine.set(color="white", visible=True)
 
 
 def _grid(rows: list[PointRow], name: Literal[Quantity, "chaotic"]) -> tuple[Array, Array, Array]:

@@ -35,6 +35,8 @@ Threshold = Literal["k_c", "k_rolls", "k_stops"]
 Column = Literal[Threshold, "hz"]
 
 _COLOUR: dict[Order | Continuous, str] = {NEW: COLOURS[0], OLD: COLOURS[1], CONTINUOUS: "black"}
+# The older order is thinner, so that it stands out without colours, too.
+_WIDTH: dict[Order | Continuous, float] = {NEW: 2.6, OLD: 1.2, CONTINUOUS: 1.8}
 _LINE: dict[Column, tuple[str, str]] = {
     "k_c": ("-", "rest ends"),
     "k_rolls": ("--", "rolling begins"),
@@ -53,7 +55,7 @@ def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
     numbers: Numbers = findings.numbers
     tick_ms, latency_ms = 1000 * numbers["tick_s"], 1000 * numbers["latency_s"]
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 7.4)})
+        figure = Figure(**SIZE)
         (lines, growth), (speed, latency) = figure.subplots(2, 2)
         _draw_against(lines, rows, "tick", _names(rows), tick_ms)
         lines.plot(0, numbers["k_hopf"], "ko", markersize=5, clip_on=False)
@@ -70,7 +72,7 @@ def draw(rows: list[TickStudyRow], findings: Findings) -> Figure:
         _draw_growth(growth, rows)
         growth.set(
             xlabel="spring constant $k$",
-            ylabel="growth of a small swing (1/s)",
+            ylabel="growth of a\nsmall swing (1/s)",
             title=f"at a tick of {tick_ms:g} ms",
         )
         _draw_against(speed, rows, "tick", ("hz",), tick_ms)
@@ -145,6 +147,7 @@ def _draw_against(
                 np.array(values, dtype=float),
                 style,
                 color=_COLOUR[order],
+                linewidth=_WIDTH[order],
                 label=f"{words}: {_NAME[order]}" if words else None,
             )
     axes.axvline(here_ms, color="lightgrey", linewidth=1.0, zorder=0)
@@ -158,5 +161,6 @@ def _draw_growth(axes: Axes, rows: list[TickStudyRow]) -> None:
             [row["k"] for row in own],
             [row["growth_per_s"] for row in own],
             color=_COLOUR[order],
+            linewidth=_WIDTH[order],
             label=_NAME[order] if order == CONTINUOUS else None,
         )

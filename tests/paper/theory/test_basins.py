@@ -328,7 +328,7 @@ def test_the_same_seed_checks_the_same_starts():
 
 def test_the_figure_shows_starts_and_kicks_of_both_models(run):
     figure = draw(*run)
-    assert round(figure.get_size_inches()[0] * figure.dpi) == 1600
+    assert round(figure.get_size_inches()[0] * figure.dpi) == 1920
     assert len(figure.axes) == 12
     assert [text.get_text() for text in figure.axes[8].get_legend().get_texts()][:2] == [
         "rolls forward",
