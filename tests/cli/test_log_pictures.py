@@ -31,7 +31,7 @@ def test_a_plot_is_beside_its_log_and_as_large_as_a_projector_wants(kickctl, log
     assert (status, facts["kicks"], facts["stops"]) == (0, 1, 0)
     assert facts["figure"] == str(log.with_name(log.stem + "-plot.png"))
     with Image.open(facts["figure"]) as picture:
-        assert picture.width == 1600
+        assert picture.width == 1920
     assert kickctl("log", "plot", str(log), "--out", "a.svg")[0] == 0
     assert "<svg" in Path("a.svg").read_text()
 

@@ -332,7 +332,7 @@ def test_the_figure_shows_both_orders_beside_the_continuous_model(short_run):
     lines, growth = figure.axes[:2]
     assert len(lines.lines) >= 6
     assert len(growth.lines) == 4
-    assert figure.get_size_inches()[0] * figure.dpi == 1600
+    assert figure.get_size_inches()[0] * figure.dpi == 1920
 
 
 def test_a_tick_too_long_for_the_neurons_is_drawn_and_reported_as_such(short_run):

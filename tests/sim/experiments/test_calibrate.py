@@ -206,7 +206,7 @@ def test_the_same_seed_gives_the_same_rows_and_the_figure_is_drawn_from_them(odd
     assert {row["motor"] for row in again} == {"odd"}
     own = {"date": "", "motor": ""}
     assert [{**row, **own} for row in again] == [{**row, **own} for row in rows]
-    assert draw(rows, findings).get_size_inches()[0] * 160 == 1600
+    assert draw(rows, findings).get_size_inches()[0] * 160 == 1920
 
 
 def test_too_few_stretches_are_not_made_into_intervals(odd):

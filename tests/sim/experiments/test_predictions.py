@@ -102,4 +102,4 @@ def test_the_report_is_plain_data_and_its_figure_can_be_drawn():
     assert numbers["in_words"].splitlines()[0] == (
         "2 kicks: 1 wheels reversed, predicted were 2 +- 1"
     )
-    assert draw(rows, findings).get_size_inches()[0] * 160 == 1600
+    assert draw(rows, findings).get_size_inches()[0] * 160 == 1920

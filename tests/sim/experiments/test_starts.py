@@ -161,4 +161,4 @@ def test_a_run_ends_with_a_table_a_figure_and_no_claims(tmp_path):
 
 def test_the_figure_bears_rows_of_one_start_and_of_wheels_that_rest():
     rows = [row(0, "left", 0), row(0, "right", None)]
-    assert draw(rows, starts.report(rows, SETTING)).get_size_inches()[0] * 160 == 1600
+    assert draw(rows, starts.report(rows, SETTING)).get_size_inches()[0] * 160 == 1920
