@@ -7,6 +7,7 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
+from shlex import join
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.commands._failures import os_words
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from host.bodies.build import BodyRequest
     from host.bodies.keeping import Keeper
     from host.bodies.kicks import ScheduledKick
+    from host.figures.caption import Caption
     from sim_motor.bodies.body import Body
     from sim_motor.bodies.measures import Summary
 
@@ -222,7 +224,25 @@ class Result(NamedTuple):
         from host.figures.style import save
 
         kicks_s = [kick.t_s for kick in self.kicks]
-        return save(draw(keeper.columns, keeper.rows(), self.request, summary, kicks_s), path)
+        figure = draw(keeper.columns, keeper.rows(), self.request, summary, kicks_s, self.body.data)
+        return save(figure, path, self._caption())
+
+    def _caption(self) -> Caption:
+        """What the figure says about the run: the body's numbers, and the command."""
+        from host.bodies.build import BodyRequest, choose_preset
+        from host.figures.caption import Caption, in_words
+
+        own, usual = choose_preset(self.request), BodyRequest()._asdict()
+        given = [
+            f"--{name}" if value is True else f"--{name}={value}"
+            for name, value in self.request._asdict().items()
+            if value != usual[name]
+        ]
+        given += [f"--kick={words}" for words in self.settings["kicks"]]
+        kind = "car" if self.request.cars == 1 else "train"
+        command = ["kickctl", "body", kind, *given, f"--time={self.settings['time_s']:g}"]
+        parameters = in_words({"a": own.a, "tau": own.tau})
+        return Caption(f"{parameters}   k = {own.k:g} N   seed {self.request.seed}", join(command))
 
 
 def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dict[str, str]]:

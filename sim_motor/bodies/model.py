@@ -21,6 +21,8 @@ SIDES = ("left", "right")
 # (s) and damping ratio.
 BOUNCY = (0.02, 0.3)
 _BOXES, _OCTAGON_M = 16, 5.0
+# The radius (m) and colour of the bars that show the joints of a train.
+_BAR_M, _BAR_RGBA = 0.006, (0.35, 0.35, 0.4, 1.0)
 # Steps after which a body stands.
 _STANDING = 300
 # Hills: how many waves, and the longest and the shortest (m).
@@ -96,6 +98,7 @@ def _assemble(
             body.pos = (0.0, 0.0, 0.0)
             spec.delete(spec.joint(prefix + "root"))
             _couple(body, prefix, preset)
+            _draw_joint(body, prefix, preset)
         frame = body.add_frame(pos=(-preset.pitch, 0.0, 0.0))
     return spec
 
@@ -181,6 +184,23 @@ def _couple(body: Any, prefix: str, preset: Preset) -> None:
         joint.limited, joint.range = (
             mujoco.mjtLimited.mjLIMITED_TRUE,
             (-preset.joint_range, preset.joint_range),
+        )
+
+
+def _draw_joint(body: Any, prefix: str, preset: Preset) -> None:
+    """A bar from each of two cars to the joint between them, to look at alone."""
+    top, half = preset.body_height / 2 + 2 * _BAR_M, preset.pitch / 2
+    for owner, name, reach in ((body, "front_bar", half), (body.parent, "rear_bar", -half)):
+        owner.add_geom(
+            name=prefix + name,
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+            fromto=(0.0, 0.0, top, reach, 0.0, top),
+            size=(_BAR_M, 0.0, 0.0),
+            mass=0.0,
+            contype=0,
+            conaffinity=0,
+            group=2,
+            rgba=_BAR_RGBA,
         )
 
 

@@ -9,11 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from host.figures.bodies.from_above import label_metres
+from host.figures.bodies.from_above import draw_scene
 from host.figures.style import COLOURS, SIZE, styled
 from sim_motor.bodies.measures import Array, Summary, course, order
 
 if TYPE_CHECKING:
+    import mujoco
+
     from host.bodies.build import BodyRequest
 
 _START: Any = {"marker": "o", "markersize": 9, "markerfacecolor": "white", "linestyle": "none"}
@@ -26,6 +28,7 @@ def draw(
     request: BodyRequest,
     summary: Summary,
     kicks_s: list[float],
+    data: mujoco.MjData,
 ) -> Figure:
     """The figure of a body's run.
 
@@ -35,6 +38,7 @@ def draw(
         request: what the body should be.
         summary: of the run.
         kicks_s: when the body was kicked (s).
+        data: the scene with the body, as it is at the end.
 
     Returns:
         The figure.
@@ -45,7 +49,7 @@ def draw(
         axes: Any = figure.subplot_mosaic(
             [["path", "speed"], ["path", "order"]], width_ratios=(1.0, 1.25)
         )
-        _draw_path(axes["path"], motion.centre_m, columns, rows[-1])
+        _draw_path(axes["path"], motion.centre_m, columns, rows[-1], data)
         axes["speed"].plot(motion.t_s, motion.omega, color=COLOURS[0], linewidth=0.6, alpha=0.5)
         axes["speed"].plot(motion.t_s, motion.omega.mean(axis=1), color="black", linewidth=1.5)
         axes["speed"].set_ylabel(r"$\omega$ (rad/s)")
@@ -62,19 +66,17 @@ def draw(
     return figure
 
 
-def _draw_path(axes: Axes, centre: Array, columns: tuple[str, ...], end: Array) -> None:
-    """Draw the path of the centre, (times, 3), and the body's head and tail in the last row."""
-    cars = [name.removesuffix("_x_m") for name in columns if name.endswith("_x_m")]
-    head, tail = (
-        end[[columns.index(f"{car}_{axis}_m") for axis in "xy"]] for car in (cars[0], cars[-1])
-    )
+def _draw_path(
+    axes: Axes, centre: Array, columns: tuple[str, ...], end: Array, data: mujoco.MjData
+) -> None:
+    """Draw the centre's path, (times, 3), over the scene, and the cars as in the last row."""
+    names = [name.removesuffix("_x_m") for name in columns if name.endswith("_x_m")]
+    cars = np.array([end[[columns.index(f"{car}_{axis}_m") for axis in "xy"]] for car in names])
+    draw_scene(axes, data, np.vstack([centre[:, :2], cars]))
     axes.plot(*centre[:, :2].T, color=COLOURS[0])
     axes.plot(*centre[0, :2], **_START, markeredgecolor="black")
-    axes.plot(*np.array([head, tail]).T, color=_BODY, linewidth=5, solid_capstyle="round")
-    axes.plot(*head, marker="o", markersize=9, color=_BODY)
-    label_metres(axes)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.locator_params(axis="x", nbins=5)
+    axes.plot(*cars.T, color=_BODY, linewidth=5, solid_capstyle="round")
+    axes.plot(*cars[0], marker="o", markersize=9, color=_BODY, markeredgecolor="black")
 
 
 def _legend(has_reversals: bool, has_kicks: bool) -> list[Line2D]:
@@ -82,7 +84,15 @@ def _legend(has_reversals: bool, has_kicks: bool) -> list[Line2D]:
         Line2D([], [], color=COLOURS[0], label="path of the centre; each wheel"),
         Line2D([], [], color="black", label="mean of all wheels"),
         Line2D([], [], **_START, markeredgecolor="black", label="start"),
-        Line2D([], [], marker="o", color=_BODY, linewidth=5, label="end, with its head"),
+        Line2D(
+            [],
+            [],
+            marker="o",
+            color=_BODY,
+            markeredgecolor="black",
+            linewidth=5,
+            label="end, with its head",
+        ),
     ]
     if has_reversals:
         handles.append(Line2D([], [], color=COLOURS[1], linestyle=":", label="reversal"))

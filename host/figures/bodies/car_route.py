@@ -20,6 +20,7 @@ from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
 _SHADES = dict(zip(KINDS, ("#bbbbbb", COLOURS[4], COLOURS[5], COLOURS[0], COLOURS[1]), strict=True))
+PANELS = tuple(f"{row}-{column}" for row in ("starts", "speeds") for column in (1, 2, 3))
 _TICKS = (0.01, 0.03, 0.1, 0.3, 1.0)
 
 
@@ -27,7 +28,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     numbers: Numbers = findings.numbers
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 8.0)})
+        figure = Figure(**SIZE)
         grid = figure.subplots(2, len(NEURONS), sharey="row", sharex="col")
         for (shares, speeds), (a, tau) in zip(grid.T, NEURONS, strict=True):
             route = [one for one in numbers["route"] if (one["a"], one["tau"]) == (a, tau)]
@@ -36,7 +37,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             _draw_speeds(speeds, route, a, tau)
         grid[0, 0].set_ylabel("starts (%)")
         grid[1, 0].set_ylabel(r"$|\omega|$ of the wheels (rad/s)")
-        share_legend(figure, grid[:, 0], loc="outside lower center", ncols=3, fontsize=11)
+        share_legend(figure, grid.flat, loc="outside lower center", ncols=7, fontsize=11)
         figure.suptitle(
             "A car with one rod for each wheel: rest, forth and back, rolling", fontsize=16
         )
@@ -46,7 +47,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
 def _draw_shares(axes: Axes, route: list[Route]) -> None:
     ks, below = np.array([one["k"] for one in route]), np.zeros(len(route))
     starts = np.array([sum(one["kinds"].values()) for one in route])
-    for kind in KINDS:
+    for kind in (one for one in KINDS if any(own["kinds"].get(one) for own in route)):
         shares = 100 * np.array([one["kinds"].get(kind, 0) for one in route]) / starts
         axes.bar(ks, shares, bottom=below, color=_SHADES[kind], label=kind, width=0.26 * ks)
         below += shares

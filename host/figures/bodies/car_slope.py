@@ -19,7 +19,7 @@ from host.experiments.bodies.car_slope import (
     drives,
     positions,
 )
-from host.figures.bodies.from_above import FOOT_M, draw_slope_feet
+from host.figures.bodies.from_above import draw_scene, scene_data
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 
@@ -30,7 +30,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     moments = positions(rows)
     minutes = max((row["t_s"] for row in moments), default=0.0) / 60
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 4.6)})
+        figure = Figure(**SIZE)
         panels = figure.subplots(1, len(numbers["angles"]))
         for axes, angle in zip(panels, numbers["angles"], strict=True):
             cars = [row for row in drives(rows) if row["angle"] == angle["angle"]]
@@ -40,23 +40,22 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
                 for row in moments
                 if (row["angle"], row["number"]) == (shown["angle"], shown["number"])
             ]
-            lines = _draw_path(axes, path)
-            axes.set_title(_title(angle, shown), fontsize=11)
-            axes.set_xlabel("$x$ (m)")
-        panels[0].set_ylabel("$y$ (m)")
-        figure.colorbar(lines, ax=panels, shrink=0.8, label="time (min)")
+            lines = _draw_path(axes, path, angle["angle"])
+            axes.set_title(_title(angle, shown), fontsize=12)
+            axes.set_label(f"{angle['angle']:g}")
+        figure.colorbar(lines, ax=panels, shrink=0.6, label="time (min)")
         figure.suptitle(
             f"A car between four slopes (dashed: their feet), for {minutes:.2g} min; dot: where it"
             " ends",
-            fontsize=15,
+            fontsize=16,
         )
     return figure
 
 
-def _draw_path(axes: Axes, path: list[PositionRow]) -> LineCollection:
-    """Draw a path coloured by time, and return its lines."""
-    draw_slope_feet(axes)
+def _draw_path(axes: Axes, path: list[PositionRow], angle: float) -> LineCollection:
+    """Draw a path coloured by time over the slopes, and return its lines."""
     points = np.array([[row["x_m"], row["y_m"]] for row in path])
+    draw_scene(axes, scene_data("slopes", angle), points)
     t_s = np.array([row["t_s"] for row in path])
     lines = LineCollection(
         list(np.stack([points[:-1], points[1:]], axis=1)),
@@ -66,9 +65,6 @@ def _draw_path(axes: Axes, path: list[PositionRow]) -> LineCollection:
     )
     axes.add_collection(lines)
     axes.plot(*points[-1], "o", color=COLOURS[1], markersize=5)
-    half = 1.08 * max(FOOT_M, float(np.abs(points).max()))
-    axes.set(xlim=(-half, half), ylim=(-half, half), aspect="equal")
-    axes.locator_params(nbins=5)
     return lines
 
 

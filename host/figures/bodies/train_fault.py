@@ -15,10 +15,10 @@ from host.experiments.bodies.train_fault import (
     Row,
     positions,
 )
-from host.figures.bodies.from_above import label_metres
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 
+PANELS = ("order", "speed", "turning", "paths")
 # The paths that are shown, and their names.
 _SHOWN: tuple[tuple[Fault, str], ...] = (
     ({"part": "weaker", "wheel": WEAK, "percent": 0}, "none"),
@@ -26,6 +26,7 @@ _SHOWN: tuple[tuple[Fault, str], ...] = (
     ({"part": "weaker", "wheel": WEAK, "percent": -100}, "dead"),
     ({"part": "sizes", "wheel": None, "percent": SIZES}, f"radii ±{SIZES:g} %"),
 )
+_LINES = ("-", "--", "-.", ":")
 # Faults that are no point on the axis of k have a place to its right.
 _BESIDE = {"car0_left": 16, "car1_left": 27, "car3_left": 38, "car4_left": 49, None: 66}
 
@@ -36,7 +37,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     faults = numbers["faults"]
     places = [_place(fault) for fault in faults]
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 9.0)})
+        figure = Figure(**SIZE)
         grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1))
         order = figure.add_subplot(grid[0, 0])
         speed = figure.add_subplot(grid[1, 0], sharex=order)
@@ -86,12 +87,16 @@ def _draw_measure(
 
 
 def _draw_paths(axes: Axes, moments: list[PositionRow]) -> None:
-    for colour, (fault, label) in zip(COLOURS, _SHOWN, strict=False):
+    for colour, line, (fault, label) in zip(COLOURS, _LINES, _SHOWN, strict=False):
         path = [row for row in moments if fault.items() <= row.items()]
         axes.plot(
-            [row["x_m"] for row in path], [row["y_m"] for row in path], color=colour, label=label
+            [row["x_m"] for row in path],
+            [row["y_m"] for row in path],
+            color=colour,
+            linestyle=line,
+            label=label,
         )
     axes.set_aspect("equal", adjustable="datalim")
-    label_metres(axes)
+    axes.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
     axes.set_title("head, from above", fontsize=13)
     axes.legend(fontsize=11, title="fault", title_fontsize=11, loc="best")

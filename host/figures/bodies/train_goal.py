@@ -5,6 +5,7 @@ Their paths from above, beside trains with random kicks, and how many have arriv
 
 from __future__ import annotations
 
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -47,21 +48,27 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     numbers: Numbers = findings.numbers
     by_way = {way: [row for row in rows if row["way"] == way] for way in WAYS}
-    shown = _ACROSS * _DOWN
+    shown = min(_ACROSS * _DOWN, len(by_way[PLANNED]))
+    across = min(_ACROSS, shown)
     with styled():
         figure = Figure(**SIZE)
-        halves: Any = figure.subfigures(1, 2, width_ratios=(1.6, 1.0))
-        left, right = halves
-        panels = left.subplots(_DOWN, _ACROSS, sharex=True, sharey=True)
+        halves = figure.add_gridspec(1, 2, width_ratios=(1.8, 1.0))
+        panels: Any = (
+            halves[0]
+            .subgridspec(ceil(shown / across), across)
+            .subplots(sharex=True, sharey=True, squeeze=False)
+        )
+        for number, axes in enumerate(panels.flat, start=1):
+            axes.set_label(f"goal-{number}")
         for axes, planned, by_chance in zip(
             panels.flat, by_way[PLANNED][:shown], by_way[RANDOM][:shown], strict=False
         ):
             _draw_paths(axes, planned, by_chance)
-        for axes in panels.flat[len(by_way[PLANNED]) :]:
+        for axes in panels.flat[shown:]:
             axes.set_axis_off()
-        left.supxlabel("ahead of the train at the start (m)", fontsize=13)
-        left.supylabel("to its left (m)", fontsize=13)
-        axes = right.subplots()
+        panels[-1, across // 2].set_xlabel("ahead of the train at the start (m)")
+        panels[0, 0].set_ylabel("to its left (m)")
+        axes = figure.add_subplot(halves[1], label="reached")
         for way, trips in by_way.items():
             _draw_share(axes, trips, way)
         axes.set(xlabel="time (s)", ylabel="goals reached (%)", xlim=(0, LIMIT_S), ylim=(-3, 103))

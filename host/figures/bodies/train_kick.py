@@ -23,7 +23,14 @@ from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from robot.kicks import MEMBRANE, POSITION
 
-_COLOURS = {REVERSED: COLOURS[0], GOES_ON: COLOURS[5], STOPS: "#999999", MIXED: COLOURS[4]}
+PANELS = ("reversed", "stopped", "braked", "speeds")
+# The colour, marker and hatch of each outcome.
+_LOOKS = {
+    REVERSED: (COLOURS[0], "o", ""),
+    GOES_ON: (COLOURS[5], "^", ""),
+    STOPS: ("#999999", "s", "//"),
+    MIXED: (COLOURS[4], "D", "xx"),
+}
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -32,7 +39,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     membrane = [kick for kick in numbers["kicks"] if kick["mode"] == MEMBRANE]
     position = [kick for kick in numbers["kicks"] if kick["mode"] == POSITION]
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 9.0)})
+        figure = Figure(**SIZE)
         (reversed_, stopped), (braked, speeds) = figure.subplots(2, 2)
         _draw_map(reversed_, position, REVERSED, "reversed (%)")
         _draw_map(stopped, position, STOPS, "stopped for good (%)")
@@ -78,13 +85,13 @@ def _draw_braked(axes: Axes, rows: list[Row]) -> None:
                 for wheels in WHEELS
             ]
         )
-        for outcome in _COLOURS
+        for outcome in _LOOKS
     }
     trials = np.array([sum(row["wheels"] == wheels for row in braked) for wheels in WHEELS])
     below = np.zeros(len(WHEELS))
-    for outcome, colour in _COLOURS.items():
+    for outcome, (colour, _, hatch) in _LOOKS.items():
         share = 100 * counts[outcome] / np.maximum(trials, 1)
-        axes.bar(WHEELS, share, bottom=below, color=colour, label=outcome)
+        axes.bar(WHEELS, share, bottom=below, color=colour, hatch=hatch, edgecolor="white")
         below += share
     for wheels, count in zip(WHEELS, trials, strict=True):
         axes.text(wheels, 101, f"{count}", ha="center", fontsize=11)
@@ -103,7 +110,7 @@ def _draw_speeds(axes: Axes, rows: list[Row]) -> None:
     The more wheels are kicked, and the longer, the more it brakes: kicked wheels brake, others
     drive.
     """
-    for outcome, colour in _COLOURS.items():
+    for outcome, (colour, marker, _) in _LOOKS.items():
         points = [
             (
                 row["seconds"] * (2 * row["wheels"] - 10) / 10,
@@ -115,9 +122,9 @@ def _draw_speeds(axes: Axes, rows: list[Row]) -> None:
         axes.plot(
             [x for x, _ in points],
             [y for _, y in points],
-            "o",
+            marker,
             color=colour,
-            label=outcome,
+            label=outcome if points else "",
             markersize=5,
             alpha=0.8,
         )

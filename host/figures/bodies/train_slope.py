@@ -5,6 +5,8 @@ How often it turns back and how coherent it is, over the slopes' angle and k; an
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -20,7 +22,7 @@ from host.experiments.bodies.train_slope import (
     Row,
     positions,
 )
-from host.figures.bodies.from_above import draw_slope_feet, label_metres
+from host.figures.bodies.from_above import draw_scene, scene_data
 from host.figures.heat_map import draw_heat_map
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
@@ -33,13 +35,16 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     reversals = [kind["reversals_a_minute"] for kind in kinds]
     coherent = [np.nan if kind["coherent"] is None else 100 * kind["coherent"] for kind in kinds]
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 9.2)})
-        maps, paths = figure.subplots(2, 2, height_ratios=(1, 1.25))
+        figure = Figure(**SIZE)
+        places: Any = figure.subplot_mosaic(
+            [["reversals", "path-1", "path-2"], ["coherent", "path-1", "path-2"]],
+            width_ratios=(1.1, 1, 1),
+        )
+        maps = places["reversals"], places["coherent"]
         _draw_map(maps[0], kinds, "reversals a minute", reversals, max(1.0, *reversals))
         _draw_map(maps[1], kinds, "time with order above 0.9 (%)", coherent, 100.0)
-        maps[1].set_yticklabels([])
-        for axes, shown in zip(paths, SHOWN, strict=True):
-            _draw_path(axes, positions(rows, shown), shown)
+        for number, shown in enumerate(SHOWN, start=1):
+            _draw_path(places[f"path-{number}"], positions(rows, shown), shown)
         figure.suptitle(
             f"A train between four slopes, runs of each: {kinds[0]['runs']}"
             " (left: farther than 2 m up a slope)",
@@ -63,21 +68,19 @@ def _draw_map(
     axes.set_yticks(
         np.arange(len(TRAINS)) + 0.5,
         [f"{train['preset']}\n$k$ = {train['k']:g} N" for train in TRAINS],
-        fontsize=11,
+        fontsize=10,
     )
     axes.set_xlabel("angle of the slopes (rad)")
     axes.set_title(title, fontsize=13)
 
 
 def _draw_path(axes: Axes, path: list[PositionRow], shown: Kind) -> None:
-    draw_slope_feet(axes)
-    x, y = [row["x_m"] for row in path], [row["y_m"] for row in path]
-    axes.plot(x, y, color=COLOURS[0], linewidth=1.2)
-    axes.plot(x[0], y[0], "o", color=COLOURS[1])
-    axes.set_aspect("equal", adjustable="datalim")
-    label_metres(axes)
+    points = np.array([[row["x_m"], row["y_m"]] for row in path])
+    draw_scene(axes, scene_data("slopes", shown["angle"]), points)
+    axes.plot(*points.T, color=COLOURS[0], linewidth=1.2)
+    axes.plot(*points[0], "o", color=COLOURS[1])
     axes.set_title(
         f"{shown['preset']}, $k$ = {shown['k']:g} N, {shown['angle']:g} rad:\n"
-        f"way of the head from the dot on, for {path[-1]['t_s']:.0f} s",
+        f"way of the head from the dot, {path[-1]['t_s']:.0f} s",
         fontsize=12,
     )

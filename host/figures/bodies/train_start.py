@@ -32,6 +32,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             speed.set_title(
                 f"{count['forward']} forward, {count['backward']} backward", loc="left", fontsize=13
             )
+            order.set_label(f"order-{name}")
+            speed.set_label(f"speed-{name}")
         for axes in grid[-1]:
             axes.set_xlabel("time (s)")
             axes.margins(x=0)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -20,14 +21,15 @@ from host.experiments.bodies.train_wall import (
     moments,
     name_train,
 )
+from host.figures.bodies.from_above import scene_data, walls
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
-_WALL_M = 4.35
+PANELS = tuple(f"{kind}-{row}" for row in (1, 2, 3) for kind in ("way", "reversals"))
 # What is drawn: a name, whether there is a controller, whether walls are bouncy, and a style.
 _LINES: tuple[tuple[str, bool, bool, dict[str, Any]], ...] = (
     ("dead walls", True, False, {"color": COLOURS[0]}),
-    ("bouncy walls", True, True, {"color": COLOURS[1]}),
+    ("bouncy walls", True, True, {"color": COLOURS[1], "linestyle": "-."}),
     ("constant torque, dead walls", False, False, {"color": "black", "linestyle": "--"}),
 )
 
@@ -35,26 +37,27 @@ _LINES: tuple[tuple[str, bool, bool, dict[str, Any]], ...] = (
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     numbers: Numbers = findings.numbers
+    walls_m = [float(wall.middle[0]) for wall in walls(scene_data("walls"))]
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 8.4)})
+        figure = Figure(**SIZE)
         grid = figure.subplots(len(TRAINS), 2, width_ratios=(3.2, 1), sharex="col")
         for (way, counts), train in zip(grid, TRAINS, strict=True):
-            _draw_way(way, rows, train)
+            _draw_way(way, rows, train, walls_m)
             _draw_counts(
                 counts, [kind for kind in numbers["kinds"] if train.items() <= kind.items()]
             )
         grid[-1][0].set_xlabel("time (s)")
         figure.suptitle(
-            f"A train between two walls {2 * _WALL_M:g} m apart (grey): first run of each, and all"
-            " runs' reversals",
+            f"A train between two walls {np.ptp(walls_m):g} m apart (grey): first run of each, and"
+            " all runs' reversals",
             fontsize=15,
         )
         share_legend(figure, grid[0], loc="outside lower center", ncols=4, fontsize=12)
     return figure
 
 
-def _draw_way(axes: Axes, rows: list[Row], train: Train) -> None:
-    for wall in (-_WALL_M, _WALL_M):
+def _draw_way(axes: Axes, rows: list[Row], train: Train, walls_m: list[float]) -> None:
+    for wall in walls_m:
         axes.axhline(wall, color="grey", linewidth=5, alpha=0.5)
     for name, controller, bouncy, style in _LINES:
         way = moments(rows, {**train, "controller": controller, "bouncy": bouncy})
@@ -69,7 +72,7 @@ def _draw_counts(axes: Axes, kinds: list[KindNumbers]) -> None:
     for kind in kinds:
         place, count = int(kind["bouncy"]), len(kind["reversals"])
         offsets = [place + 0.35 * ((number + 0.5) / count - 0.5) for number in range(count)]
-        axes.plot(offsets, kind["reversals"], "o", color=COLOURS[place])
+        axes.plot(offsets, kind["reversals"], "os"[place], color=COLOURS[place])
     axes.set_xticks((0, 1), ("dead", "bouncy"))
     axes.set(xlim=(-0.5, 1.5), ylabel="reversals")
     axes.set_ylim(-0.5, max(LEAST + 1, *(max(kind["reversals"]) + 1 for kind in kinds)))

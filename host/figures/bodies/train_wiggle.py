@@ -20,6 +20,7 @@ from host.experiments.bodies.train_wiggle import (
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
+PANELS = ("wave", "speed", "amplitudes", "lags")
 _MARKS = "os^"
 
 
@@ -27,7 +28,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     numbers: Numbers = findings.numbers
     with styled():
-        figure = Figure(**{**SIZE, "figsize": (10.0, 8.6)})
+        figure = Figure(**SIZE)
         (wave, speed), (far, lag) = figure.subplots(2, 2)
         snakes = [train for train in numbers["trains"] if train["preset"] == "snake2019"]
         first = snakes[0]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,19 +20,18 @@ from host.experiments.robot.explore import (
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 
-_SLIDE: Any = {**SIZE, "figsize": (13.33, 7.5), "dpi": 120}
 _TRAIL_S = 120.0
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     with styled():
-        figure = Figure(**_SLIDE)
+        figure = Figure(**SIZE)
         grid = figure.add_gridspec(2, len(WAYS))
         areas = figure.add_subplot(grid[1, :])
         for at, (way, colour) in enumerate(zip(WAYS, COLOURS, strict=False)):
             paths = paths_of(rows, way)
-            _draw_trail(figure.add_subplot(grid[0, at]), paths[0], way, colour)
+            _draw_trail(figure.add_subplot(grid[0, at], label=way), paths[0], way, colour)
             _draw_area(areas, paths, way, colour)
         areas.set_xlabel("time (min)")
         areas.set_ylabel("cells visited (%)")

@@ -19,7 +19,7 @@ from host.experiments.robot.leave_chaos import (
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
-_SLIDE: Any = {**SIZE, "figsize": (13.33, 7.5), "dpi": 120}
+_HATCHES = ("", "//", "..", "")
 _TITLES = {
     STAY: "by the kick alone",
     DEFAULT: "kick, then k = 8, tau = 0.25 s",
@@ -32,17 +32,19 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     found = shares(rows)
     kicks = list(dict.fromkeys((one["kick"], one["ticks"]) for one in found))
     with styled():
-        figure = Figure(**_SLIDE)
+        figure = Figure(**SIZE)
         panels = figure.subplots(1, len(AFTERWARDS), sharey=True)
         for axes, afterwards in zip(panels, AFTERWARDS, strict=True):
             left = np.zeros(len(kicks))
-            for end, colour in zip(ENDS, COLOURS, strict=False):
+            for end, colour, hatch in zip(ENDS, COLOURS, _HATCHES, strict=False):
                 own = [one for one in found if (one["afterwards"], one["end"]) == (afterwards, end)]
                 widths = np.array([100 * one["robots"] / one["of"] for one in own])
-                axes.barh(range(len(kicks)), widths, left=left, color=colour, label=end)
+                style: Any = {"color": colour, "hatch": hatch, "edgecolor": "white"}
+                axes.barh(range(len(kicks)), widths, left=left, label=end, **style)
                 left += widths
             axes.set_title(_TITLES[afterwards], fontsize=14)
             axes.set_xlabel("robots (%)")
+            axes.set_label(afterwards)
         names = [
             f"{kick}, {ticks} tick{'s' * (ticks > 1)}" if ticks else kick for kick, ticks in kicks
         ]
