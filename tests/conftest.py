@@ -88,11 +88,13 @@ def pytest_configure(config):
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-# What collection makes stays until the end: the collector need not look through it as it grows.
+# What collection makes stays until the end: the collector need not look through it as it grows,
+# nor afterwards.
 @pytest.hookimpl(hookwrapper=True)
 def pytest_collection():
     gc.disable()
     yield
+    gc.freeze()
     gc.enable()
 
 

@@ -22,7 +22,10 @@ def browser():
     if CHROMIUM is None:
         pytest.skip("there is no Chromium here; get one by `apt-get install chromium`")
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        # Without a screen its graphics processor is a program, slower than drawing without one.
+        chromium = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"]
+        )
         yield chromium
         chromium.close()
 
