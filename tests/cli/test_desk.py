@@ -17,9 +17,13 @@ from host.errors import RefusedByRobot
 
 @contextmanager
 def desk_robot(folder, *arguments):
-    """A running `python -m sim_motor`: (its URI, the process)."""
+    """A running `python -m sim_motor`: (its URI, the process).
+
+    It bears a host that is silent for some seconds, as on a busy machine.
+    """
     environment = dict(os.environ, KICK_TOKEN=str(folder / "token"))
-    command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "3", *arguments]
+    command = [sys.executable, "-m", "sim_motor", "--port", "0", "--seed", "3"]
+    command += ["--set", "link_loss_s=10", *arguments]
     with subprocess.Popen(
         command,
         env=environment,

@@ -20,6 +20,8 @@ from tests.cli.test_lesson import DESK, commands, shown
 START, *STEP_4 = commands(DESK[0])
 REAL = commands(DESK[1])
 PATIENCE_S = 100.0
+# Eighteen programs begin one after the other, beside twenty seconds of recording.
+pytestmark = pytest.mark.timeout(400)
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ def bricks(tmp_path):
             brick.boot()
             settings.append(brick.ssh_config.read_text(encoding="utf-8"))
             settings[-1] = settings[-1].replace("Host brick", f"Host {name}")
-            uri, _ = stack.enter_context(desk_robot(tmp_path / name, "--set", "link_loss_s=10"))
+            uri, _ = stack.enter_context(desk_robot(tmp_path / name))
             port = uri.rpartition(":")[2]
             found[name] = f"ssh://{name}?port={port}", tmp_path / name / "token"
         (tmp_path / "ssh_config").write_text("\n".join(settings), encoding="utf-8")

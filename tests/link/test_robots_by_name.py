@@ -28,7 +28,7 @@ def robots(tmp_path):
         found = {}
         for name in NAMES:
             (tmp_path / name).mkdir()
-            robot = desk_robot(tmp_path / name, "--set", "link_loss_s=10")
+            robot = desk_robot(tmp_path / name)
             found[name] = stack.enter_context(robot)[0]
         yield found
 
