@@ -9,8 +9,7 @@ import os
 from math import pi
 from os import pread, pwrite
 
-import ev3dev2
-from ev3dev2.motor import LargeMotor
+import ev3dev2  # not ev3dev2.motor, whose import takes a brick 1 s
 
 from robot.motors import Battery, Motor, MotorFault
 
@@ -22,6 +21,15 @@ STOP_TRIES = 3
 # The text of every valid duty cycle. Any other value is a MotorFault here, instead of the kernel's
 # EINVAL.
 DUTY_TEXT = {duty: b"%d" % duty for duty in range(-100, 101)}
+
+# With a ramp the kernel would regulate the stop.
+_SETUP = (
+    ("command", b"reset"),
+    ("stop_action", b"brake"),
+    ("polarity", b"normal"),
+    ("ramp_up_sp", b"0"),
+    ("ramp_down_sp", b"0"),
+)
 
 # In V. brickd, with the limits of LEGO's firmware, warns of a low lithium pack at 6.5 and of low AA
 # cells at 5.5, and switches the brick off at 6.0 and 4.5. The motors stop before that; below 5 V
@@ -138,17 +146,15 @@ class Ev3Motor(Motor):
         if name is None:
             raise OSError(errno.ENODEV, os.strerror(errno.ENODEV))
         ev3dev2.Device.DEVICE_ROOT_PATH = self._root
-        motor = LargeMotor(name_pattern=name, name_exact=True)
-        if motor.driver_name != DRIVER:
+        motor = ev3dev2.Device("tacho-motor", name, name_exact=True)
+        driver = motor.get_attr_string(None, "driver_name")[1]
+        if driver != DRIVER:
             self._lost = "{}: a {} is there: plug in a large motor, then clear the fault".format(
-                self._label, motor.driver_name
+                self._label, driver
             )
             raise MotorFault(self._lost)
-        motor.reset()
-        motor.stop_action = LargeMotor.STOP_ACTION_BRAKE
-        motor.polarity = LargeMotor.POLARITY_NORMAL
-        # With a ramp the kernel would regulate the stop.
-        motor.ramp_up_sp = motor.ramp_down_sp = 0
+        for attribute, value in _SETUP:
+            motor.set_attr_raw(None, attribute, value)
         folder = os.path.join(folder, name)
         self._position = os.open(os.path.join(folder, "position"), os.O_RDONLY)
         self._duty = os.open(os.path.join(folder, "duty_cycle_sp"), os.O_WRONLY)

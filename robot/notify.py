@@ -1,6 +1,6 @@
 """Messages to systemd that the robot's program is ready and alive (sd_notify(3))."""
 
-import socket
+from robot.kernel import socket
 
 
 class Notify(object):

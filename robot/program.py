@@ -5,12 +5,11 @@ The brick and the simulated brick differ only in the motors, battery, clock and 
 
 import argparse
 import os
-import signal
-import socket
 import sys
 
 from robot import schedule, token
 from robot.errors import Refused
+from robot.kernel import signal, socket
 from robot.loop import Loop
 from robot.serial_line import BAUD, SerialLine
 from robot.server import Server

@@ -4,9 +4,9 @@ Who controls the robot comes first, then all others by turns. A stop waits for n
 """
 
 import select
-import socket
 
 from robot import wire
+from robot.kernel import socket
 from robot.peer import Peer
 from robot.safety import HELD, RUNNING
 from robot.session import Session, new_id
@@ -316,9 +316,10 @@ class Server(object):
     def _accept(self):
         """The peer at the other end of a new connection; None if there is none."""
         try:
-            link = self._listener.accept()[0]
+            descriptor = self._listener._accept()[0]  # noqa: SLF001 - socket.socket has `accept`
         except OSError:
             return None
+        link = socket.socket(self._listener.family, fileno=descriptor)
         link.setblocking(False)
         strangers = [peer for peer in self._peers if not peer.seated]
         if len(strangers) >= STRANGERS:

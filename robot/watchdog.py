@@ -12,11 +12,10 @@ import errno
 import glob
 import os
 import select
-import signal
-import socket
 import time
 
 from robot import schedule
+from robot.kernel import signal, socket
 from robot.motors import MotorFault
 from robot.safety import RUNNING
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 # Functions that may import: they run before the loop does.
 BEFORE_THE_LOOP = {
     ("robot/__main__.py", "_drive_brick"),
+    ("robot/__main__.py", "_drive_own"),
     ("robot/schedule.py", "lock_memory"),
     ("robot/serial_line.py", "__init__"),
 }

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from robot.sources import fingerprint
+from robot.sources import fingerprint, keep, of_robot
 
 
 @pytest.fixture
@@ -58,3 +58,19 @@ def test_folders_count_in_their_order_and_files_by_themselves(room):
     inner = str(room / "inner")
     assert fingerprint(str(room), inner) != fingerprint(inner, str(room))
     assert fingerprint(str(room / "a.py")) != fingerprint(inner)
+
+
+def test_the_kept_fingerprint_holds_until_a_source_changes(tmp_path, monkeypatch):
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    source, kept = folder / "a.py", folder / "__pycache__" / "fingerprint"
+    source.write_text("x = 1\n")
+    monkeypatch.setattr("robot.sources._FOLDER", str(folder))
+    monkeypatch.setattr("robot.sources._KEPT", str(kept))
+    keep()
+    kept.write_text(kept.read_text().replace(fingerprint(str(folder)), "as kept"))
+    assert of_robot() == "as kept"
+    source.write_text("x = 1\ny = 2\n")
+    assert of_robot() == fingerprint(str(folder))
+    kept.write_text("")
+    assert of_robot() == fingerprint(str(folder))
