@@ -20,6 +20,16 @@ SWEEPS = (
     "Several values of one number or of two make a sweep, with one table and one figure for all:"
     " --k 1,2,4 or --k 0.5:5:10 (start:stop:count, with both ends)."
 )
+# Options of some runs that people look for in others, and what to tell them there.
+ELSEWHERE = {
+    "noise": "for white noise of the torque there is: kickctl theory escape --noise 0.1",
+    "angle_noise": "for white noise of the angle there is: kickctl theory escape --angle-noise 0.1",
+    "rods": "one rod is for wheels of the model, such as in: kickctl theory hopf --rods 1",
+    "bounded": (
+        "another bound of the torque than the robot's is for wheels of the model, such as in:"
+        " kickctl theory portrait --bounded 1"
+    ),
+}
 # The units in help texts: ", s" at the end, or before brackets or another part of the sentence.
 _UNIT = re.compile(r", (rad/s|rad|s\^2|s|minutes)(?=$|[ ;,])")
 
@@ -68,9 +78,8 @@ def complete_options(name: str, entry: Entry, arguments: Mapping[str, Any]) -> d
     options = {option.name: option for option in entry.options}
     for given in arguments:
         if given not in options:
-            raise WrongUse(
-                f"'{name}' has no option '{given}'", "it has " + (", ".join(options) or "none")
-            )
+            they_are = "it has " + (", ".join(options) or "none")
+            raise WrongUse(f"'{name}' has no option '{given}'", ELSEWHERE.get(given, they_are))
     return {
         name: _value(option, arguments.get(name, option.default))
         for name, option in options.items()
@@ -138,6 +147,10 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
             help=words,
             **own,
         )
+    for name in ELSEWHERE:
+        if all(option.name != name for option in entry.options):
+            flag = "--" + name.replace("_", "-")
+            parser.add_argument(flag, dest=name, help=argparse.SUPPRESS)
     parser.add_argument(
         "--out",
         default="results",
@@ -155,6 +168,10 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
 
 
 def options_given(options: argparse.Namespace, entry: Entry) -> dict[str, Any]:
-    """The values that were given for an entry's own options; those left out are missing."""
-    given = {option.name: getattr(options, option.name) for option in entry.options}
+    """The values that were given for options; those left out are missing.
+
+    Those that are not the entry's own `complete_options` refuses.
+    """
+    names = [*(option.name for option in entry.options), *ELSEWHERE]
+    given = {name: getattr(options, name) for name in names}
     return {name: value for name, value in given.items() if value is not None}

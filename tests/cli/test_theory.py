@@ -95,6 +95,7 @@ def test_the_answer_is_a_table_and_json_has_the_same(kickctl):
         ("orbit", "--from", "3", "--to", "2"),
         ("orbit", "--over", "f", "--from", "0"),
         ("tick", "--f", "0"),
+        ("tick", "--tick", "1e-5"),
     ],
 )
 def test_degenerate_input_is_refused_in_words_before_anything_is_computed(kickctl, arguments):
@@ -103,6 +104,21 @@ def test_degenerate_input_is_refused_in_words_before_anything_is_computed(kickct
     assert "Traceback" not in err
     assert "cells complete" not in err
     assert err.count("kickctl:") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("theory", "hopf", "--noise", "0.1"), "kickctl theory escape --noise"),
+        (("theory", "section", "--angle-noise", "0.1"), "kickctl theory escape --angle-noise"),
+        (("experiment", "chaos", "--rods", "1"), "kickctl theory hopf --rods 1"),
+        (("experiment", "car-slope", "--bounded", "1"), "kickctl theory portrait --bounded 1"),
+    ],
+)
+def test_an_option_of_other_runs_is_refused_with_the_place_where_it_is(kickctl, arguments, words):
+    status, _, err = kickctl(*arguments)
+    assert status == 2
+    assert words in err
 
 
 def test_an_interrupt_in_a_destructor_comes_again():

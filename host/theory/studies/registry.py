@@ -263,7 +263,9 @@ TABLE = {
     ),
     "edge": Entry(
         "the least push of the potentials or the speed that reverses a rolling wheel, over phase"
-        " and direction, and the edge state between rolling forward and backward",
+        " and direction, and the edge state between rolling forward and backward. Where small k"
+        " folds the edge many times, reaches of the other basin that are thinner than the steps of"
+        " the search, a sixtieth of the push, may be missed",
         (A, TAU, K._replace(default=8.0), F, I, *VARIANTS),
     ),
     "escape": Entry(

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from host.errors import WrongUse
 from host.runs.contract import Setting
 from host.theory.analysis.hopf import hopf
 from host.theory.analysis.stability_thresholds import (
@@ -56,6 +57,8 @@ GROWTH_POINTS = 81
 RUNNING_K = 8.0
 # How long motions are followed at each k, in units of the wheel's memory, and the most in seconds.
 FOLLOWED, LONGEST_S = 300.0, 600.0
+# A motion of more ticks at each k takes a piece of work longer than ten seconds.
+MOST_TICKS = 1_000_000
 # Rolling is looked for between these multiples of k_c.
 LEAST, MOST = 0.2, 5.0
 # A wheel that takes more steps is too stiff to be followed at each k.
@@ -68,11 +71,19 @@ SWING_RAD, NEAR, PATIENCE = 1e-4, 1e-5, 1_000_000
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[TickStudyCell]:
     """The continuous limit; for both orders each tick, each latency and the checks.
 
-    Raises WrongUse if there is no Hopf bifurcation, or no tick with this latency.
+    Raises WrongUse if there is no Hopf bifurcation, no tick with this latency, or the ticks are too
+    many to be followed.
     """
     require_two_rods(options)
     hopf(wheel_of(options))
     Clock(options["tick"], options["latency"]).checked()
+    seconds = followed_s(wheel_of(options))
+    if (ticks := seconds / options["tick"]) > MOST_TICKS:
+        raise WrongUse(
+            f"this study follows wheels for {seconds:.3g} s at each of some hundred k, which are"
+            f" {ticks:.2g} ticks of {options['tick']:g} s",
+            f"give a tick of {seconds / MOST_TICKS:.2g} s or more, or a smaller tau or I",
+        )
     ticks_s = [tick_s for tick_s in TICKS_S if tick_s >= options["latency"]]
     latencies_s = [options["tick"] * number / (LATENCIES - 1) for number in range(LATENCIES)]
     found: list[TickStudyCell] = [

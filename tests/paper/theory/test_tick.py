@@ -271,7 +271,7 @@ def test_neurons_that_run_away_are_refused():
         sampled.ticks_in(1e9, NEW)
 
 
-@pytest.mark.parametrize("changed", [{"f": 0.0}, {"a": 0.0}, {"latency": 0.04}])
+@pytest.mark.parametrize("changed", [{"f": 0.0}, {"a": 0.0}, {"latency": 0.04}, {"tick": 1e-5}])
 def test_a_study_without_a_question_is_refused(changed):
     with pytest.raises(WrongUse):
         study.cells(OPTIONS | changed)
