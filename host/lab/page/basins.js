@@ -2,7 +2,8 @@
 
 import { byId, element, setText, show } from "./dom.js";
 import { keep, recall } from "./storage.js";
-import { sentences, texts } from "./texts.js";
+import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 const KEPT = "lab.basins";
 const OFF = "off";

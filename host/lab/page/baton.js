@@ -1,7 +1,8 @@
 /** Who drives: ask for the baton, take it, hand it on. */
 
 import { button, element, setText, show } from "./dom.js";
-import { sentences, texts } from "./texts.js";
+import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 /**
  * @param {HTMLElement} root

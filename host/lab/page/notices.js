@@ -1,7 +1,8 @@
 /** What has to be said across the page: no link, not let in, who drives, and what went wrong. */
 
 import { button, element, setText, show } from "./dom.js";
-import { sentences, texts } from "./texts.js";
+import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 /**
  * @param {HTMLElement} root

@@ -1,7 +1,8 @@
 /** The top of the page: which robot is shown, what it does, and the button that helps. */
 
 import { button, byId, element, setText, show } from "./dom.js";
-import { sentences, texts } from "./texts.js";
+import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 /**
  * @param {import("./lab.js").Lab} lab

@@ -1,7 +1,8 @@
 /** The robot's parameters, from its own table. A change is sent at once. */
 
 import { choices, element } from "./dom.js";
-import { sentences, texts } from "./texts.js";
+import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 // What the paper varies stands first; the rest is behind a fold.
 const FIRST = ["a", "tau_s", "k"];

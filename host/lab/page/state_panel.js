@@ -1,7 +1,8 @@
 /** What the robot says of itself. */
 
 import { button, element, setText, show } from "./dom.js";
-import { sentences, texts } from "./texts.js";
+import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 /**
  * @param {HTMLElement} root

@@ -1,13 +1,6 @@
 /** All words of the page. */
 
-/** @param {number} value @param {number} digits @returns {string} A number with a real minus. */
-export function number(value, digits = 2) {
-    return Number.isFinite(value) ? value.toFixed(digits).replace("-", "−") : "–";
-}
-
-const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
-
-const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
+import { capital, counted, number, sentences } from "./words.js";
 
 const VERBS = { reverses: "reverse", continues: "continue", stops: "stop" };
 const DONE = { reverses: "reversed", continues: "continued", stops: "stopped" };
@@ -21,18 +14,6 @@ const likeliest = (shares) =>
         ["", -1],
     );
 const UNITS = { 1: "", "%": " %" };
-
-/**
- * What happened, and what to do next, as sentences.
- * @param {...(string | null | undefined)} parts
- * @returns {string}
- */
-export function sentences(...parts) {
-    return parts
-        .filter(Boolean)
-        .map((part) => capital(part) + (/[.?!…]$/.test(part) ? "" : "."))
-        .join(" ");
-}
 
 export const texts = {
     title: "Kick control lab",
