@@ -6,7 +6,7 @@ from statistics import median
 
 from playwright.sync_api import sync_playwright
 
-from tests.web.drawings import KICKS, SCORE, WHEEL, floor, open_page, plane, strips
+from tests.web.drawings import K_TRACE, KICKS, SCORE, WHEEL, floor, open_page, plane, strips
 
 FRAMES = 300
 TARGET_MS = 2.0
@@ -75,4 +75,6 @@ def _states():
         "plane": plane(angles, wave[:1000], dashed=True, ghost={"x": 1.0, "y": 0.0}),
         "floor": floor([number / 600 for number in range(MINUTE)], slow, walls=2.0),
         "score": SCORE,
+        "k_trace": K_TRACE,
+        "basins": {"side": 64, "ends": "ffbr" * 1024},
     }

@@ -14,6 +14,7 @@ from host.lab.forecasts import Forecasts
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
+from host.lab.worker import Worker
 from tests.lint.sources import ROOT
 
 SIZES = {"desk": (1280, 720), "phone": (390, 844), "projector": (1920, 1080)}
@@ -31,7 +32,7 @@ def walk(page, station):
         known = "const s = lab.state(), r = s.robots[s.selected]"
         page.wait_for_function(f"() => {{ {known}; return {condition}; }}", timeout=FOREVER_MS)
 
-    until("r && r.records > 200")
+    until("r && r.records > 200 && r.basins?.side === 64")
     yield "1-wheels-turn"
     page.check("#guess-0", force=True)
     page.wait_for_selector("#kick-phase >> text=is what the simulation expects", state="attached")
@@ -67,19 +68,20 @@ def main():
     BEST.mkdir(parents=True, exist_ok=True)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        forecasts = Forecasts()
+        forecasts, basins = Forecasts(), Worker("computes basins", 0)
         for place, (width, height) in SIZES.items():
-            take(browser, place, {"width": width, "height": height}, forecasts)
+            take(browser, place, {"width": width, "height": height}, forecasts, basins)
         forecasts.close()
+        basins.close()
         browser.close()
     return 0
 
 
-def take(browser, place, viewport, forecasts):
+def take(browser, place, viewport, forecasts, basins):
     """Take the pictures of one size, each size with a robot of its own."""
     station = SteppedStation("sim://?seed=3", "simulated", CONTINUE)
     station.step(10)
-    with Lab([station], port=0, forecasts=forecasts) as lab:
+    with Lab([station], port=0, forecasts=forecasts, basins=basins) as lab:
         page = browser.new_page(viewport=viewport)
         page.goto(lab.drive_url)
         for moment in walk(page, station):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 PAGE = Path(__file__).resolve().parents[2] / "host/lab/page"
 ADDRESS = "http://drawings.test/"
-DRAWINGS = ("wheel", "strips", "plane", "floor", "score", "basins")
+DRAWINGS = ("wheel", "strips", "plane", "floor", "score", "basins", "k_trace")
 # A state is plain data, in which lists of numbers stand for typed arrays. A drawing is kept as
 # `drawn`, for questions about it.
 SCRIPT = (
@@ -178,6 +178,25 @@ SCORE = {
     },
 }
 
+K_TRACE = {
+    "holds": [
+        {
+            "k": k,
+            "up": up,
+            "means": {
+                side: {"omega_rad_s": speed, "torque": speed / 12} for side in ("left", "right")
+            },
+        }
+        for k, up, speed in (
+            (2.0, None, 10.0),
+            (0.5, False, 3.0),
+            (0.3, False, 0.0),
+            (0.5, True, 0.0),
+        )
+    ],
+    "labels": {"up": "raised", "down": "lowered", "left": "left", "right": "right"},
+    "stale": False,
+}
 BASINS = {"side": 4, "ends": "ffbbffbbffbbrrnn", "stale": False}
 
 WAVE = [sin(number / 8) for number in range(600)]
@@ -222,6 +241,12 @@ STATES = {
         SCORE,
         {**SCORE, "wheels": [{"name": "left", "shares": None, "outcome": None}], "stale": True},
         {**SCORE, "of": 0},
+    ],
+    "k_trace": [
+        {},
+        K_TRACE,
+        {"holds": [{"k": 8.0, "up": None, "means": {"left": None, "right": None}}]},
+        {**K_TRACE, "stale": True},
     ],
     "basins": [
         {},

@@ -8,6 +8,7 @@ import pytest
 from tests.web.drawings import (
     BASINS,
     DRAWINGS,
+    K_TRACE,
     KICKS,
     SCORE,
     STATES,
@@ -78,6 +79,7 @@ def test_the_same_state_is_the_same_picture(page, name):
 def test_what_is_out_of_date_is_grey(page, name):
     state = {"wheel": WHEEL, "strips": strips(left_x1=WAVE), "plane": plane(WAVE, WAVE)}
     state |= {"floor": floor(WAVE, WAVE), "score": SCORE, "basins": BASINS}
+    state |= {"k_trace": K_TRACE}
     _draw(page, name, {**state[name], "stale": True}, **LARGE)
     assert page.evaluate("colourful()") == "[]"
 
@@ -350,3 +352,19 @@ def test_a_line_parts_basins_where_they_meet(page):
     across = [y for x, y in _places(page, "ink") if x == 401]
     assert across
     assert all(abs(y - 150) <= 1 for y in across)
+
+
+def test_k_raised_and_lowered_differ_by_marks_too(page):
+    def picture(up, stale):
+        first, second = K_TRACE["holds"][:2]
+        state = {**K_TRACE, "holds": [first, {**second, "up": up}], "stale": stale}
+        return _draw(page, "k_trace", state, **SHARP)
+
+    assert picture(True, stale=True) != picture(False, stale=True)
+    picture(True, stale=False)
+    box = [x for x, y in _places(page, "raised") if y < 500]  # above the key
+    picture(False, stale=False)
+    assert min(x for x, y in _places(page, "lowered") if y < 500) == pytest.approx(min(box), abs=2)
+    # k = 0.5 is a quarter of the axis, which ends at 2.
+    left, right = 2 * 3.4 * 13, 800 - 2 * 13
+    assert min(box) == pytest.approx(left + 0.25 * (right - left), abs=16)

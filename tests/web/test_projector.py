@@ -99,9 +99,18 @@ def test_texts_in_drawings_are_large_and_do_not_cover_each_other(projector, stat
     page.evaluate(FRAMES, 5)
     page.locator("#floor").scroll_into_view_if_needed()
     page.evaluate(FRAMES, 10)
+    page.locator("#k-plane").scroll_into_view_if_needed()
+    page.evaluate(FRAMES, 10)
     texts = page.evaluate("({ ...texts, complaints: [...texts.complaints] })")
     assert texts["complaints"] == []
-    assert set(texts["seen"]) == {"left-wheel", "right-wheel", "strips", "lag-plane", "floor"}
+    assert set(texts["seen"]) == {
+        "left-wheel",
+        "right-wheel",
+        "strips",
+        "lag-plane",
+        "floor",
+        "k-plane",
+    }
     assert {"M", "ω", "rad/s", "x₁", "forward"} <= set(texts["seen"]["left-wheel"])
     assert {"x", "M", "ω"} <= set(texts["seen"]["strips"])
 

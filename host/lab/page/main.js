@@ -10,6 +10,7 @@ import { draw as drawWheel } from "./draw/wheel.js";
 import { Frames } from "./frames.js";
 import { onBasins } from "./ground.js";
 import { Hand } from "./hand.js";
+import { createKTrace } from "./k_trace_panel.js";
 import { createKicks } from "./kick_panel.js";
 import { Lab } from "./lab.js";
 import { createMovements } from "./movements.js";
@@ -49,6 +50,7 @@ const stop = new Stop(lab);
 const screen = new Screen();
 createSaid(lab);
 const kicks = createKicks(byId("kicks"), lab);
+const kTrace = createKTrace(byId("k-trace"), byId("k-plane"), lab);
 const panels = [
     createNow(lab),
     createNotices(byId("notices"), lab),
@@ -59,6 +61,7 @@ const panels = [
     createBaton(byId("baton"), lab),
     createBasins(byId("basins"), byId("lag-plane"), lab),
     createRecording(byId("recording"), lab),
+    kTrace.update,
     () => stop.update(),
 ];
 
@@ -106,6 +109,7 @@ const drawings = [
     ["phi-plane", drawPlane, () => views.phi, 17, 10],
     ["x-plane", drawPlane, () => views.x, 17, 10],
     ["floor", drawFloor, () => views.floor, 17, 10],
+    ["k-plane", kTrace.draw, kTrace.view, 24, 16],
 ];
 for (const [id, draw, view, letters, lines] of drawings) {
     const canvas = byId(id);
@@ -114,5 +118,5 @@ for (const [id, draw, view, letters, lines] of drawings) {
 const { canvas: score, draw: drawScore, view: scoreView } = kicks.verdict;
 frames.add(score, drawScore, () => [scoreView(), screen.themeFor(score, 22, 6)]);
 
-window.lab = { state: () => snapshot(lab, stop, frames, views) };
+window.lab = { state: () => snapshot(lab, stop, frames, views, kTrace) };
 source.open();

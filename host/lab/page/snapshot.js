@@ -5,9 +5,10 @@
  * @param {import("./stop.js").Stop} stop
  * @param {import("./frames.js").Frames} frames
  * @param {import("./views.js").Views | null} views
+ * @param {{state: () => object[]}} kTrace
  * @returns {object}
  */
-export function snapshot({ store }, stop, frames, views) {
+export function snapshot({ store }, stop, frames, views, kTrace) {
     const { link, role, page, baton, refused, note, score, selected } = store;
     const robots = store.robots.map((robot) => ({
         name: robot.name,
@@ -22,5 +23,5 @@ export function snapshot({ store }, stop, frames, views) {
     }));
     const drawing = { frames: frames.count, p95_ms: frames.p95(), shown_s: views?.time ?? null };
     const known = { link, role, page, baton, refused, note, score, selected, robots, drawing };
-    return structuredClone({ ...known, stop: stop.progress() });
+    return structuredClone({ ...known, stop: stop.progress(), k_trace: kTrace.state() });
 }

@@ -150,6 +150,18 @@ export const texts = {
     unit: (unit) => (unit === "1" || !unit ? "" : unit),
     notANumber: (name) => ({ message: `${name} needs a number`, hint: "write a point: 2.5" }),
 
+    kTrace: "k up and down",
+    kTraceNote:
+        "Raise k, lower it again, and hold each value for some seconds: its mark is the mean of" +
+        " the last one. A wheel that has begun to turn may go on below the k at which it began.",
+    kTraceAlt: "Speed and |M| of both wheels at each k that was held",
+    kTraceHold: ({ k, up, means: { left, right } }) =>
+        `at k = ${number(k)}${up === null ? "" : up ? ", raised" : ", lowered"}: left` +
+        ` ${number(left.omega_rad_s, 1)} rad/s, |M| ${number(left.torque)}; right` +
+        ` ${number(right.omega_rad_s, 1)} rad/s, |M| ${number(right.torque)}`,
+    kTraceLabels: { up: "raised", down: "lowered", left: "left", right: "right" },
+    kTraceClear: "Clear the trace",
+
     state: "State",
     states: {
         idle: "Ready",

@@ -32,6 +32,8 @@ const LIGHT = {
     forward: "#2a7f62",
     backward: "#8f56a8",
     rest: "#6b7077",
+    raised: "#b3441e",
+    lowered: "#1f5fa8",
 };
 const DARK = {
     paper: "#14171a",
@@ -59,6 +61,8 @@ const DARK = {
     forward: "#4fbf97",
     backward: "#c08adc",
     rest: "#a9aeb5",
+    raised: "#ff9a6b",
+    lowered: "#74b4ff",
 };
 const DECORATION = ["paper", "grid", "rim", "band"];
 const FAMILY = '"Helvetica Neue", "Liberation Sans", Arial, "DejaVu Sans", sans-serif';
