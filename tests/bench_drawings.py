@@ -76,5 +76,5 @@ def _states():
         "floor": floor([number / 600 for number in range(MINUTE)], slow, walls=2.0),
         "score": SCORE,
         "k_trace": K_TRACE,
-        "basins": {"side": 64, "ends": "ffbr" * 1024},
+        "basins": {"side": 64, "ends": "".join((n * "b").ljust(64, "f") for n in range(64))},
     }

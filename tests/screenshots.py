@@ -55,7 +55,9 @@ def save(png, name):
     ALL.mkdir(parents=True, exist_ok=True)
     path = ALL / f"{name}.png"
     picture = Image.open(io.BytesIO(png)).convert("RGB")
-    picture.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    # A small mark keeps its colour.
+    how = {"method": Image.Quantize.MAXCOVERAGE, "dither": Image.Dither.NONE}
+    picture.quantize(COLOURS, **how).save(path, optimize=True)
     return path
 
 

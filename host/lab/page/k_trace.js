@@ -43,7 +43,8 @@ export class KTrace {
         if (last?.k !== k) {
             // A k that nobody has held leaves no mark.
             if (last && !last.means.left) this.holds.pop();
-            this.holds.push({ k, up: last ? k > last.k : null, means: { left: null, right: null } });
+            const up = last ? k > last.k : null;
+            this.holds.push({ k, up, means: { left: null, right: null } });
             if (this.holds.length > MOST) this.holds.shift();
             this.#begin = ring.newest("t_s");
         }

@@ -31,19 +31,22 @@ export function draw(canvas, state, theme) {
     const end = (column, row) => ends[row * side + column];
     // Cells end at whole pixels, or their seams would be seen.
     const place = (n, pixels) => Math.round((n * pixels) / side) / theme.scale;
-    const cells = [];
+    const across = (column) => place(column, canvas.width);
+    const up = (row) => height - place(row, canvas.height);
+    // Cells of one row that lead to the same end; few large areas are painted faster.
+    const runs = [];
     for (let row = 0; row < side; row++) {
-        const [low, high] = [row, row + 1].map((n) => height - place(n, canvas.height));
-        for (let column = 0; column < side; column++) {
-            const [left, right] = [column, column + 1].map((n) => place(n, canvas.width));
-            cells.push({ column, row, left, right, low, high, end: end(column, row) });
+        for (let from = 0, to = 1; from < side; from = to++) {
+            while (to < side && end(to, row) === end(from, row)) to++;
+            runs.push({ row, from, to, end: end(from, row) });
         }
     }
     for (const [letter, name] of Object.entries(NAMES)) {
         ctx.save();
         ctx.beginPath();
-        for (const { left, right, low, high, end } of cells) {
-            if (end === letter) ctx.rect(left, high, right - left, low - high);
+        for (const { row, from, to, end } of runs) {
+            if (end !== letter) continue;
+            ctx.rect(across(from), up(row + 1), across(to) - across(from), up(row) - up(row + 1));
         }
         ctx.clip();
         ctx.strokeStyle = ctx.fillStyle = colours[name];
@@ -56,14 +59,15 @@ export function draw(canvas, state, theme) {
     ctx.strokeStyle = colours.ink;
     ctx.lineWidth = 0.7 * theme.line;
     ctx.beginPath();
-    for (const { column, row, left, right, low, high, end: own } of cells) {
-        if (column + 1 < side && end(column + 1, row) !== own) {
-            ctx.moveTo(right, low);
-            ctx.lineTo(right, high);
+    for (const { row, from, to, end: own } of runs) {
+        if (to < side) {
+            ctx.moveTo(across(to), up(row));
+            ctx.lineTo(across(to), up(row + 1));
         }
-        if (row + 1 < side && end(column, row + 1) !== own) {
-            ctx.moveTo(left, high);
-            ctx.lineTo(right, high);
+        for (let column = from; row + 1 < side && column < to; column++) {
+            if (end(column, row + 1) === own) continue;
+            ctx.moveTo(across(column), up(row + 1));
+            ctx.lineTo(across(column + 1), up(row + 1));
         }
     }
     ctx.stroke();
