@@ -94,7 +94,9 @@ def pytest_configure(config):
 def pytest_collection():
     gc.disable()
     yield
-    gc.freeze()
+    freeze = getattr(gc, "freeze", None)  # Python 3.5 has none
+    if freeze is not None:
+        freeze()
     gc.enable()
 
 
