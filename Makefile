@@ -61,7 +61,7 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 bench: $(STAMP) ## measure the speed of what has to be fast
 	$(BIN)/python -m tests.bench
 
-bench-arm: $(STAMP) ## count what a tick costs on an emulated ARM926; docs/arm.md says what it needs
+bench-arm: $(STAMP) ## count what ticks, hosts and a start cost on an ARM926 (PYTHON_ARM=...)
 	$(BIN)/python -m tests.bench_arm
 
 bench-theory: $(PEERS)/.complete ## compare the model's engine with heyoka, diffrax, numba and scipy

@@ -32,15 +32,21 @@ class Mark(NamedTuple):
 class Emulator:
     """Runs Python programs on an ARM926 in user mode.
 
-    Raises Unavailable if something for it is missing.
+    Raises Unavailable if something for it is missing. $PYTHON_ARM names another Python than
+    Debian's, and $QEMU_LD_PREFIX where its C library is.
 
     folder: where it keeps its plugin and the robot's sources while it is used.
     """
 
     def __init__(self, folder: Path) -> None:
         _need(TOOLS, "")
-        if not CACHE.exists():
-            _fill_cache()
+        self._python = os.environ.get("PYTHON_ARM") or ""
+        if not self._python:
+            if not CACHE.exists():
+                _fill_cache()
+            self._python = str(CACHE / "usr/bin" / PYTHON)
+        elif not Path(self._python).is_file():
+            raise Unavailable(f"there is no {self._python}: PYTHON_ARM names a Python for armel")
         self._plugin = folder / "count.so"
         subprocess.run(
             [
@@ -71,14 +77,14 @@ class Emulator:
             "arm926",
             "-plugin",
             str(self._plugin),
-            "-L",
-            str(CACHE),
-            str(CACHE / "usr/bin" / PYTHON),
+            self._python,
         ]
         environment = {
             "PYTHONPATH": str(self._sources),
             "PYTHONPYCACHEPREFIX": str(self._plugin.with_name("pyc")),
             "PYTHONHASHSEED": "0",
+            # Where QEMU finds the loader and the C library of that Python.
+            "QEMU_LD_PREFIX": os.environ.get("QEMU_LD_PREFIX") or str(CACHE),
         }
         with subprocess.Popen(
             [*command, *arguments],

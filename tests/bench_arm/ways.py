@@ -34,7 +34,7 @@ def make_tree(root):
     Nothing moves, and nothing is refused.
     """
     for number, port in enumerate(PORTS):
-        _write(Path(root, "tacho-motor", f"motor{number}"), dict(ATTRIBUTES, address=port))
+        _write(Path(root, "tacho-motor", "motor" + str(number)), dict(ATTRIBUTES, address=port))
     _write(Path(root, "power_supply", "lego-ev3-battery"), BATTERY)
 
 
