@@ -6,9 +6,14 @@ import pytest
 
 from tests.package.conftest import ROOT
 
-PAGES = ["README.md", "CHANGELOG.md", "robot/README.md", "robot/PROTOCOL.md"] + sorted(
-    str(path.relative_to(ROOT)) for path in (ROOT / "docs").glob("*.md")
-)
+PAGES = [
+    "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "SECURITY.md",
+    "robot/README.md",
+    "robot/PROTOCOL.md",
+] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / "docs").glob("*.md"))
 
 
 def prose(text):
