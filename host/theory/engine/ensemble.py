@@ -137,11 +137,13 @@ def _edges(needed: Array) -> Whole:
         needed: How many steps each wheel needs, in rising order. All wheels of a block take as many
             as its last.
     """
+    # Few wheels make two blocks, so that two cores have work, if both are large enough to be fast.
+    most = min(LANES, max(2 * FEWEST, -(-len(needed) // 2)))
     edges = [len(needed)]
     while edges[-1]:
         end = edges[-1]
         alike = int(np.searchsorted(needed[:end], ALIKE * needed[end - 1]))
-        edges.append(max(0, end - LANES, min(alike, end - FEWEST)))
+        edges.append(max(0, end - most, min(alike, end - FEWEST)))
     return np.array(edges[::-1])
 
 
