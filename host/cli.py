@@ -44,6 +44,7 @@ VERBS = (
     "body",
     "rods",
     "reproduce",
+    "help",
 )
 
 # `stop` waits for nothing, `watch` has one table and `lab` one page, so they have ways of their own

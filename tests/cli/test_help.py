@@ -1,0 +1,72 @@
+"""`kickctl help WORD` finds what people look for by its name or by what it is."""
+
+import json
+
+import pytest
+
+from host.cli import VERBS
+from host.experiments.registry import TABLE as EXPERIMENTS
+from host.theory.studies.registry import TABLE as STUDIES
+from robot.params import TABLE as PARAMS
+from robot.record import CHANNELS
+
+
+@pytest.fixture
+def names(kickctl):
+    """The names of the places in which words are found."""
+
+    def find(*words):
+        status, out, err = kickctl("help", "--json", *words)
+        assert (status, err) == (0, "")
+        return [place["name"] for place in json.loads(out)["places"]]
+
+    return find
+
+
+@pytest.mark.parametrize(
+    ("words", "first"),
+    [
+        (("hysteresis",), "kickctl experiment bifurcation"),
+        (("Lyapunov", "point"), "kickctl theory lyapunov"),
+        (("kick",), "kickctl kick"),
+        (("rod_lag_s",), "kickctl params set rod_lag_s=VALUE"),
+        (("left", "torque"), "column of logs: left_torque"),
+        (("R5",), "claim R5"),
+    ],
+)
+def test_the_first_place_is_what_is_meant(names, words, first):
+    assert names(*words)[0] == first
+
+
+def test_everything_with_a_name_is_found_by_it(names):
+    every = (
+        [f"kickctl {name}" for name in VERBS]
+        + [f"kickctl experiment {name}" for name in EXPERIMENTS]
+        + [f"kickctl theory {name}" for name in STUDIES]
+        + [f"kickctl params set {name}=VALUE" for name in PARAMS]
+        + [f"column of logs: {channel.name}" for channel in CHANNELS]
+        + [
+            f"claim {claim}"
+            for entry in (*EXPERIMENTS.values(), *STUDIES.values())
+            for claim in entry.claims
+        ]
+    )
+    lost = [place for place in every if place not in names(place.split()[-1].partition("=")[0])]
+    assert lost == []
+
+
+def test_all_words_must_be_found_and_a_beginning_is_enough(names):
+    both = names("tau", "membrane")
+    assert both
+    assert set(both) < set(names("tau"))
+    assert set(names("bifurcation")) <= set(names("bifurc"))
+
+
+@pytest.mark.parametrize(
+    ("word", "guess"), [("hystersis", "did you mean hysteresis?"), ("---", "fewer words")]
+)
+def test_what_is_not_there_is_said_with_a_guess(kickctl, word, guess):
+    status, out, err = kickctl("help", "--", word)
+    assert (status, out) == (1, "")
+    assert f"nothing about '{word}'" in err
+    assert guess in err
