@@ -68,8 +68,13 @@ class Robot:
 
 def picture(changes, side=SIDE):
     """The basins of a robot with these parameters."""
-    params = changed(changes).values()
-    return compute(Question({name: params[name] for name in DECISIVE}, load(), None, side))
+    return compute(question(changes, side)) | {"side": side}
+
+
+def question(changes, side):
+    """The question about the basins of a robot with these parameters."""
+    values = changed(changes).values()
+    return Question({name: values[name] for name in DECISIVE}, load(), None, side, (0, side))
 
 
 def changed(changes):

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from host.errors import KickctlError, NotDone
-from host.lab.basin_question import Question
+from host.lab.basin_question import ENDS, Question
 from host.lab.station import Station
 from host.lab.worker import Answer
 
 # How many starts there are along each axis, one picture after the other.
 SIDES = (16, 32, 64)
+# How many starts a question has at most, so that a change of parameters soon has its turn.
+_STARTS = 512
 
 Message = dict[str, Any]
 
@@ -20,7 +22,7 @@ class BasinPictures:
     """Follows the parameters of a robot for as long as `follow` is called on its events.
 
     All of it runs where the session lives. At most one question is with the worker: other robots
-    have their turn, and of questions that wait only the newest one counts.
+    have their turn, and after a change of parameters the next question is about the new ones.
 
     Args:
         station: The robot.
@@ -36,15 +38,15 @@ class BasinPictures:
         self._tell = tell
         self._shown: Question | None = None
         self._asked: Question | None = None
+        self._ends = ""
 
     def follow(self) -> None:
         """Have the next picture computed, if there is a better one and none is under way."""
         if self._asked is not None:
             return
-        worker, pages = self._station.basins, self._station.pages
         try:
             question = self._station.basin_question(SIDES[0])
-            if worker is None or pages is None:
+            if self._station.basins is None:
                 raise NotDone("this lab does not compute basins", "")
         except NotDone as error:
             self._show({"why": error.message, "hint": error.hint})
@@ -53,12 +55,22 @@ class BasinPictures:
             if self._shown.side == SIDES[-1]:
                 return
             question = question._replace(side=SIDES[SIDES.index(self._shown.side) + 1])
-        self._asked = question
-        worker.ask(_answer, question, lambda found: pages.call(lambda: self._take(question, found)))
+        self._ends = ""
+        self._ask(question, 0)
+
+    def _ask(self, question: Question, row: int) -> None:
+        """Ask for the rows from this one on, as many as a question may have."""
+        worker, pages = self._station.basins, self._station.pages
+        if worker is None or pages is None:  # the lab ends
+            return
+        rows = row, min(row + _STARTS // question.side, question.side)
+        asked = self._asked = question._replace(rows=rows)
+        worker.ask(_answer, asked, lambda found: pages.call(lambda: self._take(asked, found)))
 
     def _take(self, question: Question, found: Message | KickctlError) -> None:
-        self._asked = self._shown = None
+        self._asked = None
         if isinstance(found, KickctlError):
+            self._shown = None
             self._show({"why": found.message, "hint": found.hint})
             return
         try:
@@ -66,8 +78,15 @@ class BasinPictures:
         except NotDone:
             present = None
         if present is not None and _same(question, present):
+            self._ends += found["ends"]
+            if question.rows[1] < question.side:
+                self._ask(question._replace(radius=found["radius"]), question.rows[1])
+                return
             self._shown = question
-            self._show(found)
+            counts = {end: self._ends.count(end[0]) for end in ENDS}
+            params, side = dict(question.params), question.side
+            picture = {"params": params, "side": side, "ends": self._ends, "counts": counts}
+            self._show(found | picture)
         self.follow()
 
     def _show(self, news: Message) -> None:

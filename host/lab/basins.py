@@ -21,7 +21,7 @@ import numpy as np
 
 from host.errors import KickctlError, NotDone
 from host.kicking.prediction import watch_s
-from host.lab.basin_question import Question
+from host.lab.basin_question import ENDS, Question
 from host.logs.motion import directions
 from robot.params import Params
 from sim_motor.batch import CHANNELS, Start, control, kick_numbers, param_numbers, run
@@ -31,13 +31,13 @@ from sim_motor.motor import ANGLE, LAST_ANGLE, SPEED, WHEEL_SPEED
 
 PHI_RAD = 0.0
 FASTEST_TURNS_S = 3.0
-FORWARD, BACKWARD, REST, NEITHER = ENDS = ("forward", "backward", "rest", "neither")
+FORWARD, BACKWARD, REST, NEITHER = ENDS
 _BY_DIRECTION = {1: FORWARD, -1: BACKWARD, 0: REST}
 
 # Cells of the grid from which the circle's radius is found.
 _PILOT_SIDE = 8
-# How many wheels are run at once, which bounds the memory.
-_PART = 1024
+# How many records are kept at once, which bounds the memory.
+_RECORDS = 200_000
 # A wheel has found its end if its direction was the same in this last part of the time. One that
 # has not gets so many times longer.
 _SAME_PART, _LONGER = 0.5, 3
@@ -47,32 +47,30 @@ _PHI, _X1, _X2 = (CHANNELS.index(name) for name in ("phi_rad", "x1", "x2"))
 
 
 def compute(question: Question) -> dict[str, Any] | KickctlError:
-    """Compute basins. 64 x 64 starts take about 0.3 s of a core with the usual parameters.
+    """Compute basins, or some rows of them.
+
+    64 x 64 starts take about 0.3 s of a core with the usual parameters, and 10 s with the slowest
+    neurons.
 
     Returns:
-        Plain data, as a `basins` message has it (MESSAGES.md); or why there is none.
+        `ends`, `phi_rad`, `radius` and `fastest` of a `basins` message (MESSAGES.md); or why there
+        are none.
     """
     params = Params()
     params.apply(params.check(dict(question.params)))
     motor = question.motor
     volts = question.battery_v or motor.battery_v
     simulate = partial(_run, params=params, motor=motor, battery_v=volts)
+    first, last = (question.side * row for row in question.rows)
     try:
         with on_one_core():
-            radius = _settled_radius(simulate, params)
-            start = starts(question.side, radius, params)
+            radius = question.radius or _settled_radius(simulate, params)
+            start = starts(question.side, radius, params).of(slice(first, last))
             ends = _ends(simulate, start, ticks_to_end(params))
     except ValueError as error:
         return NotDone(f"this robot's basins cannot be computed: {error}", "take a longer tick_s")
-    return {
-        "params": dict(question.params),
-        "side": question.side,
-        "phi_rad": PHI_RAD,
-        "radius": radius,
-        "fastest": FASTEST_TURNS_S,
-        "ends": "".join(end[0] for end in ends),
-        "counts": {end: ends.count(end) for end in ENDS},
-    }
+    letters = "".join(end[0] for end in ends)
+    return {"ends": letters, "phi_rad": PHI_RAD, "radius": radius, "fastest": FASTEST_TURNS_S}
 
 
 def starts(side: int, radius: float, params: Params) -> Start:
@@ -153,8 +151,9 @@ def _ends(simulate: _Simulate, start: Start, ticks: int) -> list[str]:
 def _ends_after(simulate: _Simulate, start: Start, ticks: int) -> list[str]:
     """The end of each start, as far as these ticks show it."""
     ends: list[str] = []
-    for first in range(0, len(start.states), _PART):
-        ends += ends_of(simulate(start.of(slice(first, first + _PART)), ticks)[:, :, _PHI])
+    part = max(1, _RECORDS // ticks)
+    for first in range(0, len(start.states), part):
+        ends += ends_of(simulate(start.of(slice(first, first + part)), ticks)[:, :, _PHI])
     return ends
 
 

@@ -296,7 +296,8 @@ class Station:
             raise NotDone("nobody here knows the motors of this robot", MEASURE)
         values = self._follower.params
         decisive = {name: values[name] for name in basin_question.DECISIVE}
-        return basin_question.Question(decisive, motor, self._status.get("battery_v"), side)
+        battery_v = self._status.get("battery_v")
+        return basin_question.Question(decisive, motor, battery_v, side, (0, side))
 
     def note_asker(self, page: int) -> None:
         """A page, or LAB, is about to stop the robot."""

@@ -20,7 +20,16 @@ class Computer:
         """Answer the only question. Returns it."""
         ((question, done),) = self.waiting
         self.waiting.clear()
-        done(error or {"params": dict(question.params), "side": question.side})
+        first, last = question.rows
+        assert question.radius == (0.3 if first else None)
+        ends = question.side * "fb"[first > 0] * (last - first)
+        done(error or {"ends": ends, "radius": 0.3, "phi_rad": 0.0, "fastest": 3.0})
+        return question
+
+    def finish(self):
+        """Answer all questions of a picture. Returns the last one."""
+        while (question := self.answer()).rows[1] < question.side:
+            assert question.side * (question.rows[1] - question.rows[0]) <= 512
         return question
 
 
@@ -42,9 +51,11 @@ def test_only_who_wants_basins_gets_them_coarse_first(lab):
     visit, other = lab.viewer(), lab.viewer()
     visit.send("basins", robot="anna")
     computer = lab.station.basins
-    assert [computer.answer().side for _ in SIDES] == list(SIDES)
+    assert [computer.finish().side for _ in SIDES] == list(SIDES)
     assert computer.waiting == []
     assert sides(visit) == list(SIDES)
+    assert visit.latest("basins")["ends"] == 8 * 64 * "f" + 56 * 64 * "b"
+    assert visit.latest("basins")["counts"]["forward"] == 8 * 64
     assert sides(other) == []
     other.send("basins", robot="anna")  # no work for who comes later
     assert computer.waiting == []
@@ -55,16 +66,26 @@ def test_a_change_supersedes_what_is_under_way(lab):
     visit = lab.driver()
     visit.send("basins", robot="anna")
     computer = lab.station.basins
-    for k in (2.0, 3.0):
+
+    def set_k(k):
         visit.send("do", request=1, robot="anna", command="set", arguments={"set": {"k": k}})
         lab.station.step(0.1)
-    assert computer.answer().params["k"] == 8.0
+
+    set_k(2.0)
+    set_k(3.0)
+    assert computer.finish().params["k"] == 8.0
     assert sides(visit) == []
-    assert computer.answer().params["k"] == 3.0
-    assert sides(visit) == [SIDES[0]]
+    assert [computer.finish().params["k"] for _ in range(2)] == [3.0, 3.0]
+    assert sides(visit) == list(SIDES[:2])
     assert visit.latest("basins")["params"]["k"] == 3.0
+    assert computer.answer().side == SIDES[2]
+    set_k(4.0)
+    assert computer.answer().params["k"] == 3.0  # it was under way; the rest of it is not
+    assert computer.finish().params["k"] == 4.0
+    assert sides(visit) == [*SIDES[:2], SIDES[0]]
+    computer.finish()
+    computer.finish()
     # What decides nothing about where a wheel ends asks for nothing.
-    computer.answer(), computer.answer()
     visit.send("do", request=1, robot="anna", command="set", arguments={"set": {"link_loss_s": 2}})
     lab.station.step(0.1)
     assert computer.waiting == []
@@ -76,7 +97,7 @@ def test_who_wants_none_any_more_costs_nothing(lab):
         visit.send("basins", robot=name)
     computer = lab.station.basins
     for _ in SIDES:
-        computer.answer()
+        computer.finish()
     visit.send("do", request=1, robot="anna", command="set", arguments={"set": {"k": 2.0}})
     lab.station.step(0.1)
     assert computer.waiting == []

@@ -15,22 +15,11 @@ class Halves:
         self.asked = []
 
     def ask(self, work, question, done):
-        side = question.side
         self.asked.append(question)
-        picture = {
-            "params": dict(question.params),
-            "side": side,
-            "phi_rad": 0.0,
-            "radius": 0.32,
-            "fastest": 3.0,
-            "ends": ("b" * (side // 2) + "f" * (side // 2)) * (side - 1) + "r" * side,
-            "counts": {
-                "forward": side * (side - 1) // 2,
-                "backward": side * (side - 1) // 2,
-                "rest": side,
-                "neither": 0,
-            },
-        }
+        side = question.side
+        row = "b" * (side // 2) + "f" * (side // 2)
+        ends = "".join("r" * side if n == side - 1 else row for n in range(*question.rows))
+        picture = {"ends": ends, "phi_rad": 0.0, "radius": 0.32, "fastest": 3.0}
         if not self.waits:
             done(picture)
 
@@ -71,7 +60,7 @@ def sees(visitor, part, least, most):
 def test_basins_are_drawn_and_said_but_never_those_of_other_parameters(visit, station, halves):
     visitor = visit()
     visitor.until("r.basins?.side === 64")
-    assert [question.side for question in halves.asked] == [16, 32, 64]
+    assert sorted({question.side for question in halves.asked}) == [16, 32, 64]
     visitor.reads("#basins", "forward 49 %")
     visitor.reads("#basins", "φ = 0, x₁ and x₂ on a circle of radius 0.32")
     label = visitor.page.get_attribute("#lag-plane", "aria-label")
