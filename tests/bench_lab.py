@@ -65,6 +65,7 @@ def lab_page(minutes: float = HEAP_MINUTES) -> None:
             _stops(page, watcher, log)
             with _blocked(address["drive"], uri):
                 _stops(page, watcher, log, " beside a stuck request and predictions")
+                _stops(page, watcher, log, " beside these and basins", _change_k)
         _work(process.pid, address["view"])
         _heap(page, minutes)
         browser.close()
@@ -123,10 +124,18 @@ def _kicks(page, watcher, log):
     )
 
 
-def _stops(page, watcher, log, beside=""):
+def _change_k(page, number):
+    """Have the basins of other parameters computed and drawn."""
+    page.fill("#param-k", str(8 + number % 2))
+    page.keyboard.press("Enter")
+    page.wait_for_function(f"() => lab.state().robots[0].status.params.k === {8 + number % 2}")
+
+
+def _stops(page, watcher, log, beside="", prepare=lambda page, number: None):
     zero_s, delays = clock_zero(watcher) + _ahead(page), []
-    for _ in range(STOPS):
+    for number in range(STOPS):
         _wait(watcher, lambda: log.records[-1].state == RUNNING)
+        prepare(page, number)
         page.keyboard.press("Escape")
         _wait(watcher, lambda: log.records[-1].state != RUNNING)
         delays.append(zero_s + first_tick_off(log).t_s - page.evaluate("inputAt"))
