@@ -12,6 +12,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
+from matplotlib.legend import Legend
 
 from host.errors import WrongUse
 
@@ -41,7 +42,8 @@ def keep_panel(figure: Figure, panel: str, names: tuple[str, ...]) -> None:
         raise _unknown(panel, found)
     axes = found[panel]
     others = {str(label) for other in found.values() if other is not axes for label in _own(other)}
-    _label(axes)
+    _label(figure, axes)
+    legends = [*figure.legends, *_legends_alone(figure)]
     twins = [other for other in figure.axes if _spec(other) == _spec(axes)]
     bars = [bar for twin in twins for bar in _bars(twin)]
     for other in list(figure.axes):
@@ -54,7 +56,7 @@ def keep_panel(figure: Figure, panel: str, names: tuple[str, ...]) -> None:
         bar._colorbar_info["parents"] = [axes]  # noqa: SLF001 - so constrained layout finds it
     if axes.get_title() or axes.get_title("left"):
         figure.suptitle("")
-    _keep_legends(figure, axes, others - set(_own(axes)))
+    _keep_legends(figure, axes, legends, others - set(_own(axes)))
 
 
 def _remove(figure: Figure, axes: Axes) -> None:
@@ -91,30 +93,53 @@ def _own(axes: Axes) -> list[str]:
     return axes.get_legend_handles_labels()[1]
 
 
-def _label(axes: Axes) -> None:
-    """Give a panel the labels of its axes that it shares with others."""
+def _label(figure: Figure, axes: Axes) -> None:
+    """Give a panel the labels that stand at another one of its column or row with its limits."""
     axes.tick_params(labelbottom=True, labelleft=True)
-    for name in ("x", "y"):
-        shared = getattr(axes, f"get_shared_{name}_axes")().get_siblings(axes)
-        words = [getattr(other, f"get_{name}label")() for other in (axes, *shared)]
-        axes.set(**{f"{name}label": next(filter(None, words), "")})
+    own = axes.get_subplotspec()
+    assert own is not None
+    for other in figure.axes:
+        spec = other.get_subplotspec()
+        if spec is None or not other.axison:
+            continue
+        if spec.colspan == own.colspan and other.get_xlim() == axes.get_xlim():
+            axes.set_xlabel(axes.get_xlabel() or other.get_xlabel())
+        if spec.rowspan == own.rowspan and other.get_ylim() == axes.get_ylim():
+            axes.set_ylabel(axes.get_ylabel() or other.get_ylabel())
 
 
-def _keep_legends(figure: Figure, axes: Axes, foreign: set[str]) -> None:
-    """Leave the panel's entries in the figure's legends, and those that belong to no panel."""
+def _legends_alone(figure: Figure) -> list[Legend]:
+    """The legends that have a place in the grid to themselves."""
+    found = [axes.get_legend() for axes in figure.axes if not axes.axison]
+    return [legend for legend in found if legend is not None]
+
+
+def _keep_legends(figure: Figure, axes: Axes, legends: list[Legend], foreign: set[str]) -> None:
+    """Leave the panel's entries in legends of all panels, and those that belong to no panel."""
     handles, labels = axes.get_legend_handles_labels()
-    for legend in list(figure.legends):
-        words = [text.get_text() for text in legend.get_texts()]
+    own = dict(zip(labels, handles, strict=True))
+    for legend in legends:
+        texts, title, frame = legend.get_texts(), legend.get_title(), legend.get_frame()
         kept = [
-            (handle, word)
-            for handle, word in zip(legend.legend_handles, words, strict=True)
-            if word not in foreign
+            (own.get(text.get_text(), handle), text.get_text())
+            for handle, text in zip(legend.legend_handles, texts, strict=True)
+            if text.get_text() not in foreign
         ]
-        title = legend.get_title().get_text()
-        legend.remove()
+        place: Any = "outside upper center"
+        if legend in figure.legends:
+            legend.remove()
+            place = "outside lower center"
         if kept:
             figure.legend(
-                *zip(*kept, strict=True), loc="outside lower center", ncols=4, title=title
+                *zip(*kept, strict=True),
+                loc=place,
+                ncols=4,
+                fontsize=texts[0].get_fontsize(),
+                labelcolor=texts[0].get_color(),
+                frameon=legend.get_frame_on(),
+                facecolor=frame.get_facecolor(),
+                title=title.get_text(),
+                title_fontsize=title.get_fontsize(),
             )
     if handles and axes.get_legend() is None and not figure.legends:
         axes.legend(handles, labels)

@@ -20,6 +20,8 @@ from host.runs.sweep import Axis, Numbers
 MOST_PANELS = 9
 # A map needs some values in both directions.
 LEAST_MAP = 5
+# One for each line, so that they can be told apart in grey, too.
+MARKERS = "osD^vPX"
 # Where numbers of one sign go over more than this factor, their axis is logarithmic.
 WIDE = 30.0
 # Numbers that differ by less than this share are shown as equal, not as what rounding does.
@@ -111,7 +113,7 @@ def _draw_lines(axes: Axes, panel: Panel, swept: list[Axis]) -> None:
             x[order],
             panel.values[order, n] + aside,
             yerr=None if np.isnan(panel.errors).all() else np.nan_to_num(panel.errors[order, n]),
-            fmt="o" if panel.words else "o-",
+            fmt=MARKERS[n % len(MARKERS)] + ("" if panel.words else "-"),
             markersize=4,
             capsize=2,
             color=COLOURS[n % len(COLOURS)],

@@ -84,11 +84,9 @@ def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
                 axes.set_label(f"kicks-{_LABELS[kind]}-{model}")
                 used |= _draw_kicks(axes, kicks_of(rows, model, *kind), model)
                 axes.set_ylabel(f"{model}:\nlength (ms)", fontsize=11)
-        for (top, middle, bottom), (kind, name) in zip(
-            panels[:, 1:].T, _KINDS.items(), strict=True
-        ):
+                axes.set_xlabel("phase of rolling (°)", fontsize=11)
+        for (top, _, bottom), (kind, name) in zip(panels[:, 1:].T, _KINDS.items(), strict=True):
             top.set_title(name, fontsize=12)
-            middle.set_xlabel("phase of rolling (°)", fontsize=11)
             bottom.set_label(f"reversed-{_LABELS[kind]}")
             _draw_shares(bottom, rows, kind)
             bottom.set_ylabel("reversed (%)", fontsize=11)

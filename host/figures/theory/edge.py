@@ -29,10 +29,10 @@ from host.theory.studies.edge_rows import (
 
 PANELS = ("map", "phase", "course")
 
-_COURSES: tuple[tuple[Role, str, str], ...] = (
-    (FORWARD, "a little smaller: rolls on", COLOURS[0]),
-    (BACKWARD, "a little larger: reverses", COLOURS[1]),
-    (EDGE, "on the edge", "black"),
+_COURSES: tuple[tuple[Role, str, str, str], ...] = (
+    (FORWARD, "a little smaller: rolls on", COLOURS[0], "-"),
+    (BACKWARD, "a little larger: reverses", COLOURS[1], "--"),
+    (EDGE, "on the edge", "black", "-"),
 )
 
 
@@ -78,14 +78,15 @@ def _draw_map(figure: Figure, axes: Axes, plane: list[MapRow]) -> None:
         ylabel="direction of the jump: $x_1$ is 0°, $x_2$ is 90°",
         yticks=range(0, 361, 90),
     )
-    axes.set_facecolor("lightgrey")
-    axes.set_title("grey: no jump that was tried reverses", fontsize=12)
+    axes.patch.set(facecolor="white", edgecolor="grey", hatch="//", linewidth=0.0)
+    axes.set_title("hatched: no jump that was tried reverses", fontsize=12)
 
 
 def _draw_phases(axes: Axes, plane: list[MapRow]) -> None:
     phases, _, found = _table(plane)
     sizes = {row["phase_deg"]: 2.0 * float(np.hypot(row["x1"], row["x2"])) for row in plane}
-    axes.plot(phases, [sizes[phase] for phase in phases], color=COLOURS[2], label="inversion")
+    inverted = [sizes[phase] for phase in phases]
+    axes.plot(phases, inverted, color=COLOURS[2], linestyle="--", label="inversion")
     least = np.where(np.isnan(found), np.inf, found).min(axis=0)
     axes.plot(
         phases,
@@ -98,12 +99,13 @@ def _draw_phases(axes: Axes, plane: list[MapRow]) -> None:
 
 
 def _draw_courses(axes: Axes, rows: list[EdgeRow]) -> None:
-    for role, label, colour in _COURSES:
+    for role, label, colour, line in _COURSES:
         course = course_of(rows, POTENTIALS, role)
         axes.plot(
             [row["t_s"] for row in course],
             [row["omega"] / (2 * np.pi) for row in course],
             color=colour,
+            linestyle=line,
             label=label,
         )
     axes.axhline(0.0, color="dimgrey", linewidth=0.8, zorder=0)

@@ -46,7 +46,7 @@ def _draw_planes(figure: Figure, panels: list[Axes], rows: list[GridRow]) -> Non
             values[taus.index(row["tau"]), ks.index(row["k"])] = row["exponent"]
         extent = (0.0, ks[-1] + ks[0], 0.0, taus[-1] + taus[0])
         image = axes.imshow(
-            values, origin="lower", aspect="auto", extent=extent, cmap="PuOr_r", norm=norm
+            values, origin="lower", aspect="auto", extent=extent, cmap="cividis", norm=norm
         )
         axes.set_xlabel("spring constant $k$")
         axes.set_title(titles[start], fontsize=13, loc="left")

@@ -14,6 +14,14 @@ COLOUR: dict[MotionKind, str] = {
     "chaotic": COLOURS[1],
     "quasi-periodic": COLOURS[2],
 }
+# Those of motions that do not repeat themselves are small.
+MARKER: dict[MotionKind, str] = {
+    "at rest": "s",
+    "forth-and-back": "^",
+    "rolling": "o",
+    "chaotic": ".",
+    "quasi-periodic": "x",
+}
 LETTERS = {"tau": r"$\tau$", "a": "$a$", "k": "$k$", "f": "$f$", "I": "$I$"}
 UNITS = {"tau": " s", "f": " s", "I": " s²"}
 
@@ -21,7 +29,7 @@ UNITS = {"tau": " s", "f": " s", "I": " s²"}
 def handles(kinds: set[MotionKind]) -> list[Line2D]:
     """Entries of a legend for these motions."""
     return [
-        Line2D([], [], color=colour, marker="o", markersize=7, linestyle="", label=kind)
+        Line2D([], [], color=colour, marker=MARKER[kind], markersize=7, linestyle="", label=kind)
         for kind, colour in COLOUR.items()
         if kind in kinds
     ]

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import SIZE, styled
-from host.figures.theory.motions import COLOUR, LETTERS, UNITS, handles
+from host.figures.theory.motions import COLOUR, LETTERS, MARKER, UNITS, handles
 from host.figures.theory.section import SECTIONS, Coordinate
 from host.runs.contract import Findings
 from host.theory.analysis.attractors import KINDS, REST
@@ -45,15 +45,15 @@ def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
 def _draw(axes: Axes, rows: list[OrbitRow], column: Coordinate) -> None:
     """The points; those of a wheel at rest are at 0."""
     for kind, colour in COLOUR.items():
-        for repeats, size in ((True, 5.0), (False, 2.0)):
+        for repeats, size in ((True, 3.0), (False, 2.0)):
             own = [row for row in rows if row["kind"] == kind and bool(row["period"]) == repeats]
             axes.plot(
                 [row["value"] for row in own],
                 np.array([0.0 if kind == KINDS[REST] else row.get(column) for row in own], float),
-                ".",
+                MARKER[kind],
                 color=colour,
                 markersize=size,
-                markeredgewidth=0,
+                markeredgewidth=0.5 if MARKER[kind] == "x" else 0,
             )
 
 

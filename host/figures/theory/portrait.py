@@ -51,6 +51,8 @@ _SLICE = (
 _SIDES = ("forward", "backward")
 _STABLE, _UNSTABLE = (COLOURS[4], "#f0d000"), (COLOURS[0], "#5fbf8f")
 _CYCLE = "#c00000"
+# So many points would make a large drawing of lines.
+_POINTS: Any = {"markersize": 3.6, "markeredgewidth": 0, "rasterized": True}
 # A curve is drawn until it has moved this far from its start (rad), or this far in all.
 _TURN, _WAY = 2 * pi, 6 * pi
 # Between two points of a drawn curve, rad.
@@ -98,7 +100,7 @@ def _draw_lines(axes: Axes, rows: list[PointRow], most: float) -> None:
     for own, colour, side in zip((forward, ~forward), _STABLE, _SIDES, strict=True):
         for turns in range(-2, 3):
             phi = edges[own, 0] + turns * pi / 2
-            axes.plot(phi, edges[own, 1], ".", color=colour, markersize=3.6, markeredgewidth=0)
+            axes.plot(phi, edges[own, 1], ".", color=colour, **_POINTS)
         if own.any():
             axes.plot([], [], color=colour, linewidth=2.6, label=f"stable manifolds, {side}")
     for line in sorted({row["line"] for row in rows if row["part"] == "trajectory"}):

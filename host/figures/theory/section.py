@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import SIZE, styled
-from host.figures.theory.motions import COLOUR, handles
+from host.figures.theory.motions import COLOUR, MARKER, handles
 from host.runs.contract import Findings
 from host.theory.engine.crossings import Surface
 from host.theory.model.wheel import Array
@@ -66,10 +66,9 @@ def _draw_points(section: Axes, returns: Axes, rows: list[CrossingRow], numbers:
     for _, group in groupby(rows, key=lambda row: (row["batch"], row["wheel"])):
         own = list(group)
         along, across = _column(own, name), _column(own, "section_x2")
-        style: Any = {"color": COLOUR[own[0]["kind"]], "linestyle": "", "markeredgewidth": 0}
-        style |= (
-            {"marker": "o", "markersize": 9} if own[0]["period"] else {"marker": ".", "ms": 2.5}
-        )
+        kind, size = own[0]["kind"], 8.0 if own[0]["period"] else 2.5
+        style: Any = {"color": COLOUR[kind], "marker": MARKER[kind], "linestyle": ""}
+        style |= {"markersize": size, "markeredgewidth": 0.5 if MARKER[kind] == "x" else 0}
         section.plot(along, across, **style)
         returns.plot(along[:-1], along[1:], **style)
     rotation = numbers["rotation"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
@@ -32,7 +33,9 @@ def draw_survival(axes: Axes, lives: dict[float, list[LifeRow]], numbers: LineNu
         _say_none(axes)
         return
     longest = 0.0
-    for (entry, mean_s), colour in zip(shown, COLOURS, strict=False):
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(shown)))
+    for (entry, mean_s), shade in zip(shown, shades, strict=True):
+        colour = tuple(shade)
         own = [row for row in lives[entry["k"]] if row["life_s"] > ENTRY_S]
         ended = np.sort([row["life_s"] - ENTRY_S for row in own if row["ended"]])
         axes.step(
