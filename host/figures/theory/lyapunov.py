@@ -14,6 +14,8 @@ from host.theory.studies.lyapunov_rows import LyapunovRow, SeriesRow, series_of
 PANELS = ("series", "exponents")
 
 SHOWN_S = 40.0
+# The axis of torques is at least so long, so that rest does not look like motion.
+_LEAST = 0.1
 
 
 def draw(rows: list[LyapunovRow], findings: Findings) -> Figure:
@@ -45,7 +47,8 @@ def _draw_series(axes: Axes, series: list[SeriesRow]) -> None:
         [row["t_s"] for row in shown], [row["force"] for row in shown], color="black", linewidth=1.3
     )
     axes.axhline(0.0, color="grey", linewidth=0.8)
-    axes.set_xlim(0, SHOWN_S)
+    low, high = axes.get_ylim()
+    axes.set(xlim=(0.0, SHOWN_S), ylim=(min(low, -_LEAST), max(high, _LEAST)))
     axes.set_xlabel("time (s)")
     axes.set_ylabel(r"torque $F_\mathrm{tan}$")
 

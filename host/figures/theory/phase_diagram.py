@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from host.figures.style import SIZE, styled
 from host.runs.contract import Findings
@@ -37,6 +38,8 @@ _NAMED: dict[Panel, tuple[Phase, ...]] = {"plane": ("LLM", "C"), "inset": ("S", 
 _DARK: Any = {"frameon": True, "facecolor": "#444444", "labelcolor": "white"}
 # Where the inset and its colour bar are, in parts of the panel.
 _INSET, _BAR = (0.47, 0.48, 0.4, 0.45), (0.885, 0.48, 0.02, 0.45)
+# What is behind them, so that white words can be read: its corner and size.
+_GROUND: Any = {"xy": (0.4, 0.4), "width": 0.585, "height": 0.56}
 # Colours reach at least so far (rad/s), or rest would look like motion.
 _LEAST = 0.1
 
@@ -92,6 +95,7 @@ def _draw_inset(
     figure: Figure, axes: Axes, diagram: list[PointRow], quantity: Quantity, wheel: Wheel
 ) -> None:
     """The inset, with a colour bar of its own."""
+    axes.add_patch(Rectangle(**_GROUND, facecolor="#333333", transform=axes.transAxes, zorder=3))
     inset, bar = axes.inset_axes(_INSET), axes.inset_axes(_BAR)
     figure.colorbar(_draw_panel(inset, diagram, "inset", quantity, wheel), cax=bar)
     for part in (inset, bar):
@@ -152,7 +156,7 @@ def _draw_edge_of_chaos(axes: Axes, rows: list[PointRow]) -> None:
 
 def _name_phases(axes: Axes, rows: list[PointRow], names: tuple[Phase, ...]) -> None:
     """Each name in the middle of its phase, below the inset."""
-    below = 0.5 * axes.get_ylim()[1]
+    below = 0.39 * axes.get_ylim()[1]
     for name in names:
         own = [
             (row["k"], row["tau"]) for row in rows if row["phase"] == name and row["tau"] < below
