@@ -58,7 +58,7 @@ def parser(description, host):
     Returns:
         An argparse.ArgumentParser, to which a program may add its own arguments.
     """
-    arguments = _Parser(description=description)
+    arguments = _Parser(prog="robot", description=description)
     arguments.add_argument(
         "--host", default=host, help="address to listen on (default %(default)s)"
     )

@@ -25,6 +25,8 @@ CYCLES, FEWEST_CYCLES, MOST_CYCLES = 13.0, 10.5, 15.7
 BRICKS_PYTHON = "3.5."
 TICK_MS, RECORDS_MS, BEAT_MS, ANSWER_MS, READY_MS, SHARE = 4.5, 1.5, 4.0, 10.0, 5000.0, 35.0
 TICK_S = TABLE["tick_s"].default
+# As robot/service/brick.sh starts it.
+PROGRAM = "from robot.__main__ import main; raise SystemExit(main())"
 
 
 def main() -> int:
@@ -32,8 +34,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder, "class")
         make_tree(tree)
-        robot = f"-m robot --idle --host 127.0.0.1 --port 0 --token {folder}/token --sysfs {tree}"
-        arguments = robot.split()
+        robot = f"--idle --host 127.0.0.1 --port 0 --token {folder}/token --sysfs {tree}"
+        arguments = ["-c", PROGRAM, *robot.split()]
         try:
             emulator = Emulator(Path(folder))
             version = emulator.run("-c", "import sys; print(sys.version.split()[0])")[0].line
