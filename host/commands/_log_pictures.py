@@ -70,11 +70,13 @@ def plot(options: argparse.Namespace) -> int:
     require_place(options, out)
     log = LogFile(options.log)
     curves = _read(log)
+    from host.figures.caption import of_log
     from host.figures.robot.log import draw
     from host.figures.style import save
 
     title = f"{options.log.name}: {len(curves.t_s)} ticks, {log.info.get('brick', '')}"
-    save(draw(curves, title), out, new=not options.force)
+    caption = of_log(curves.params, log.info, f"kickctl log plot {options.log.name}")
+    save(draw(curves, title), out, caption, new=not options.force)
     facts = {
         "figure": str(out),
         "ticks": len(curves.t_s),

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from host.link.addresses import SIM, sim_options
 from host.runs.presets import OPTION, ORDINARY
 from host.runs.registry import Entry
+from host.runs.robot_options import options_of
 from robot import __version__
 
 # The words of each parameter, by its name as an option.
@@ -104,6 +105,22 @@ def of_run(
             else [f"{name} {value}" for name, value in simulated.items() if name != "seed"]
         )
     return Caption("   ".join(filter(None, words)), _command(verb, entry, settings))
+
+
+def of_log(params: Mapping[str, Any], info: Mapping[str, Any], command: str) -> Caption:
+    """The caption of a robot's log.
+
+    Args:
+        params: The robot's parameters that stayed the same, by its names for them.
+        info: What was run, as the log has it.
+        command: The command that draws the same figure, or the figure's title.
+    """
+    words = [in_words({**params, **options_of(params)})]
+    if info.get("seed") is not None:
+        words.append(f"seed {info['seed']}")
+    if "brick" in info:
+        words.append(f"robot {info['brick']}")
+    return Caption("   ".join(filter(None, words)), command)
 
 
 def _command(verb: str, entry: Entry, settings: Mapping[str, Any]) -> str:

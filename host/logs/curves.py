@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,7 @@ class Curves(NamedTuple):
         tick: The number of each tick, (ticks,).
         a: The parameter a in each tick, without kicks, (ticks,).
         running: Whether the robot was running, (ticks,).
+        params: The robot's parameters that stayed the same, without kicks, by name.
         values: The columns COLUMNS by name, each (ticks,).
         breaks: Before which rows ticks are missing, or the robot's program started again.
         kicks: The kicks that acted, oldest first.
@@ -59,6 +60,7 @@ class Curves(NamedTuple):
     tick: NDArray[np.int64]
     a: Array
     running: NDArray[np.bool_]
+    params: dict[str, Any]
     values: dict[str, Array]
     breaks: list[int]
     kicks: list[ActingKick]
@@ -89,6 +91,8 @@ class _Reader:
         self._numbers = {name: array("d") for name in ("t_s", "a", *COLUMNS)}
         self._ticks, self._running = array("q"), array("b")
         self._snapshot = Snapshot(Params().values())
+        self._params: dict[str, set[Any]] = {}
+        self._may_differ = True  # the parameters, from those of the record before
         self._waiting: list[Event] = []  # kicks that have not begun
         self._acting: list[tuple[float, Event]] = []
         self._kicks: list[ActingKick] = []
@@ -100,7 +104,7 @@ class _Reader:
         self._due: int | None = None
 
     def take_event(self, event: Event) -> None:
-        name = event["event"]
+        name, self._may_differ = event["event"], True
         if name == "snapshot":
             self._snapshot = Snapshot(event["params"], event["kick"])
         else:
@@ -122,6 +126,10 @@ class _Reader:
         if self._ticks and record.tick != self._due:
             self._breaks.append(len(self._ticks))
         self._due = record.tick + 1
+        if self._may_differ:
+            for name, value in self._snapshot.params.items():
+                self._params.setdefault(name, set()).add(value)
+            self._may_differ = False
         self._follow_kicks(record)
         self._stopped += [(self._now_s, name) for name in self._stops]
         self._stops.clear()
@@ -158,6 +166,7 @@ class _Reader:
             np.array(self._ticks),
             numbers.pop("a"),
             np.array(self._running, dtype=bool),
+            {name: value for name, (value, *more) in self._params.items() if not more},
             numbers,
             self._breaks,
             sorted(self._kicks, key=lambda one: one.begin_s),

@@ -45,6 +45,15 @@ def defaults_besides(options: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
+def options_of(params: Mapping[str, Any]) -> dict[str, Any]:
+    """The options that would set these parameters of the robot, as far as there are any."""
+    return {
+        name: params[parameter]
+        for name, (parameter, _) in _PARAMETERS.items()
+        if parameter in params
+    }
+
+
 def params_with(**changes: float) -> Params:
     """The default parameters with these changes. Raises WrongUse if the robot would refuse them."""
     params = Params()

@@ -53,22 +53,22 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**SIZE)
         places = figure.subplot_mosaic(
-            [["speeds 0", "speeds 1"], ["errors 0", "errors 1"], ["table", "table"]],
+            [["speeds-1", "speeds-2"], ["errors-1", "errors-2"], ["table", "table"]],
             height_ratios=(4, 2, 4),
         )
         for row, label in (("speeds", "speed (rad/s)"), ("errors", "model less\nrobot (°)")):
-            places[row + " 0"].set_ylabel(label)
-            places[row + " 1"].sharey(places[row + " 0"])
-        places["errors 0"].set_title("grey: one count of the encoder", fontsize=11, loc="right")
-        for column, (title, chosen) in enumerate(columns):
-            speeds, errors = places[f"speeds {column}"], places[f"errors {column}"]
+            places[row + "-1"].set_ylabel(label)
+            places[row + "-2"].sharey(places[row + "-1"])
+        places["errors-1"].set_title("grey: one count of the encoder", fontsize=11, loc="right")
+        for column, (title, chosen) in enumerate(columns, start=1):
+            speeds, errors = places[f"speeds-{column}"], places[f"errors-{column}"]
             _draw_speeds(speeds, drives, models, chosen)
             _draw_errors(errors, drives, models, chosen)
             speeds.set_title(title, fontsize=13)
             errors.set_xlabel("time (s)")
             errors.sharex(speeds)
             speeds.tick_params(labelbottom=False)
-        places["speeds 1"].legend(loc="center right", fontsize=11)
+        places["speeds-2"].legend(loc="center right", fontsize=11)
         _draw_table(places["table"], numbers)
         figure.suptitle("This robot and the model that was fitted to it", fontsize=16)
     return figure
@@ -109,11 +109,11 @@ def _draw_errors(
     axes: Axes, drives: dict[str, Drive], models: dict[str, Array], chosen: NDArray[np.bool_]
 ) -> None:
     axes.axhspan(-0.5, 0.5, color="lightgrey", alpha=0.7, linewidth=0)
-    for side, colour in zip(WHEELS, COLOURS, strict=False):
+    for side, colour, line in zip(WHEELS, COLOURS, ("-", "--"), strict=False):
         drive = drives[side]
         errors = np.degrees(models[side] - drive.angles)
         for piece in _pieces(drive, chosen):
-            axes.plot(drive.times[piece], errors[piece], color=colour, linewidth=1.0)
+            axes.plot(drive.times[piece], errors[piece], line, color=colour, linewidth=1.0)
 
 
 def _draw_table(axes: Axes, numbers: Numbers) -> None:

@@ -28,10 +28,12 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**SIZE)
         grid = figure.add_gridspec(2, len(WAYS))
-        areas = figure.add_subplot(grid[1, :])
+        areas = figure.add_subplot(grid[1, :], label="area")
         for at, (way, colour) in enumerate(zip(WAYS, COLOURS, strict=False)):
             paths = paths_of(rows, way)
-            _draw_trail(figure.add_subplot(grid[0, at], label=way), paths[0], way, colour)
+            _draw_trail(
+                figure.add_subplot(grid[0, at], label=way.replace(" ", "-")), paths[0], way, colour
+            )
             _draw_area(areas, paths, way, colour)
         areas.set_xlabel("time (min)")
         areas.set_ylabel("cells visited (%)")
@@ -52,7 +54,8 @@ def _draw_trail(axes: Axes, path: Array, way: str, colour: str) -> None:
     axes.plot(*trail[0], "o", color="black", ms=6)
     axes.set_title(way, color=colour)
     axes.set_aspect("equal")
-    axes.set_axis_off()
+    axes.set(xticks=[], yticks=[])
+    axes.spines[:].set_visible(False)
 
 
 def _draw_area(axes: Axes, paths: Array, way: str, colour: str) -> None:

@@ -10,6 +10,8 @@ from host.figures.heat_map import draw_heat_map
 from host.figures.style import SIZE, styled
 from host.runs.contract import Findings
 
+PANELS = ("robot", "older-rods", "model")
+
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
@@ -27,7 +29,6 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             axes.set_yticks(np.arange(len(TAUS_S)) + 0.5, [f"{tau_s:g}" for tau_s in TAUS_S])
             axes.set_xlabel("$k$ (1)")
             axes.set_title(whose, fontsize=14)
-            axes.set_label(whose)
         panels[0].set_ylabel("$\\tau$ (s)")
         figure.suptitle(
             "Largest Lyapunov exponent (1/s): above 0 where motion is chaotic", fontsize=16

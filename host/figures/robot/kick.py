@@ -14,8 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from host.figures.caption import of_log
 from host.figures.style import SIZE, save, styled
 from host.kicking.robot_claims import STALL_TORQUE
+from host.logs.curves import curves
 from host.logs.log import Log
 from host.logs.tap import Event
 from robot.kicks import WHEELS
@@ -25,6 +27,8 @@ KICK_WINDOW_S = (-1.0, 2.0)
 
 # The colours of the paper's figure.
 _POTENTIALS = {"left": ("saddlebrown", "darkorange"), "right": ("mediumblue", "deepskyblue")}
+# Wheels differ without colour, too.
+LINE: Any = {"left": "-", "right": (0, (4, 1))}
 _WHEEL = {"left": "black", "right": "grey"}
 _WIDTH = {"left": 4.2, "right": 2.0}  # so that both show where they agree
 _KICK = "crimson"
@@ -71,7 +75,7 @@ def draw(
     window: tuple[float, float] | None = None,
     zero_tick: int | None = None,
 ) -> Path:
-    """Draw a log as a PNG, 1600 pixels wide. After a restart of the robot, only the rest is drawn.
+    """Draw a log as a PNG. After a restart of the robot, only the rest is drawn.
 
     Args:
         log: the log.
@@ -114,7 +118,7 @@ def draw(
         speeds.set_xlim(first_s, last_s)
         speeds.set_xlabel("time since the kick (s)" if kicks else "time (s)")
         figure.align_ylabels()
-    return save(figure, path)
+    return save(figure, path, of_log(curves(log.stream()).params, log.info, title))
 
 
 def _line(
@@ -144,6 +148,7 @@ def _draw_neurons(axes: Axes, log: Log, begin: int, zero_s: float) -> None:
                 zero_s,
                 log.column(f"{side}_x{number}"),
                 color=color,
+                linestyle=LINE[side],
                 drawstyle="steps-post",
                 label=f"$x_{number}$ {side}",
             )

@@ -21,7 +21,11 @@ _KINDS = {
     (PHASE, 1): r"phase shifted by $+3\pi/4$",
     (PHASE, -1): r"phase shifted by $-3\pi/4$",
 }
-_NAMES = {(POSITION, 0): "position", (PHASE, 1): "phase-plus", (PHASE, -1): "phase-minus"}
+PANELS = tuple(
+    f"{kind}-{direction}"
+    for direction in DIRECTIONS
+    for kind in ("position", "phase-plus", "phase-minus")
+)
 _EDGE_DEG = 0.5  # bins begin half a count of the encoder early
 _BEST: Any = {"color": "#d55e00", "linewidth": 2.5}
 
@@ -35,10 +39,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         panels = figure.subplots(2, 3, sharex=True, sharey=True)
         for line, (direction, before) in zip(panels, DIRECTIONS.items(), strict=True):
             for axes, (kind, name) in zip(line, _KINDS.items(), strict=True):
-                axes.set_label(f"{_NAMES[kind]}-{direction}")
                 image = _draw_map(axes, of_kind(rows, *kind, before), maps[kind, before])
-                if before == 1:
-                    axes.set_title(name, fontsize=13)
+                axes.set_title(name, fontsize=12)
             line[0].set_ylabel(f"wheel runs {direction}\nlength (ticks)")
         panels[0, 0].set_yticks(LENGTHS)
         panels[0, 0].set_xticks((0, 90, 180, 270))

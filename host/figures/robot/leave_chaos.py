@@ -19,6 +19,7 @@ from host.experiments.robot.leave_chaos import (
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
+PANELS = ("kick-alone", "k-8", "k-0.3")
 _HATCHES = ("", "//", "..", "")
 _TITLES = {
     STAY: "by the kick alone",
@@ -44,7 +45,6 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
                 left += widths
             axes.set_title(_TITLES[afterwards], fontsize=14)
             axes.set_xlabel("robots (%)")
-            axes.set_label(afterwards)
         names = [
             f"{kick}, {ticks} tick{'s' * (ticks > 1)}" if ticks else kick for kick, ticks in kicks
         ]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from host.figures.robot.kick import kick_words
+from host.figures.robot.kick import LINE, kick_words
 from host.figures.style import COLOURS, SIZE, styled
 from host.logs.curves import STOPS, Array, Curves
 from robot.kicks import WHEELS
@@ -43,7 +43,7 @@ def draw(log: Curves, title: str) -> Figure:
         panels = figure.subplots(3, 1, sharex=True, height_ratios=(4, 5, 4))
         angles, potentials, duties = panels
         for side in WHEELS:
-            wheel: Any = {"color": _WHEEL[side], "label": side}
+            wheel: Any = {"color": _WHEEL[side], "linestyle": LINE[side], "label": side}
             _line(angles, log, side + "_phi_rad", unit_s, **wheel)
             _line(duties, log, side + "_duty_pct", unit_s, drawstyle="steps-post", **wheel)
             for number, colour in enumerate(_POTENTIALS[side], 1):
@@ -53,6 +53,7 @@ def draw(log: Curves, title: str) -> Figure:
                     f"{side}_x{number}",
                     unit_s,
                     color=colour,
+                    linestyle=LINE[side],
                     drawstyle="steps-post",
                     label=f"$x_{number}$ {side}",
                 )
@@ -105,7 +106,9 @@ def _mark(axes: Axes, log: Curves, unit_s: float) -> None:
 
 
 def _marks(log: Curves) -> list[Any]:
-    handles: list[Any] = [Line2D([], [], color=_WHEEL[side], label=side) for side in WHEELS]
+    handles: list[Any] = [
+        Line2D([], [], color=_WHEEL[side], linestyle=LINE[side], label=side) for side in WHEELS
+    ]
     if log.kicks:
         handles.append(Patch(color=_KICK, alpha=0.4, label="kick"))
     found = {name for _, name in log.stops}

@@ -20,6 +20,7 @@ from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from host.util.intervals import wilson
 
+PANELS = ("transitions", "rest", "round")
 _ABOVE: Any = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 11}
 
 

@@ -14,7 +14,12 @@ from host.runs.contract import Findings
 from host.util.intervals import wilson
 from robot.kicks import WHEELS
 
-_WAYS = {1: ("forward", COLOURS[0]), -1: ("backward", COLOURS[1]), 0: ("at rest", "grey")}
+# The name, colour and hatch of each way.
+_WAYS = {
+    1: ("forward", COLOURS[0], ""),
+    -1: ("backward", COLOURS[1], "//"),
+    0: ("at rest", "grey", ".."),
+}
 _MARKERS = "os"
 _BINS_DEG = np.arange(-180, 181, 20)
 
@@ -42,7 +47,7 @@ def _draw_counts(axes: Axes, numbers: Numbers) -> None:
         total = max(1, sum(ways.values()))
         for place, (way, number) in enumerate(ways.items()):
             low, high = (total * edge for edge in wilson(number, total))
-            label, colour = _WAYS[way]
+            label, colour, hatch = _WAYS[way]
             axes.bar(
                 index + 0.27 * (place - 1),
                 number,
@@ -50,6 +55,8 @@ def _draw_counts(axes: Axes, numbers: Numbers) -> None:
                 yerr=[[number - low], [high - number]],
                 capsize=4,
                 color=colour,
+                hatch=hatch,
+                edgecolor="white",
                 label=label if index == 0 else None,
             )
     axes.axhline(numbers["starts"] / 2, color="black", linestyle=":", label="a half")
@@ -93,10 +100,9 @@ def _draw_offsets(axes: Axes, rows: list[Row]) -> None:
     offsets = [
         np.array([row["ahead_deg"] for row in rows if row["direction"] == way]) for way in _WAYS
     ]
-    labels, colours = zip(*_WAYS.values(), strict=True)
-    axes.hist(
-        offsets, bins=_BINS_DEG.tolist(), stacked=True, color=colours, label=labels, rwidth=0.9
-    )
+    labels, colours, hatches = zip(*_WAYS.values(), strict=True)
+    style: Any = {"color": colours, "hatch": hatches, "label": labels, "edgecolor": "white"}
+    axes.hist(offsets, bins=_BINS_DEG.tolist(), stacked=True, rwidth=0.9, **style)
     axes.axvline(0, color="black", linestyle=":")
     axes.set_xticks(range(-180, 181, 45))
     axes.set_xlabel("the wheel stood ahead of the angle that its potentials remember (°)")

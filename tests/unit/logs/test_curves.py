@@ -29,6 +29,13 @@ def test_columns_are_the_logs(log):
     assert found.breaks == []
 
 
+def test_parameters_that_changed_are_not_those_of_the_log(log):
+    """A figure's corner has those that stayed the same."""
+    params = curves(log.stream()).params
+    assert not {"a", "k", "tick_s"} & params.keys()
+    assert (params["link_loss_s"], params["duty_scale"]) == (0.5, 1.0)
+
+
 def test_kicks_last_as_long_as_they_acted(log):
     """The other way to find them looks from the kick's event forward, in memory."""
     zero_s = log.records[0].t_s
