@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from host.lab.server import Lab
 
 HELP = (
-    "open a page on which you watch running robots, kick them, and see their attractors. Without"
-    " --brick it is a simulated robot. ^C ends the lab, and the exit status is 0"
+    "open a page on which you watch running robots, kick them, and see their attractors and"
+    " basins. Without --brick it is a simulated robot. ^C ends the lab, and the exit status is 0"
 )
 # Robots, pages and predictions come before basins.
 _BASINS_NICENESS = 10

@@ -39,7 +39,7 @@ _PILOT_SIDE = 8
 # How many records are kept at once, which bounds the memory.
 _RECORDS = 200_000
 # A wheel has found its end if its direction was the same in this last part of the time. One that
-# has not gets so many times longer.
+# has not is run once more, for this many times the time.
 _SAME_PART, _LONGER = 0.5, 3
 # Gives the records of starts, (wheels, ticks, CHANNELS), in this many ticks.
 _Simulate = Callable[[Start, int], Array]

@@ -286,7 +286,7 @@ class Station:
             self.forecasts.ask(question, done)
 
     def basin_question(self, side: int) -> basin_question.Question:
-        """Whose basins are to be computed, with so many starts along each axis. Raises NotDone."""
+        """Whose basins are to be computed, `side` starts along each axis. Raises NotDone."""
         motor = motor_known(self._hello)
         if not self._known:
             raise NotDone("the robot has not been found yet", "")

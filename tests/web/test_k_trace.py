@@ -4,8 +4,8 @@ import pytest
 
 from tests.web.drawings import open_page
 
-# A robot on which k is moved: (k, seconds, speed, torque) after each other. The speed's sign
-# changes with each record, and the right wheel is twice as fast as the left one.
+# A robot on which k is moved: (k, seconds, speed, torque, state, a) after each other. The speed's
+# sign changes with each record, and the right wheel is twice as fast as the left one.
 SCRIPT = """
     async ([steps, clear]) => {
         const { KTrace } = await import("/k_trace.js");
@@ -17,8 +17,8 @@ SCRIPT = """
         const trace = new KTrace(robot);
         trace.update();
         let now = 0;
-        for (const [k, seconds, speed, torque, state = "running"] of steps) {
-            Object.assign(robot, { state, status: { params: { k } } });
+        for (const [k, seconds, speed, torque, state = "running", a = 4] of steps) {
+            Object.assign(robot, { state, status: { params: { k, a } } });
             trace.update();
             for (let n = 0; n < Math.round(seconds / 0.03); n += 1) {
                 now += 0.03;
@@ -55,6 +55,11 @@ def test_each_k_that_was_held_has_a_mark(page):
         [4, False, means(4, 0.3), means(8, 0.3)],  # 5 was not held
     ]
     assert page.evaluate(SCRIPT, [steps[:3], True]) == [[2, None, means(3, 0.25), means(6, 0.25)]]
+
+
+def test_another_gain_begins_a_new_trace(page):
+    steps = [(8, 2, 5, 0.5), (2, 2, 3, 0.25), (2, 2, 1, 0.1, "running", 2)]
+    assert page.evaluate(SCRIPT, [steps, False]) == [[2, None, means(1, 0.1), means(2, 0.1)]]
 
 
 def test_a_robot_that_does_not_run_leaves_no_mark(page):

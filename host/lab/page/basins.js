@@ -33,11 +33,12 @@ export function createBasins(root, canvas, lab) {
     root.append(key, words);
 
     return () => {
-        const { robot, link } = lab.store;
-        const wanted = on && link.up && robot ? robot : null;
+        const { robot } = lab.store;
+        // After a lost link, and once it is found, a robot is another object.
+        const wanted = on && robot ? robot : null;
         if (wanted !== following) {
             following = wanted;
-            if (!wanted && robot) robot.picture = null;
+            if (robot) robot.picture = null;
             lab.send({ type: "basins", robot: wanted && wanted.name });
         }
         toggle.setAttribute("aria-pressed", String(on));

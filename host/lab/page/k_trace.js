@@ -4,6 +4,8 @@
 const WINDOW_S = 1;
 const MOST = 200;
 const SIDES = ["left", "right"];
+// With another of these parameters, a new trace begins.
+const OTHERS = ["a", "tau_s", "rods"];
 
 /**
  * @typedef {Object} Hold
@@ -20,6 +22,7 @@ const SIDES = ["left", "right"];
 
 export class KTrace {
     #begin = 0;
+    #others = "";
 
     /** @param {import("./store.js").RobotView} robot */
     constructor(robot) {
@@ -39,6 +42,8 @@ export class KTrace {
         const { ring, state, status } = this.robot;
         const { k } = status.params;
         if (k === undefined) return;
+        const others = OTHERS.map((name) => status.params[name]).join();
+        if (others !== this.#others) [this.#others, this.holds] = [others, []];
         const last = this.holds.at(-1);
         if (last?.k !== k) {
             // A k that nobody has held leaves no mark.

@@ -26,7 +26,7 @@ export function createKTrace(root, canvas, lab) {
         const { robot, link } = lab.store;
         if (!robot) return;
         if (trace?.robot.name !== robot.name) trace = new KTrace(robot);
-        trace.robot = robot; // after a lost link it is known anew
+        trace.robot = robot; // after a lost link it is another object
         trace.update();
         view.holds = trace.holds;
         view.stale = !link.up || robot.lost;
