@@ -9,6 +9,7 @@ from host.errors import LeaseLost
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
+from tests.web.test_basins import Halves
 from tests.web.visitor import Visitor
 
 
@@ -207,10 +208,13 @@ def test_a_robot_that_is_away_is_grey_and_comes_back(visit, station):
 
 
 def test_a_lab_that_is_gone_is_said_and_found_again(visit, lab, station, begin_again):
+    station.basins = Halves()
     visitor = visit()
+    visitor.until("r.basins")
     lab.__exit__(None, None, None)
     visitor.until("!s.link.up")
     visitor.reads("#notices", "What you see is old")
+    assert visitor.robot()["basins"]  # they stay, too
     begin_again()
     visitor.until("s.link.up && r && r.records > 0")
     visitor.forgive("WebSocket connection to")
