@@ -16,7 +16,6 @@ from host.link.addresses import SIM, make_link, sim_options
 from host.link.names import chosen, own_token
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.drawings import USUAL, drawing, files
-from host.perform.robots import robots
 from host.perform.sweep import FAILURES, Sweep, forgiving
 from host.runs.cluster import require_scheduler
 from host.runs.columns import kinds_of
@@ -131,10 +130,13 @@ def perform(
                 busy_s = whole_s * missing / len(cells)
                 say(f"{name}: about {in_words(busy_s)} on this robot")
                 ask(busy_s)
-            logs = study.folder / "logs"
+            from host.perform.robots import robots  # with all that writes logs
+
             # On a real robot somebody may have stepped in: a cell that fails ends a sweep, too.
             failures = () if simulated is None else FAILURES
-            with robots(experiment, uri, setting, token, logs, say, take_over=take_over) as work:
+            with robots(
+                experiment, uri, setting, token, study.folder / "logs", say, take_over=take_over
+            ) as work:
                 do_cells(name, cells, study, work if sweep is None else forgiving(work, failures))
         rows = study.rows(cells)
         # The commit says where results come from. It is no part of their key: it also changes with
