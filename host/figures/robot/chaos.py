@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from host.errors import WrongUse
 from host.experiments.robot.chaos_numbers import tally
 from host.experiments.robot.chaos_pieces import SEEN
 from host.experiments.robot.chaos_rows import (
@@ -115,14 +116,19 @@ def _draw_torque(axes: Axes, series: list[SeriesRow], title: str, begin_s: float
 def _draw_model(axes: Axes, params: dict[str, float]) -> None:
     wheel = Wheel(k=params["k"], tau=params["tau_s"], a=params["a"])
     start = turning(np.array([0.01]), np.zeros(1), wheel)[:, 0]
-    path = trajectory(start, wheel, _SETTLES_S + STRETCH_S)[-round(STRETCH_S / SAMPLE_S) :].T
+    axes.set(xlim=(_SETTLES_S, _SETTLES_S + STRETCH_S), xlabel="time (s)")
+    axes.set_ylabel(r"torque $F^\mathrm{tan}$")
+    axes.set_title(f"model, $I$ = {wheel.I:g} s², $f$ = {wheel.f:g} s", fontsize=13)
+    try:
+        path = trajectory(start, wheel, _SETTLES_S + STRETCH_S)[-round(STRETCH_S / SAMPLE_S) :].T
+    except WrongUse:
+        words = "not computed:\nit changes too fast here"
+        axes.text(0.5, 0.5, words, ha="center", va="center", transform=axes.transAxes)
+        return
     force = wheel.I * array_rates(law_of(wheel))(*path, *wheel)[OMEGA] + wheel.f * path[OMEGA]
     t_s = _SETTLES_S + SAMPLE_S * np.arange(len(force))
     axes.axhline(0.0, color="lightgrey", linewidth=1)
     axes.plot(t_s, force, color="black", linewidth=1.4)
-    axes.set(xlim=(_SETTLES_S, _SETTLES_S + STRETCH_S), xlabel="time (s)")
-    axes.set_ylabel(r"torque $F^\mathrm{tan}$")
-    axes.set_title(f"model, $I$ = {wheel.I:g} s², $f$ = {wheel.f:g} s", fontsize=13)
 
 
 def _draw_return_map(shown: dict[str, list[SeriesRow]], axes: Axes) -> None:

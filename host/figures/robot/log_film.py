@@ -35,7 +35,7 @@ def pictures(frames: Iterable[Frame], slower: float) -> Iterator[NDArray[np.uint
         for number, side in enumerate(WHEELS):
             axes = figure.add_axes((0.5 * number, 0.0, 0.5, 0.89))
             machines[side] = RodMachine(axes)
-            figure.text(0.04 + 0.5 * number, 0.06, f"{side} wheel", fontsize=15, weight="bold")
+            figure.text(0.3 + 0.5 * number, 0.84, f"{side} wheel", fontsize=15, weight="bold")
         explain(figure.axes[0])
         if slower != 1.0:
             words = f"{slower:g} times slower than life"
