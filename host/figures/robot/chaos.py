@@ -2,7 +2,7 @@
 
 The model's panel shows a wheel of the paper's model at the same a, tau and k, with the paper's I
 and f, after it has settled. The table has the robot's wheels alone; `kickctl theory lyapunov` has
-such a series of the model.
+a series of the model.
 """
 
 from __future__ import annotations
