@@ -30,7 +30,7 @@ ROLLING_MEAN = 0.1
 # Lines of the grid of starts over a quarter turn, and over the speeds of one sign. Each piece of a
 # boundary is then bisected this many times, to 1e-6 rad.
 GRID, BISECTIONS = 160, 14
-# Steps per unit of a wheel's rate: so many put a boundary where finer ones do, to 1e-6 rad.
+# Steps per unit of a wheel's rate; they put a boundary where finer ones do, to 1e-6 rad.
 LABELLING = 0.6
 
 
