@@ -83,7 +83,11 @@ def in_words(parameters: Mapping[str, Any]) -> str:
 
 
 def of_run(
-    verb: str, entry: Entry, settings: Mapping[str, Any], parameters: Mapping[str, Any]
+    verb: str,
+    entry: Entry,
+    settings: Mapping[str, Any],
+    parameters: Mapping[str, Any],
+    panel: str | None = None,
 ) -> Caption:
     """The caption of a run.
 
@@ -92,6 +96,7 @@ def of_run(
         entry: The options that the run could have.
         settings: As in the run's settings.json.
         parameters: As `in_words` takes them.
+        panel: The one panel that is drawn; None for all.
     """
     options, uri = settings["options"], settings.get("brick")
     words = [in_words(parameters), f"seed {settings['seed']}"]
@@ -104,7 +109,10 @@ def of_run(
             if simulated is None
             else [f"{name} {value}" for name, value in simulated.items() if name != "seed"]
         )
-    return Caption("   ".join(filter(None, words)), _command(verb, entry, settings))
+    command = _command(verb, entry, settings)
+    if panel is not None:
+        command += ["--panel", panel]
+    return Caption("   ".join(filter(None, words)), join(command))
 
 
 def of_log(params: Mapping[str, Any], info: Mapping[str, Any], command: str) -> Caption:
@@ -123,7 +131,7 @@ def of_log(params: Mapping[str, Any], info: Mapping[str, Any], command: str) -> 
     return Caption("   ".join(filter(None, words)), command)
 
 
-def _command(verb: str, entry: Entry, settings: Mapping[str, Any]) -> str:
+def _command(verb: str, entry: Entry, settings: Mapping[str, Any]) -> list[str]:
     words = ["kickctl", verb, settings["experiment"]]
     for option in entry.options:
         value = settings["options"][option.name]
@@ -133,4 +141,4 @@ def _command(verb: str, entry: Entry, settings: Mapping[str, Any]) -> str:
     words += ["--seed", str(settings["seed"])]
     if settings.get("brick", SIM) != SIM:
         words += ["--brick", settings["brick"]]
-    return join(words)
+    return words

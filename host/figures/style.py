@@ -14,6 +14,7 @@ from typing import Any
 from matplotlib import rc_context, rcdefaults, rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.transforms import Bbox
 
 from host.figures.caption import Caption
@@ -74,12 +75,7 @@ def save(
             width, height = figure.get_size_inches()
             about["bbox_inches"] = Bbox.from_extents(0.0, -STRIP, width, height)
             place = (1.0 - 0.1 / width, -0.6 * STRIP / height)
-            # The layout takes as long as the drawing, and is the same for all formats. After it the
-            # strip must not move legends that are outside of all panels.
-            figure.draw_without_rendering()
-            figure.set_layout_engine("none")
-            for legend in figure.legends:
-                legend.set_bbox_to_anchor((0.0, 0.0, 1.0, 1.0), figure.transFigure)
+            _fix_layout(figure)
             words = figure.text(*place, caption.parameters, **_CORNER)
         try:
             figure.savefig(draft, format=ending, **about)
@@ -87,6 +83,20 @@ def save(
             if caption is not None:
                 words.remove()
     return Path(path)
+
+
+def _fix_layout(figure: Figure) -> None:
+    """Lay a figure out, once for all formats: this takes as long as drawing it.
+
+    Afterwards a strip below the figure moves no legend that is outside of all panels.
+    """
+    if not isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+        return
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for legend in figure.legends:
+        if legend.get_bbox_to_anchor() is figure.bbox:
+            legend.set_bbox_to_anchor((0.0, 0.0, 1.0, 1.0), figure.transFigure)
 
 
 def share_legend(place: Axes | Figure, panels: Iterable[Axes], **style: Any) -> None:

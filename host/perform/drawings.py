@@ -95,6 +95,7 @@ def drawing(wanted: Files, found: Found, setting: Setting, settings: Mapping[str
             found.entry,
             settings,
             parameters(found, setting, settings["experiment"]),
+            wanted.panel,
         )
         return [save(figure, f"{name}.{ending}", caption) for ending in wanted.formats]
 

@@ -96,9 +96,9 @@ def test_a_caption_has_the_command_with_what_was_chosen():
         "seed": 3,
         "brick": "sim://?motor=mine&seed=3",
     }
-    caption = of_run("experiment", Entry("", options), settings, {"k": None, "tau": 0.25})
+    caption = of_run("experiment", Entry("", options), settings, {"k": None, "tau": 0.25}, "series")
     assert caption.parameters == "τ = 0.25 s   seed 3   preset paper   motor mine"
     assert caption.command == (
         "kickctl experiment timeline --k 2.0,4.0 --preset paper --seed 3"
-        " --brick 'sim://?motor=mine&seed=3'"
+        " --brick 'sim://?motor=mine&seed=3' --panel series"
     )
