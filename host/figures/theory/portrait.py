@@ -51,7 +51,7 @@ _SLICE = (
 _SIDES = ("forward", "backward")
 _STABLE, _UNSTABLE = (COLOURS[4], "#f0d000"), (COLOURS[0], "#5fbf8f")
 _CYCLE = "#c00000"
-# So many points would make a large drawing of lines.
+# As shapes, thousands of points would make a large file.
 _POINTS: Any = {"markersize": 3.6, "markeredgewidth": 0, "rasterized": True}
 # A curve is drawn until it has moved this far from its start (rad), or this far in all.
 _TURN, _WAY = 2 * pi, 6 * pi
