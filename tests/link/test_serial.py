@@ -60,8 +60,8 @@ def test_a_whole_conversation_over_a_noisy_line(joined):
 
 def test_a_line_that_comes_off_is_taken_up_again_without_a_gap(joined, monkeypatch):
     # A reply that the line loses is asked for again after a silence, well before the host gives up.
-    monkeypatch.setattr(Robot, "silence_s", 0.3)
-    monkeypatch.setattr(Robot, "answer_s", 2.0)
+    monkeypatch.setattr(Robot, "silence_s", 1.0)
+    monkeypatch.setattr(Robot, "answer_s", 5.0)
     cable, machine, uri = joined
     machine.loop.set_params({"link_loss": "continue"})
     with Robot(make_link(uri), TOKEN, "serial") as robot:
