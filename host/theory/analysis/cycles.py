@@ -136,7 +136,13 @@ class Shooting:
 
     def _rates(self, state: Array, unknowns: Array) -> Array:
         wheel = self.wheel_at(unknowns)
-        return np.array(rates_of(wheel)(*state.tolist(), *wheel))
+        try:
+            return np.array(rates_of(wheel)(*state.tolist(), *wheel))
+        except OverflowError as beyond:
+            raise NotDone(
+                "the search for a cycle came to where the neurons' exponential has no number",
+                "begin nearer to a cycle",
+            ) from beyond
 
     def __call__(self, unknowns: Array) -> tuple[Array, Array]:
         """The residual of the reduced map, and its Jacobian.

@@ -132,6 +132,17 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
     drive = wheel.a * wheel.k * wheel.tau / 2
     ratio = f"{drive / wheel.f:.2f}" if wheel.f else "infinite"
     foreign = setting.elsewhere(**PAPER, k=PAPER_K)
+    kinds = (
+        f"with odd n {'saddles' if odd_unstable else 'not all saddles'}, with even n"
+        f" {'stable' if even[0] else 'unstable'}, at a k tau / (2 f) = {ratio}"
+    )
+    pairs = (
+        f"among {len(two)} pairs of fixpoints, {'below' if all(even) else 'above'} the Hopf line;"
+        " below it 16 are stable, above it none"
+    )
+    if wheel.rods == 1:  # not the angles n pi/4 of the claims
+        kinds = f"with one rod {sum(row['stable'] for row in one)} of them are stable"
+        pairs = f"among {len(two)} pairs of fixpoints of wheels with one rod"
     answers = []
     for alike in of_one_kind(one):
         first, places = alike[0], ", ".join(f"{degrees(row['phi']):.4g}°" for row in alike)
@@ -153,9 +164,7 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
                 "fixpoints",
                 None,
                 odd_unstable and len(set(even)) == 1,
-                f"with odd n {'saddles' if odd_unstable else 'not all saddles'}, with even n"
-                f" {'stable' if even[0] else 'unstable'}, at a k tau / (2 f) = {ratio}; growth"
-                " rates agree with time courses within"
+                f"{kinds}; growth rates agree with time courses within"
                 f" {max(row['growth_off_by'] for row in one):.0e}/s",
             ).doubted(foreign),
             Claim(
@@ -166,9 +175,7 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
                 "stable states",
                 None,
                 stable_pairs == (16 if all(even) else 0),
-                f"among {len(two)} pairs of fixpoints,"
-                f" {'below' if all(even) else 'above'} the Hopf line; below it 16 are stable, above"
-                " it none",
+                pairs,
             ).doubted(foreign),
         ],
         numbers,

@@ -276,6 +276,12 @@ def test_a_curve_that_ceases_to_exist_is_said_to_be_lost():
             assert point.unknowns[1] <= 1.0
 
 
+def test_a_search_that_comes_to_potentials_beyond_all_numbers_finds_no_cycle():
+    far = np.array([-1000.0, 0.0, 10.0, 0.001, 4.0])
+    with pytest.raises(NotDone, match="exponential"):
+        Shooting(Wheel(k=3.0), ROTATION, "a")(far)
+
+
 class Flipping(Shooting):
     """A straight branch, one of whose multipliers is minus its k; it ceases to exist at k = 2."""
 
