@@ -3,11 +3,11 @@
 import argparse
 
 from host.commands._efforts import add_effort, question, sized
-from host.commands._figures import add_figure, figure_given
-from host.commands._options import add_take_over, common
+from host.commands._options import add_take_over
+from host.commands._runs import add_run, figure_given
 from host.commands._terminal import answer_run, say
 from host.experiments.registry import ROBOT, TABLE
-from host.runs.registry import add_options, options_given
+from host.runs.registry import options_given
 
 HELP = "run one of the experiments: logs, a table, a figure, and the paper's claims, measured"
 # It sets the parameters of its robots itself.
@@ -18,14 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """A command for each experiment, with its options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="experiment")
     for name, entry in TABLE.items():
-        own = names.add_parser(
-            name,
-            help=entry.help.replace("%", "%%"),
-            description=entry.help,
-            parents=[common(defaults=False, used=USES)],
-        )
-        add_options(own, entry)
-        add_figure(own)
+        own = add_run(names, name, entry, USES)
         add_effort(own, name, entry)
         if name in ROBOT:
             add_take_over(own)

@@ -3,10 +3,9 @@
 import argparse
 from typing import Any
 
-from host.commands._figures import add_figure, figure_given
-from host.commands._options import common
+from host.commands._runs import add_run, figure_given
 from host.commands._terminal import answer_run, say
-from host.runs.registry import add_options, options_given
+from host.runs.registry import options_given
 from host.theory.studies.registry import TABLE
 
 HELP = (
@@ -20,14 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """A command for each study, with its options."""
     names = parser.add_subparsers(metavar="NAME", required=True, dest="study")
     for name, entry in TABLE.items():
-        own = names.add_parser(
-            name,
-            help=entry.help.replace("%", "%%"),
-            description=entry.help,
-            parents=[common(defaults=False, used=USES)],
-        )
-        add_options(own, entry)
-        add_figure(own)
+        add_run(names, name, entry, USES)
 
 
 def run(options: argparse.Namespace) -> int:

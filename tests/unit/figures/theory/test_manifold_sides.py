@@ -1,4 +1,4 @@
-"""The two branches of a stable manifold are told apart, also where they wind around each other."""
+"""The branches of a stable manifold are separated, even where they wind around each other."""
 
 from math import pi
 
