@@ -79,7 +79,6 @@ def compute_on_cluster(
     from distributed import Client
     from distributed.scheduler import KilledWorker
 
-    start_s = monotonic()
     try:
         client = Client(address, timeout=ANSWER_S, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -88,16 +87,25 @@ def compute_on_cluster(
             f"start one: dask scheduler, and dask worker {address}",
         ) from error
     with client:
-        futures = {
+        cell_of = {
             client.submit(eval, _TASK, _names(simulate, cell, setting), pure=False): cell
             for cell in cells
         }
-        for future in _as_completed(client, address, list(futures), start_s):
+        done: SimpleQueue[Future[Any]] = SimpleQueue()
+        for future in cell_of:
+            future.add_done_callback(done.put)
+        patience_s = FIRST_WORKER_S
+        while cell_of:
+            future = _next_done(done, client, address, patience_s)
+            patience_s = NEXT_WORKER_S
             try:
-                # It comes by way of the scheduler, which may have fallen silent since.
                 outcome, worker, result = future.result(timeout=ANSWER_S)
-            except TimeoutError as error:
-                raise _silent(address) from error
+            except TimeoutError:
+                # A worker that is lost takes its results with it, and Dask computes them again,
+                # which may take long. A silent scheduler never answers.
+                _count_workers(client, address)
+                future.add_done_callback(done.put)
+                continue
             except (CancelledError, KilledWorker) as error:
                 raise NoLink(f"the Dask cluster at {address} was lost: {error}", _RESUME) from error
             except ImportError as error:
@@ -113,7 +121,7 @@ def compute_on_cluster(
                     "install there what this computer has, start the worker again, and run the"
                     " same command again",
                 )
-            yield futures[future], result
+            yield cell_of.pop(future), result
 
 
 def _names(
@@ -146,34 +154,26 @@ def compare(theirs: dict[str, str]) -> str:
     )
 
 
-def _as_completed(
-    client: Client, address: str, futures: list[Future[Any]], start_s: float
-) -> Generator[Future[Any]]:
-    """Yields the futures as they are complete.
+def _next_done(
+    done: SimpleQueue[Future[Any]], client: Client, address: str, patience_s: float
+) -> Future[Any]:
+    """Wait for the next future that is complete.
 
-    Raises NoLink if the scheduler falls silent, or has no worker for too long after start_s.
+    Raises NoLink if the scheduler falls silent, or has no worker for longer than patience_s.
     """
-    done: SimpleQueue[Future[Any]] = SimpleQueue()
-    for future in futures:
-        future.add_done_callback(done.put)
-    deadline_s = start_s + FIRST_WORKER_S
-    for _ in futures:
-        while True:
-            try:
-                future = done.get(timeout=LOOK_S)
-            except Empty:
-                if _count_workers(client, address):
-                    deadline_s = monotonic() + NEXT_WORKER_S
-                elif monotonic() > deadline_s:
-                    raise NoLink(
-                        f"the Dask scheduler at {address} has no worker",
-                        f"start one: dask worker {address}; then run the same command again, which"
-                        " resumes the run",
-                    ) from None
-            else:
-                break
-        deadline_s = monotonic() + NEXT_WORKER_S
-        yield future
+    deadline_s = monotonic() + patience_s
+    while True:
+        try:
+            return done.get(timeout=LOOK_S)
+        except Empty:
+            if _count_workers(client, address):
+                deadline_s = monotonic() + NEXT_WORKER_S
+            elif monotonic() > deadline_s:
+                raise NoLink(
+                    f"the Dask scheduler at {address} has no worker",
+                    f"start one: dask worker {address}; then run the same command again, which"
+                    " resumes the run",
+                ) from None
 
 
 def _count_workers(client: Client, address: str) -> int:

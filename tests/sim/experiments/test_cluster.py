@@ -87,6 +87,30 @@ def test_nothing_is_lost_with_a_worker_that_is_killed(cluster, scramble):
     assert victim not in {nanny.pid for nanny in cluster.workers.values()}
 
 
+def test_a_result_that_is_lost_with_its_worker_may_take_long_to_compute_again(
+    cluster, tmp_path, monkeypatch
+):
+    def simulate(cell, _):
+        import time
+
+        trace = tmp_path / f"{cell['cell']}"
+        time.sleep(3 if trace.exists() else 0)
+        trace.touch()
+        return []
+
+    cells = [{"cell": number} for number in range(4)]
+    results = compute_on_cluster(cluster.scheduler_address, simulate, cells, SETTING)
+    done = [next(results)]
+    while any(task.state != "memory" for task in cluster.scheduler.tasks.values()):
+        os.sched_yield()
+    loaded = max(cluster.scheduler.workers.values(), key=lambda worker: len(worker.has_what))
+    victim = next(n for n in cluster.workers.values() if n.worker_address == loaded.address)
+    os.kill(victim.pid, signal.SIGKILL)
+    monkeypatch.setattr("host.runs.cluster.ANSWER_S", 1.5)
+    done += results
+    assert sorted(cell["cell"] for cell, _ in done) == list(range(4))
+
+
 def test_a_cluster_that_is_lost_in_the_middle_is_reported_in_words(scramble):
     from distributed import LocalCluster
 
