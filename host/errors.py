@@ -6,6 +6,12 @@ from typing import Any
 class KickctlError(Exception):
     """An error in words.
 
+    >>> try:
+    ...     connect("sim://?k=-1")
+    ... except KickctlError as error:
+    ...     print(error.message, error.hint, error.status, sep="; ")
+    'sim://?k=-1' cannot be simulated: k cannot be -1; it is a number from 0 to 100; 2
+
     Attributes:
         message: What happened, and why.
         hint: What to do next; may be empty.
@@ -43,31 +49,67 @@ class FigureInterrupted(KeyboardInterrupt):
 
 
 class NotDone(KickctlError):
-    """It was tried, and the robot did not do it."""
+    """It was tried, and the robot did not do it.
+
+    >>> with connect("sim://?idle=1") as robot:
+    ...     try:
+    ...         robot.kick_and_watch("phase")
+    ...     except NotDone as error:
+    ...         print(error)
+    the robot does not run: it is idle (not started yet)
+    """
 
     status = 1
 
 
 class WrongUse(KickctlError):
-    """The request makes no sense, no matter which robot gets it."""
+    """The request makes no sense, no matter which robot gets it.
+
+    >>> try:
+    ...     connect("sim://?mass=1")
+    ... except WrongUse as error:
+    ...     print(error)
+    sim:// has no option 'mass'
+    """
 
     status = 2
 
 
 class NoLink(KickctlError):
-    """The robot cannot be reached, or its link broke."""
+    """The robot cannot be reached, or its link broke.
+
+    >>> try:
+    ...     connect("serial:///dev/nothing-here")
+    ... except NoLink as error:
+    ...     print(error)
+    the serial line serial:///dev/nothing-here cannot be opened: ...
+    """
 
     status = 3
 
 
 class RefusedByRobot(KickctlError):
-    """The robot is there and says no: version, token, lease."""
+    """The robot is there and says no: version, token, lease.
+
+    >>> with connect("sim://", observe=True) as robot:
+    ...     try:
+    ...         robot.kick("phase")
+    ...     except RefusedByRobot as error:
+    ...         print(error)
+    this computer does not have the robot's token, so it may only look, and stop the robot
+    """
 
     status = 4
 
 
 class LeaseLost(RefusedByRobot):
-    """The robot is not, or no longer, controlled by this host."""
+    """The robot is not, or no longer, controlled by this host.
+
+    It is one kind of refusal: `except RefusedByRobot` catches it too.
+
+    >>> issubclass(LeaseLost, RefusedByRobot), LeaseLost.status
+    (True, 4)
+    """
 
 
 class TokenRefused(RefusedByRobot):
@@ -75,7 +117,17 @@ class TokenRefused(RefusedByRobot):
 
 
 class RobotFault(KickctlError):
-    """The robot is in fault."""
+    """The robot is in fault: it has stopped, and runs again only after `clear` and `start`.
+
+    >>> def kick_or_say_why(robot):
+    ...     try:
+    ...         print(robot.kick_and_watch("phase"))
+    ...     except RobotFault as fault:
+    ...         print(fault.message, fault.hint, sep="; ")
+    >>> with connect("sim://", seed=1) as robot:
+    ...     kick_or_say_why(robot)
+    The kick reversed the robot: a phase kick of 4 ticks at tick ...
+    """
 
     status = 5
 

@@ -26,6 +26,11 @@ class KickOutcome(Outcome, Mapping[str, Any]):
     So `outcome.reversed` and `outcome["reversed"]` are the same, `dict(outcome)` is plain data, and
     `print(outcome)` says it in words.
 
+    >>> with connect("sim://", seed=1) as robot:
+    ...     outcome = robot.kick_and_watch("phase", ticks=4)
+    >>> outcome.reversed, outcome["before"], outcome["after"]["left"]
+    (True, {'left': 'forward', 'right': 'backward'}, 'backward')
+
     Attributes:
         mode: Which kick.
         ticks: How long it was, in control periods.
@@ -59,6 +64,15 @@ class KickOutcome(Outcome, Mapping[str, Any]):
 
 class Robot(client.Robot):
     """A robot to drive and to watch; `connect` returns one.
+
+    >>> with connect("sim://", seed=1) as robot:
+    ...     robot.set(k=2)  # the first tick in which it holds
+    ...     robot.kick("membrane", wheel="left")  # the tick in which the kick begins
+    ...     log = robot.record(2)
+    3
+    4
+    >>> log
+    <Log: 67 ticks, 1.98 s, kicks: 0, sim://>
 
     Every method that talks to it raises KickctlError in words when that fails, and WrongUse for an
     argument that makes no sense, before anything changes. Leaving the `with` block, or `close`,

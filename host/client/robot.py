@@ -54,6 +54,12 @@ class Robot(Watcher):
     ) -> Self:
         """Connect to a robot, real or simulated; to be used as a `with` block.
 
+        >>> with connect("sim://", seed=1) as robot:
+        ...     robot.wait(3)
+        ...     robot.status()["state"]
+        False
+        'running'
+
         Args:
             uri: The robot's name or address, by default $KICK_BRICK or the embedded simulated
                 robot. The simulated one takes a seed and parameters: 'sim://?seed=1&k=2&tau_s=1'.

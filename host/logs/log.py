@@ -47,6 +47,21 @@ class Gaps:
 class Log:
     """Records and events of one subscription; a Tap.
 
+    >>> with connect("sim://", seed=1) as robot:
+    ...     with robot.recording() as log:
+    ...         robot.wait(3)
+    ...         robot.kick_and_watch("phase", ticks=4).reversed
+    False
+    True
+    >>> log
+    <Log: 156 ticks, 4.65 s, kicks: 1, sim://>
+    >>> log.column("left_duty_pct")[:4]
+    array([85, 85, 85, 85])
+    >>> log.save("kick.mcap"), log.to_csv("kick.csv")
+    (PosixPath('kick.mcap'), PosixPath('kick.csv'))
+    >>> Log.load("kick.mcap").records == log.records
+    True
+
     Args:
         info: What was run; see below.
 

@@ -40,7 +40,14 @@ NAMED = {"state": STATES, "kick": KICK_NAMES}
 
 
 class LogError(WrongUse):
-    """A log cannot be written or read."""
+    """A log cannot be written or read.
+
+    >>> try:
+    ...     Log.load("missing.mcap")
+    ... except LogError as error:
+    ...     print(error)
+    missing.mcap cannot be read: No such file or directory
+    """
 
 
 class NameTaken(LogError):

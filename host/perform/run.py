@@ -52,6 +52,20 @@ def perform(
 ) -> Results:
     """Run an experiment or a study of the model, or resume it if it was interrupted.
 
+    >>> study = run_experiment("hopf", tau=0.3, formats="svg")
+    >>> study
+    hopf, in results/theory/hopf-...
+      Hopf bifurcation at k          1.3627461
+      the paper's estimate of k      0.833333333
+      wheels swing with              0.42285036 Hz
+      cycles are born                stable
+      first Lyapunov coefficient l1  -0.0529995371
+      l1 changes its sign at tau     1.43435325 s
+      table point: 1 rows
+      table line: 102 rows
+    >>> round(float(study.tables["line"]["k_hopf"].min()), 3)
+    0.017
+
     Args:
         name: Its name, as in `kickctl experiment NAME` or `kickctl theory NAME`.
         uri: The robot's name or address, as `connect` takes it. A study has no robot.

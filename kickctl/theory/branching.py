@@ -24,6 +24,10 @@ _FAMILIES: dict[Part, str] = {"fixpoints": "rest", "merging": "saddles", "FB": "
 class Branch(Result):
     """Cycles along a curve, in their order; all arrays are (cycles,).
 
+    >>> swings = branch(Wheel(), to=5).branches[0]
+    >>> swings.family, bool(swings.stable.all()), swings.period[[0, -1]].round(2).tolist()  # s
+    ('FB', True, [2.05, 12.91])
+
     Attributes:
         family: 'FB', forth-and-back cycles around phi = 0, or 'LLM', rotations forward.
         end: why the curve ends: 'merging', 'hopf', 'range', 'lost' or 'long'.
@@ -53,6 +57,9 @@ class Branch(Result):
 class SpecialPoint:
     """A bifurcation.
 
+    >>> branch(Wheel(), to=5).points[1]
+    SpecialPoint(type='merging', family='saddles', value=1.7773..., period=None)
+
     Attributes:
         type: 'hopf', 'merging', 'fold', 'pitchfork' or 'neimark-sacker'.
         family: 'rest', 'FB', 'LLM', or 'saddles' for a merging (a heteroclinic connection).
@@ -69,6 +76,10 @@ class SpecialPoint:
 @dataclass(frozen=True, eq=False, repr=False)
 class Branches(Result):
     """What `branch` finds.
+
+    >>> found = branch(Wheel(), to=5)
+    >>> found.along, len(found.branches), len(found.points)
+    ('k', 3, 2)
 
     Attributes:
         along: the constant that is followed, by its letter.

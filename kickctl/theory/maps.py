@@ -34,6 +34,11 @@ Names = NDArray[np.str_]
 class PhaseDiagram(Result):
     """What wheels do over (k, tau). Rows belong to tau, columns to k.
 
+    >>> found = phase_diagram(Wheel(), k=[1, 1.7, 8], tau=[0.1, 0.25], seconds=40)
+    >>> found.phase
+    array([['S', 'S', 'LLM'],
+           ['S', 'FB', 'LLM']], dtype='<U3')
+
     Attributes:
         k: spring constants, without unit, (ks,).
         tau: time constants, s, (taus,).
@@ -107,6 +112,10 @@ def phase_diagram(
 class Basins(Result):
     """Where wheels end that start in the slice x1 = cos phi, x2 = sin phi.
 
+    >>> found = basins(Wheel(k=1.4), points=16)
+    >>> found.outcome.shape, found.shares
+    ((16, 16), {'rest': 1.0})
+
     Attributes:
         phi: angles at the start, rad, (phis,).
         omega: angular velocities at the start, rad/s, (omegas,).
@@ -157,6 +166,10 @@ def basins(wheel: Wheel, points: int = 120) -> Basins:
 @dataclass(frozen=True, eq=False, repr=False)
 class Kicks(Result):
     """What kicks of a wheel that rolls forward lead to.
+
+    >>> found = kicks(Wheel(k=8), "membrane", phases=12)
+    >>> found.mode, found.reversed.tolist()  # the share of phases
+    ('membrane', [1.0])
 
     Attributes:
         mode: 'membrane', 'position' or 'phase'.

@@ -23,6 +23,10 @@ _LEAST_S, _MOST_S = 50.0, 250.0
 class Trajectory(Result):
     """The states of a wheel at some times; all arrays are (times,).
 
+    >>> path = trajectory(Wheel(k=8), t=[0, 5, 10])
+    >>> path.omega.round(2).tolist()  # rad/s
+    [0.0, 9.71, 9.77]
+
     Attributes:
         t: time, s.
         x1: membrane potential of the first neuron, without unit.
@@ -82,6 +86,10 @@ def trajectory(
 @dataclass(frozen=True, eq=False, repr=False)
 class Lyapunov(Result):
     """The four Lyapunov exponents of the attractor that most wheels are on.
+
+    >>> found = lyapunov(Wheel(k=8), seconds=50)
+    >>> found.verdict, found.shares
+    ('rolling', {'rolling': 1.0})
 
     Attributes:
         verdict: 'at rest', 'forth-and-back', 'rolling', 'chaotic' or 'hyperchaotic'.

@@ -34,6 +34,10 @@ NEAR, FACTOR = 1e-6, e
 class Fixpoint(NamedTuple):
     """A resting wheel.
 
+    >>> first = fixpoints(Wheel(k=1.4))[0]
+    >>> first.phi, first.kind, first.eigenvalues.round(2).tolist()
+    (0.0, 'stable focus', [(-0.17+2.91j), (-0.17-2.91j), (-4+0j), (-13.67+0j)])
+
     Attributes:
         phi: angle, rad.
         state: (4,).

@@ -30,6 +30,10 @@ _TRIED = np.geomspace(1e-3, 1e3, 121)
 class Hopf(NamedTuple):
     """A Hopf bifurcation in k.
 
+    >>> found = hopf(Wheel(tau=0.25))
+    >>> found.k < 1.6, found.l1 < 0  # and cycles are born stable
+    (True, True)
+
     Above k, cycles are states z q + conjugate with |z|^2 = mu / (-l1 omega); mu is the real part of
     the leading eigenvalues there, q their eigenvector.
 
