@@ -15,8 +15,8 @@ PEERS := build/peers
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint bench bench-arm bench-theory faults soak \
-	stress mutants lock screenshots clean
+.PHONY: help setup demo reproduce test test-py35 lint docs bench bench-arm bench-theory faults \
+	soak stress mutants lock screenshots clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
@@ -57,6 +57,9 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 	shellcheck --check-sourced --external-sources deploy.sh .ci/run
 	cat robot/service/change.sh robot/service/brick.sh | shellcheck -
 	$(BIN)/python -m pytest tests/lint
+
+docs: $(STAMP) ## make the site of the docs, in build/docs/html, with what the notebooks draw
+	$(BIN)/python -m docs.site
 
 bench: $(STAMP) ## measure the speed of what has to be fast
 	$(BIN)/python -m tests.bench

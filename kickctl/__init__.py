@@ -11,6 +11,7 @@ The names in `__all__` are the public API, with those of `kickctl.theory`, the p
 wheel. Each is loaded when it is first used.
 
 What goes wrong is a KickctlError with `message`, `hint` and `status`, of one of these kinds:
+
     WrongUse: The request makes no sense; nothing has changed. LogError is one about a log's file.
     NotDone: The robot has not done it.
     NoLink: The robot cannot be reached, or its link broke.

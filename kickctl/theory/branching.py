@@ -17,6 +17,7 @@ from host.theory.studies.registry import TABLE
 from host.util.arguments import wrong
 from kickctl.theory._values import Result, need_smooth, need_symmetric, need_wheel
 
+Flags = NDArray[np.bool_]
 _FAMILIES: dict[Part, str] = {"fixpoints": "rest", "merging": "saddles", "FB": "FB", "LLM": "LLM"}
 
 
@@ -36,15 +37,15 @@ class Branch(Result):
         period: s; of a rotation that of a full turn.
         omega_mean: mean of omega, rad/s.
         omega_std: standard deviation of omega, rad/s.
-        omega_max: greatest |omega|, rad/s.
-        amplitude: greatest |phi|, rad; nan for rotations.
+        omega_max: greatest abs(omega), rad/s.
+        amplitude: greatest abs(phi), rad; nan for rotations.
         multipliers: Floquet multipliers without the trivial one, (cycles, 3).
     """
 
     family: str
     end: str
     value: Array
-    stable: NDArray[np.bool_]
+    stable: Flags
     period: Array
     omega_mean: Array
     omega_std: Array

@@ -98,7 +98,7 @@ class Lyapunov(Result):
         dimension: the Lyapunov dimension (Kaplan and Yorke), without unit.
         by_pairs: the largest exponent from pairs of near wheels, 1/s: a check.
         by_pairs_error: its standard error, 1/s.
-        omega_mean_abs: mean of |mean of omega| of the wheels, rad/s.
+        omega_mean_abs: mean over the wheels of abs(mean of omega), rad/s.
         omega_std: mean standard deviation of omega, rad/s.
         shares: the share of wheels on each attractor, without unit, by its name.
     """

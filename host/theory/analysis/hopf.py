@@ -34,8 +34,8 @@ class Hopf(NamedTuple):
     >>> found.k < 1.6, found.l1 < 0  # and cycles are born stable
     (True, True)
 
-    Above k, cycles are states z q + conjugate with |z|^2 = mu / (-l1 omega); mu is the real part of
-    the leading eigenvalues there, q their eigenvector.
+    Above k, cycles are states z q + conjugate with abs(z)^2 = mu / (-l1 omega); mu is the real part
+    of the leading eigenvalues there, q their eigenvector.
 
     Attributes:
         k: the spring constant at which it happens.

@@ -5,9 +5,7 @@ from typing import Literal, NotRequired, TypedDict
 import pytest
 
 from host.perform.catalogue import KINDS, find
-from host.perform.dictionary import page
 from host.runs.columns import Column, by_kind, kinds_of
-from tests.lint.sources import ROOT
 
 NAMES = [name for table, _, _ in KINDS.values() for name in table]
 LEAST = 3
@@ -100,8 +98,3 @@ def test_every_column_of_every_run_is_explained(name):
             if other is not kind and other.has(dict.fromkeys(kind.required))
         ]
         assert alike == []
-
-
-def test_the_page_is_what_the_code_says():
-    text = (ROOT / "docs" / "data.md").read_text(encoding="utf-8")
-    assert text == page(), "write it anew: python -m host.perform.dictionary > docs/data.md"

@@ -1,0 +1,1 @@
+"""Builds the site of these pages; `make docs` calls it."""

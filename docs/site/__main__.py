@@ -1,0 +1,53 @@
+"""`python -m docs.site`: build the site in build/docs. Each warning is an error."""
+
+import argparse
+import shutil
+import sys
+from pathlib import Path
+
+from docs.site.layout import ROOT, lay_out
+
+
+def build(folder: Path, notebooks: str) -> int:
+    """Build the site.
+
+    Args:
+        folder: Where it goes: `html` in it. What stays there saves time in the next build.
+        notebooks: Whether they are run: 'off', or 'cache' for those that have changed.
+
+    Returns:
+        The exit status, 0 if there was no warning.
+    """
+    from sphinx.cmd.build import build_main
+
+    pages, read = folder / "pages", folder / "doctrees"
+    lay_out(pages)
+    status = build_main(
+        [
+            *("-b", "html", "-c", str(ROOT / "docs" / "site"), "-d", str(read)),
+            *("-D", f"nb_execution_mode={notebooks}", "--fail-on-warning", "--quiet"),
+            *(str(pages), str(folder / "html")),
+        ]
+    )
+    if status:
+        # A page that was read is not read a second time, and would not warn.
+        shutil.rmtree(read, ignore_errors=True)
+    return status
+
+
+def main() -> int:
+    """Build the site as the command line says. Returns the exit status."""
+    arguments = argparse.ArgumentParser(prog="python -m docs.site", description="Builds the site.")
+    arguments.add_argument(
+        "--quick", action="store_true", help="show notebooks without running them"
+    )
+    quick = arguments.parse_args().quick
+    folder = ROOT / "build" / ("docs-quick" if quick else "docs")
+    status = build(folder, "off" if quick else "cache")
+    if not status:
+        print(f"The site: {folder / 'html' / 'index.html'}")
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,81 @@
+"""The pages of the command line, made from its parser: what `kickctl VERB --help` says."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from functools import partial
+
+from docs.site.markdown import table, toctree
+from host.cli import make_parser
+from host.experiments.efforts import EFFORTS, in_words
+from host.perform.catalogue import find
+from host.perform.reproduce import claim_ids
+from host.runs.columns import Kind, kinds_of
+
+COLUMNS = 90
+# The verbs whose inner verbs have a page each.
+RUNS = ("experiment", "theory")
+
+
+def pages(folder: str) -> tuple[dict[str, str], dict[str, str]]:
+    """The pages of the verbs, and those below them.
+
+    Args:
+        folder: Where they are.
+
+    Returns:
+        The overview by its path; all others by theirs.
+    """
+    parser = make_parser()
+    verbs = {f"{folder}{name}.md": _verb(folder, name, verb) for name, verb in inner(parser)}
+    runs = {
+        f"{folder}{verb}/{name}.md": _run(name, run)
+        for verb, parts in inner(parser)
+        if verb in RUNS
+        for name, run in inner(parts)
+    }
+    overview = f"# The command line\n\n{_help(parser)}{toctree(verbs)}"
+    return {f"{folder}command-line.md": overview}, {**verbs, **runs}
+
+
+def inner(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """The verbs of a parser, by name; none if it has none."""
+    for action in parser._actions:  # noqa: SLF001 - argparse has no other way to list them
+        if isinstance(action, argparse._SubParsersAction):  # noqa: SLF001
+            yield from action.choices.items()
+
+
+def _verb(folder: str, name: str, parser: argparse.ArgumentParser) -> str:
+    parts = [f"# kickctl {name}\n\n{_help(parser)}"]
+    if name in RUNS:
+        parts.append(toctree(f"{folder}{name}/{run}.md" for run, _ in inner(parser)))
+    else:
+        parts += (f"## kickctl {name} {part}\n\n{_help(verb)}" for part, verb in inner(parser))
+    return "\n".join(parts)
+
+
+def _help(parser: argparse.ArgumentParser) -> str:
+    parser.formatter_class = partial(parser.formatter_class, width=COLUMNS)
+    return f"```text\n{parser.format_help()}```\n"
+
+
+def _run(name: str, parser: argparse.ArgumentParser) -> str:
+    found = find(name)
+    parts = [f"# {name}\n\n{_help(parser)}"]
+    claims = [claim for claim in claim_ids() if claim in found.entry.claims]
+    if claims:
+        parts.append(f"It measures the claims {', '.join(claims)}: [claims](/docs/claims.md).\n")
+    if name in EFFORTS:
+        defaults = {option.name: option.default for option in found.entry.options}
+        parts.append(f"On a real robot it takes {in_words(EFFORTS[name].seconds(defaults))}.\n")
+    kinds = kinds_of(found.work)
+    parts.append("## Its tables\n")
+    parts += (_kind(f"{name}-{kind.name}" if len(kinds) > 1 else name, kind) for kind in kinds)
+    return "\n".join(parts)
+
+
+def _kind(name: str, kind: Kind) -> str:
+    columns = [(f"`{column.name}`", column.unit, column.meaning) for column in kind.columns]
+    rows = table(("column", "unit", "meaning"), columns)
+    return f"### {name}.csv\n\n{kind.meaning}\n\n{rows}"

@@ -1,0 +1,48 @@
+"""How Sphinx builds the site; `python -m docs.site` lays out its pages and calls it."""
+
+from docs.site import mathml
+from robot import __version__
+
+project = "Kick control"
+author = "the kickctl authors"
+project_copyright = author
+release = version = __version__
+
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+root_doc = "index"
+language = "en"
+# Only what the site itself has: it works without a network.
+html_theme = "pydata_sphinx_theme"
+html_math_renderer = "mathml"
+html_title = "Kick control"
+html_copy_source = False
+html_show_sphinx = False
+html_theme_options = {
+    "header_links_before_dropdown": 8,
+    "navigation_with_keys": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "show_prev_next": True,
+}
+html_sidebars = {"index": []}
+
+myst_enable_extensions = ["dollarmath", "html_image"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
+nb_ipywidgets_js = {}
+
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_type_aliases = dict.fromkeys(("Array", "Names", "Flags"), "numpy.ndarray")
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+napoleon_use_ivar = True
+highlight_language = "none"
+
+
+def setup(app):
+    """Let browsers draw equations by themselves."""
+    app.add_html_math_renderer("mathml", (mathml.inline, None), (mathml.block, None))

@@ -1,0 +1,92 @@
+"""Lays out the pages that Sphinx reads: those of the checkout, and those that tables make."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from docs.site.markdown import toctree
+from docs.site.reference import pages as reference
+
+ROOT = Path(__file__).resolve().parents[2]
+INDEX = "docs/README.md"
+_LINK = re.compile(r"(?<=\]\()(?!\w+:|#)[^)#\s]+(?=[)#])|(?<=src=\")(?!\w+:)[^\"]+")
+_SECTION = re.compile(r"^## (.+)\n", re.MULTILINE)
+
+
+def lay_out(target: Path) -> None:
+    """Write all pages, and the files that they show or lead to, below a folder.
+
+    A file that is there already with the same content is not touched, so that Sphinx reads only
+    what has changed.
+
+    Args:
+        target: The folder. What else is in it is removed.
+    """
+    files = {path: text.encode() for path, text in {**_written(), **reference()}.items()}
+    for path in tuple(files):
+        files |= _linked(path, files)
+    for path, content in files.items():
+        file = target / path
+        if not file.is_file() or file.read_bytes() != content:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+    for file in target.rglob("*"):
+        if file.is_file() and str(file.relative_to(target)) not in files:
+            file.unlink()
+
+
+def _written() -> dict[str, str]:
+    """The pages that people have written, by their paths; README.md is the first, index.md."""
+    index = (ROOT / INDEX).read_text(encoding="utf-8")
+    sections = dict(_sections(index))
+    listed = [path for rows in sections.values() for path in _targets(INDEX, rows)]
+    pages = {path: (ROOT / path).read_text(encoding="utf-8") for path in listed}
+    folders = {
+        _slug(title): _section(title, _moved(INDEX, rows)) for title, rows in sections.items()
+    }
+    front = (ROOT / "README.md").read_text(encoding="utf-8")
+    return {
+        **pages,
+        **folders,
+        INDEX: "---\norphan: true\n---\n" + index,
+        "index.md": front + toctree([*folders, "reference/index.md"]),
+    }
+
+
+def _sections(index: str) -> Iterator[tuple[str, str]]:
+    """Title and text of each section of the index."""
+    _, *parts = _SECTION.split(index)
+    yield from zip(parts[::2], parts[1::2], strict=True)
+
+
+def _section(title: str, text: str) -> str:
+    return f"# {title}\n\n{text}\n{toctree(_targets('', text))}"
+
+
+def _slug(title: str) -> str:
+    return re.sub(r"\W+", "-", title.lower()) + ".md"
+
+
+def _targets(page: str, text: str) -> list[str]:
+    """The paths, from the root, that the links of a page lead to."""
+    folder = posixpath.dirname(page)
+    return [posixpath.normpath(posixpath.join(folder, link)) for link in _LINK.findall(text)]
+
+
+def _moved(page: str, text: str) -> str:
+    """The text of a page as it must be at the root, with its links."""
+    folder = posixpath.dirname(page)
+    return _LINK.sub(lambda link: posixpath.normpath(posixpath.join(folder, link[0])), text)
+
+
+def _linked(page: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """The files of the checkout that a page shows or leads to, by their paths."""
+    targets = _targets(page, files[page].decode())
+    return {
+        path: (ROOT / path).read_bytes()
+        for path in targets
+        if path not in files and (ROOT / path).is_file()
+    }

@@ -1,0 +1,16 @@
+"""Equations as MathML, which browsers draw without any script."""
+
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
+
+
+def inline(translator, node):
+    """Write an equation within a line."""
+    translator.body.append(tex2mathml(node.astext(), as_block=False))
+    raise nodes.SkipNode
+
+
+def block(translator, node):
+    """Write an equation on a line of its own."""
+    translator.body.append(f"<div>{tex2mathml(node.astext(), as_block=True)}</div>")
+    raise nodes.SkipNode

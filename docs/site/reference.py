@@ -1,0 +1,123 @@
+"""The pages of reference, each made from the table that the program itself uses."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Sequence
+from types import MethodType, ModuleType
+
+import kickctl
+import kickctl.theory
+from docs.site.command_line import pages as command_line
+from docs.site.markdown import table, toctree
+from robot.params import TABLE, Param
+from robot.record import CHANNELS
+from tests.faults.rows import ROWS
+
+FOLDER = "reference/"
+
+
+def pages() -> dict[str, str]:
+    """All of them, by their paths."""
+    made = {
+        FOLDER + "python.md": _python(kickctl),
+        FOLDER + "python-theory.md": _python(kickctl.theory),
+        FOLDER + "parameters.md": _parameters(),
+        FOLDER + "channels.md": _channels(),
+        FOLDER + "faults.md": _faults(),
+    }
+    commands, inner = command_line(FOLDER)
+    index = f"# Reference\n\n{_INDEX}{toctree([*commands, *made], hidden=False)}"
+    return {FOLDER + "index.md": index, **made, **commands, **inner}
+
+
+_INDEX = """\
+Each page here is made from the program's own tables, so that it says what this release does.
+`kickctl help WORD` searches them in a terminal.
+"""
+
+
+def _python(module: ModuleType) -> str:
+    parts = [f"# {module.__name__} in Python\n\n{inspect.getdoc(module)}\n"]
+    for name in module.__all__:
+        thing = getattr(module, name)
+        what = f"autofunction:: {module.__name__}.{name}\n"
+        if isinstance(thing, type):
+            what = f"autoclass:: {module.__name__}.{name}\n{_MEMBERS}"
+        elif inspect.ismethod(thing):
+            what = f"autofunction:: {module.__name__}.{name}{_arguments(thing)}\n"
+        parts.append(f"## {name}\n\n```{{eval-rst}}\n.. {what}```\n")
+    return "\n".join(parts)
+
+
+# What Python's own classes give to all of theirs says nothing about these.
+_MEMBERS = "   :members:\n   :inherited-members: Exception, Mapping, tuple\n"
+
+
+def _arguments(method: MethodType) -> inspect.Signature:
+    """Its arguments as they are called; Sphinx would leave out the first one."""
+    bound = inspect.signature(method)
+    empty = inspect.Parameter.empty
+    return bound.replace(
+        parameters=[one.replace(annotation=empty) for one in bound.parameters.values()],
+        return_annotation=empty,
+    )
+
+
+def _parameters() -> str:
+    parts = "\n".join(f"## `{row.name}`\n\n{_parameter(row)}\n" for row in TABLE.values())
+    return f"# The robot's parameters\n\n{_PARAMETERS}\n{parts}"
+
+
+_PARAMETERS = """\
+`kickctl params list` shows those of a robot, `kickctl params set NAME=VALUE` changes one while it
+runs, and `--set NAME=VALUE` gives one to the robot that is simulated without `--brick`.
+"""
+
+
+def _parameter(row: Param) -> str:
+    unit = "" if row.unit in ("", "1") else " " + row.unit
+    allowed = (
+        " or ".join(f"`{choice}`" for choice in row.choices)
+        if row.choices
+        else f"{row.minimum:g} to {row.maximum:g}{unit}"
+    )
+    rest = " Changes only while the robot stands still." if row.at_rest_only else ""
+    return (
+        f"{_sentence(row.doc)}\n\n{allowed[0].upper()}{allowed[1:]}; default"
+        f" {row.default}{unit}.{rest}"
+    )
+
+
+def _channels() -> str:
+    rows = [(f"`{row.name}`", row.unit, row.doc) for row in CHANNELS]
+    return f"# The columns of a log\n\n{_CHANNELS}\n{table(('column', 'unit', 'meaning'), rows)}"
+
+
+_CHANNELS = """\
+The robot records these in every tick. `kickctl log export` writes them as columns,
+`log.column(NAME)` in Python gives one as an array; [logs](../docs/logs.md) says more.
+"""
+
+
+def _faults() -> str:
+    rows: Sequence[Sequence[str]] = [
+        (
+            row.name,
+            "they go on" if row.limit_s is None else f"{row.limit_s:g} s",
+            f"... {row.words} ..." if row.words else "",
+        )
+        for row in ROWS
+    ]
+    return f"# Faults\n\n{_FAULTS}\n{table(('fault', 'motors stop within', 'it says'), rows)}"
+
+
+_FAULTS = """\
+What can go wrong with a robot, how long its motors may run on then, and the words by which you know
+it. `make faults` causes each of them many times, and measures.
+[When it does not move](../robot/README.md#when-it-does-not-move) says what to do.
+"""
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
