@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from functools import partial
+from typing import Any
 
 from docs.site.markdown import table, toctree
 from host.cli import make_parser
@@ -56,7 +57,8 @@ def _verb(folder: str, name: str, parser: argparse.ArgumentParser) -> str:
 
 
 def _help(parser: argparse.ArgumentParser) -> str:
-    parser.formatter_class = partial(parser.formatter_class, width=COLUMNS)
+    style: Any = parser.formatter_class
+    parser.formatter_class = partial(style, width=COLUMNS)
     return f"```text\n{parser.format_help()}```\n"
 
 

@@ -1,5 +1,7 @@
 """How Sphinx builds the site; `python -m docs.site` lays out its pages and calls it."""
 
+from sphinx.application import Sphinx
+
 from docs.site import mathml
 from robot import __version__
 
@@ -25,14 +27,14 @@ html_theme_options = {
     "footer_end": [],
     "show_prev_next": True,
 }
-html_sidebars = {"index": []}
+html_sidebars: dict[str, list[str]] = {"index": []}
 
 myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120
-nb_ipywidgets_js = {}
+nb_ipywidgets_js: dict[str, dict[str, str]] = {}
 
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
@@ -43,6 +45,6 @@ napoleon_use_ivar = True
 highlight_language = "none"
 
 
-def setup(app):
+def setup(app: Sphinx) -> None:
     """Let browsers draw equations by themselves."""
     app.add_html_math_renderer("mathml", (mathml.inline, None), (mathml.block, None))
