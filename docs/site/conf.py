@@ -16,6 +16,8 @@ language = "en"
 # Only what the site itself has: it works without a network.
 html_theme = "pydata_sphinx_theme"
 html_math_renderer = "mathml"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_title = "Kick control"
 html_copy_source = False
 html_show_sphinx = False

@@ -14,5 +14,5 @@ def inline(translator: Any, node: nodes.Element) -> None:
 
 def block(translator: Any, node: nodes.Element) -> None:
     """Write an equation on a line of its own."""
-    translator.body.append(f"<div>{tex2mathml(node.astext(), as_block=True)}</div>")
+    translator.body.append(f'<div class="math">{tex2mathml(node.astext(), as_block=True)}</div>')
     raise nodes.SkipNode

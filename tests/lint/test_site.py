@@ -20,6 +20,8 @@ from robot.record import NAMES as CHANNELS
 from tests.faults.rows import ROWS
 from tests.lint.sources import ROOT
 
+# Where nothing is there yet, a busy machine takes its time for it.
+pytestmark = pytest.mark.timeout(600)
 # It stays there between runs: only pages that have changed are read.
 SITE = ROOT / "build" / "docs-quick" / "html"
 # What a browser fetches by itself, unlike what a reader clicks on.

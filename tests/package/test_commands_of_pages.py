@@ -1,0 +1,39 @@
+"""Each kickctl command in a block of README and docs can be typed as it stands there."""
+
+import re
+import shlex
+
+import pytest
+
+from host.cli import VERBS, make_parser
+from host.commands._parser import join_negative
+from tests.package.test_pages import PAGES, ROOT
+
+# What that page adds first, its own test runs: test_contributing.py.
+TYPED = [page for page in PAGES if page != "CONTRIBUTING.md"]
+BLOCK = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
+
+
+def commands(page):
+    """The words of each command, without what the shell does with it."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for block in BLOCK.findall(text):
+        for line in block.replace("\\\n", "").splitlines():
+            if found := re.match(r"(?:\.venv/bin/)?kickctl ([^#>|;]*)", line):
+                yield shlex.split(found[1])
+
+
+@pytest.mark.parametrize("page", TYPED)
+def test_its_commands_can_be_typed(page):
+    for words in commands(page):
+        verb = next(word for word in words if word in VERBS)
+        assert make_parser((verb,)).parse_args(join_negative(words)).verb == verb
+
+
+def test_the_first_kick_is_the_kick_of_the_lesson():
+    """Which runs as it is written, see tests/cli/test_lesson.py."""
+    lesson = (ROOT / "docs/lesson.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/first-kick.md").read_text(encoding="utf-8")
+    shared = re.findall(r"^(?:kickctl kick .*?|The kick .*)(?=  +#|$)", page, re.MULTILINE)
+    assert len(shared) == 4
+    assert [line for line in shared if line not in lesson] == []
