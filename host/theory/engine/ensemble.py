@@ -7,6 +7,7 @@ compiler lets one instruction do several of them.
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -19,7 +20,7 @@ from host.theory.engine import adams, runge_kutta, sliding
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.model.laws import PAPER, Law, law_of, under
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
-from sim_motor.compiled import parallel_jit, prange
+from sim_motor.compiled import on_one_core, parallel_jit, prange
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
 # the fewest takes many more steps than it needs, for the sake of the others.
@@ -229,14 +230,16 @@ def _advanced(
     edges = _edges(needed)
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
-    _advancing(method, rates_of)(
-        found,
-        np.ascontiguousarray(parameters[:, order]),
-        float(seconds),
-        counts,
-        edges,
-        *_shares(counts * np.diff(edges)),
-    )
+    # To wake the other cores takes longer than most steps of one block.
+    with on_one_core() if len(counts) == 1 else nullcontext():
+        _advancing(method, rates_of)(
+            found,
+            np.ascontiguousarray(parameters[:, order]),
+            float(seconds),
+            counts,
+            edges,
+            *_shares(counts * np.diff(edges)),
+        )
     found = found[:, np.argsort(order)]
     if not np.isfinite(found).all():
         lost = int(np.flatnonzero(~np.isfinite(found).all(axis=0))[0])
