@@ -195,7 +195,7 @@ def _listen(server, options):
         ) from None
 
 
-def _own_address():
+def own_address():
     """The address of this machine in its network, or 127.0.0.1 if it is in none."""
     probe = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
@@ -220,7 +220,7 @@ def _serve(options, loop, server, port, panels):
             _warn("not started: {}".format(refusal.message))
     host = options.host
     if server.everywhere:
-        host = _own_address()
+        host = own_address()
         _warn(
             "listening on every address of this machine ({}); READY names one of them".format(
                 options.host

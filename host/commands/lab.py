@@ -8,7 +8,7 @@ import sys
 import webbrowser
 from contextlib import ExitStack, suppress
 from ipaddress import ip_address
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
@@ -40,12 +40,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="TCP port of the page, a whole number; 0 for any that is free (default %(default)s)",
     )
-    parser.add_argument(
+    network = parser.add_mutually_exclusive_group()
+    network.add_argument(
         "--host",
         type=_address,
         metavar="ADDRESS",
-        help="an address of this computer in its network: others may watch there, but not drive"
-        " (default: this computer only)",
+        help="an address of this computer in its network: who has the view address may watch there,"
+        " answer and stop, and drives only if a page hands over the baton (default: this computer"
+        " only)",
+    )
+    network.add_argument(
+        "--class",
+        dest="host",
+        action=_OwnAddress,
+        help="the same at this computer's own address, which is looked up",
     )
     parser.add_argument("--no-open", action="store_true", help="open no browser")
     parser.add_argument(
@@ -96,6 +104,23 @@ def _address(text: str) -> str:
             " `ip address` shows them"
         )
     return str(address)
+
+
+class _OwnAddress(argparse.Action):
+    """Takes the address of this computer in its network for --host."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(nargs=0, **settings)
+
+    def __call__(self, parser: argparse.ArgumentParser, options: Any, *_: object) -> None:
+        from robot.program import own_address
+
+        address = own_address()
+        if ip_address(address).is_loopback:
+            parser.error(
+                "argument --class: this computer is in no network; join one, or leave --class out"
+            )
+        options.host = address
 
 
 def _robots(options: argparse.Namespace) -> list[Chosen]:
@@ -165,8 +190,9 @@ def _tell(lab: Lab, stations: list[LiveStation], options: argparse.Namespace) ->
         print_result(f"drive {lab.drive_url}\nview  {lab.view_url}")
     if options.host:
         say(
-            f"others in this network may watch at {options.host} with the view address; the drive"
-            " address works on this computer only"
+            f"this opens {options.host} to others in this network: who has the view address may"
+            " watch, answer and stop, and drives only if your page hands over the baton. Nothing is"
+            " encrypted. The drive address works on this computer only"
         )
     if not options.no_open:
         _open(lab.drive_url)

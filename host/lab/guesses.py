@@ -54,16 +54,16 @@ class Guesses:
         likeliest = self._likeliest.pop(outcome["kick_id"], None)
         right = None
         if guess is not None and score is not None and outcome["result"]:
-            right = _came_true(dict.fromkeys(outcome["result"], guess), outcome)
+            right = came_true(dict.fromkeys(outcome["result"], guess), outcome)
             score.guesses += 1
             score.right += right
             if likeliest is not None:
                 score.predicted += 1
-                score.simulation += _came_true(likeliest, outcome)
+                score.simulation += came_true(likeliest, outcome)
         return {**outcome, "guess": guess, "right": right}
 
 
-def _came_true(expected: dict[str, str], outcome: Message) -> bool:
+def came_true(expected: dict[str, str], outcome: Message) -> bool:
     """Whether what was expected is true of each kicked wheel. One at rest has stopped, too."""
     return all(
         expected.get(side) == result

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from math import isfinite
 from typing import Any
 
-from host.errors import WrongUse, quotable
+from host.errors import RefusedByRobot, WrongUse, quotable
+from host.lab.presets import PRESETS, PRIMITIVES
 from robot.kick_requests import FIELDS
 from robot.kicks import WHEELS
 
@@ -125,17 +126,16 @@ def flag_of(fields: dict[str, Any], name: str) -> bool:
     return value
 
 
-def chosen(fields: dict[str, Any], choices: dict[str, Any]) -> Any:
-    """What the field `name` chooses. Raises WrongUse."""
+def named(fields: dict[str, Any], choices: dict[str, Any]) -> str:
+    """The field `name`, which is one of the choices' names. Raises WrongUse."""
     name = text_of(fields, "name")
     if name not in choices:
         raise WrongUse(f"there is no '{quotable(name)}'", f"choose from {', '.join(choices)}")
-    return choices[name]
+    return name
 
 
 _Check = Callable[[dict[str, Any]], dict[str, Any]]
-# How the arguments of each command are checked; presets and primitives are the session's.
-CHECKS: dict[str, _Check] = {
+_CHECKS: dict[str, _Check] = {
     "start": lambda fields: {},
     "clear": lambda fields: {},
     "identify": lambda fields: {},
@@ -143,7 +143,32 @@ CHECKS: dict[str, _Check] = {
     "kick": kick_of,
     "set": lambda fields: {"set": changes_of(fields)},
     "record": lambda fields: {"on": flag_of(fields, "on")},
+    "preset": lambda fields: {"set": PRESETS[named(fields, PRESETS)].set},
+    "primitive": lambda fields: {"name": named(fields, PRIMITIVES)},
 }
+
+
+def arguments_of(command: str, fields: dict[str, Any], *, stops: bool) -> dict[str, Any]:
+    """The arguments of a command as a station takes them.
+
+    Args:
+        command: One of the commands of MESSAGES.md.
+        fields: What the page says of it.
+        stops: Whether the robot is to stop when nobody attends to it.
+
+    Raises:
+        KickctlError: There is no command of this kind, or its arguments are wrong.
+    """
+    if command not in _CHECKS:
+        raise WrongUse(f"there is no command '{quotable(command)}'", RELOAD)
+    checked = _CHECKS[command](fields)
+    if stops and checked.get("set", {}).get("link_loss") == "continue":
+        raise RefusedByRobot(
+            "with link_loss = continue the robot would drive on when nobody attends to it, and"
+            " this lab is to stop it then",
+            "start the lab with --unattended continue if that is what you want",
+        )
+    return checked
 
 
 def _no_constant(name: str) -> float:

@@ -140,6 +140,7 @@ class Lab:
             self.view_url = (
                 f"http://{_written(self._hosts[-1])}:{self._port}/#view={self.keys.view}"
             )
+            self.session.view_url = self.view_url
             for station in self._stations:
                 station.pages = self
             self._ready.set()

@@ -17,9 +17,11 @@ from host.lab import requests
 from host.lab.basin_pictures import BasinPictures
 from host.lab.baton import Baton
 from host.lab.guesses import Guesses
+from host.lab.invitation import invitation
 from host.lab.keys import DRIVE, Keys
 from host.lab.page_end import Departed, Page
-from host.lab.presets import PRESETS, PRIMITIVES, describe_presets, describe_primitives
+from host.lab.poll import Poll
+from host.lab.presets import describe_presets, describe_primitives
 from host.lab.station import HISTORY, STOP, Station
 
 # How many pages there may be; some of the places are kept for those that may drive.
@@ -40,12 +42,15 @@ class Session:
 
     Attributes:
         pages: The pages that have joined, by number.
+        view_url: The page's address for who watches; empty before the server listens.
     """
 
     def __init__(self, keys: Keys, stations: Iterable[Station]) -> None:
         self.pages: dict[int, Page] = {}
         self.stations = {station.name: station for station in stations}
         self.baton = Baton()
+        self.view_url = ""
+        self._poll = Poll(self.pages, self.baton)
         self._keys = keys
         self._strangers: list[Page] = []
         self._departed: dict[int, Departed] = {}
@@ -122,6 +127,7 @@ class Session:
         if due:
             self._states_due = now + STATE_S
         self.look(every=due)
+        self._poll.tell_if_changed()
 
     def look(self, *, every: bool = False) -> None:
         """Tell pages how the robots are, if that has changed; `every` also if it has not."""
@@ -155,6 +161,7 @@ class Session:
 
     def _tell_outcome(self, outcome: Message) -> None:
         """Tell each page what a kick did, what was guessed, and how often it guessed right."""
+        self._poll.settle(outcome)
         told = self._guesses.settle(outcome)
         self.stations[outcome["robot"]].verdicts.append(told)
         for page in self.pages.values():
@@ -184,6 +191,12 @@ class Session:
             self._hand(page, message, now)
         elif kind == "logs":
             page.answer(request, {"logs": self.logs()})
+        elif kind == "invite":
+            page.answer(request, invitation(self.view_url))
+        elif kind in ("poll", "answer"):
+            robot = self._station(message).name if kind == "poll" else ""
+            self._poll.take(page, message, robot, now)
+            page.answer(request, {})
         elif kind == "predict":
             self._predict(page, message, request)
         elif kind == "basins":
@@ -245,6 +258,7 @@ class Session:
         for station in self.stations.values():
             page.send(station.state())
         page.send(self._baton_for(page))
+        self._poll.tell(page)
 
     def _stop(self, page: Page, message: Message) -> None:
         """Stop one robot, or all: also if the page names one that is not there."""
@@ -272,36 +286,22 @@ class Session:
         fields = message.get("arguments") or {}
         if not isinstance(fields, dict):
             raise WrongUse("the arguments are no object", requests.RELOAD)
-        arguments = self._checked(station, command, fields)
+        arguments = requests.arguments_of(command, fields, stops=station.rule == STOP)
         guess = requests.guess_of(fields) if command == "kick" else None
         self.baton.need(page.number, page.role, now)
         station.attend()
         if command == "kick":
-            arguments["id"] = uuid.uuid4().hex
-            self._guesses.note(arguments["id"], guess, page.score)
+            kick_id = uuid.uuid4().hex
+            self._poll.lock(station.name, arguments, kick_id)
+            self._guesses.note(kick_id, guess, page.score)
+            arguments = {**arguments, "id": kick_id}
 
         def answered(result: Message | KickctlError) -> None:
+            if command == "kick" and isinstance(result, KickctlError):
+                self._poll.unlock(arguments["id"])
             page.answer(request, result)
 
         station.do(command, arguments, answered)
-
-    def _checked(self, station: Station, command: str, fields: Message) -> Message:
-        """The arguments of a command as a station takes them. Raises KickctlError."""
-        if command == "preset":
-            return {"set": requests.chosen(fields, PRESETS).set}
-        if command == "primitive":
-            requests.chosen(fields, PRIMITIVES)
-            return {"name": fields["name"]}
-        if command not in requests.CHECKS:
-            raise WrongUse(f"there is no command '{quotable(command)}'", requests.RELOAD)
-        checked = requests.CHECKS[command](fields)
-        if station.rule == STOP and checked.get("set", {}).get("link_loss") == "continue":
-            raise RefusedByRobot(
-                "with link_loss = continue the robot would drive on when nobody attends to it, and"
-                " this lab is to stop it then",
-                "start the lab with --unattended continue if that is what you want",
-            )
-        return checked
 
     def _predict(self, page: Page, message: Message, request: int | None) -> None:
         station, kick = self._station(message), requests.kick_of(message.get("kick"))
@@ -387,6 +387,7 @@ class Session:
         if counted != self._counted:
             self._counted = counted
             self.broadcast({"type": "pages", "driving": driving, "watching": counted[1]})
+            self._poll.changed = True
 
 
 def _without_time(state: Message) -> Message:

@@ -16,7 +16,7 @@ const USUAL = [
 /**
  * @param {HTMLElement} root
  * @param {import("./lab.js").Lab} lab
- * @returns {{update: () => void, verdict: object}}
+ * @returns {{update: () => void, verdict: object, usual: object[], wheel: () => string}}
  */
 export function createKicks(root, lab) {
     const guess = choices(
@@ -94,5 +94,5 @@ export function createKicks(root, lab) {
             verdict.update(robot);
         }
     };
-    return { update, verdict };
+    return { update, verdict, usual: USUAL, wheel: () => wheel.value };
 }

@@ -2,6 +2,7 @@
 
 import { createBasins } from "./basins.js";
 import { createBaton } from "./baton.js";
+import { createClass } from "./class_panel.js";
 import { byId, element, setText } from "./dom.js";
 import { draw as drawFloor } from "./draw/floor.js";
 import { draw as drawPlane } from "./draw/plane.js";
@@ -62,6 +63,7 @@ const panels = [
     createBasins(byId("basins"), byId("lag-plane"), lab),
     createRecording(byId("recording"), lab),
     kTrace.update,
+    createClass(byId("class"), byId("class-switch"), lab, kicks),
     () => stop.update(),
 ];
 

@@ -9,7 +9,7 @@
  * @returns {object}
  */
 export function snapshot({ store }, stop, frames, views, kTrace) {
-    const { link, role, page, baton, refused, note, score, selected } = store;
+    const { link, role, page, baton, refused, note, score, poll, selected } = store;
     const robots = store.robots.map((robot) => ({
         name: robot.name,
         state: robot.state,
@@ -22,6 +22,7 @@ export function snapshot({ store }, stop, frames, views, kTrace) {
         basins: robot.basins,
     }));
     const drawing = { frames: frames.count, p95_ms: frames.p95(), shown_s: views?.time ?? null };
-    const known = { link, role, page, baton, refused, note, score, selected, robots, drawing };
-    return structuredClone({ ...known, stop: stop.progress(), k_trace: kTrace.state() });
+    const known = { link, role, page, baton, refused, note, score, poll, selected };
+    const shown = { robots, drawing, stop: stop.progress(), k_trace: kTrace.state() };
+    return structuredClone({ ...known, ...shown });
 }

@@ -167,6 +167,8 @@ export class Store {
         this.pages = { driving: 0, watching: 0 };
         this.score = { guesses: 0, right: 0, predicted: 0, simulation: 0 };
         this.note = null;
+        /** The newest `poll` message. */
+        this.poll = { state: "none", score: { kicks: 0 } };
     }
 
     /** @returns {RobotView | undefined} The robot that is shown large. */
@@ -250,6 +252,10 @@ export class Store {
     _baton({ driver, you, asking, why }) {
         if (this.baton.you && !you && why) this.note = { message: why, hint: "" };
         this.baton = { driver, you, asking, why };
+    }
+
+    _poll(message) {
+        this.poll = message;
     }
 
     _pages({ driving, watching }) {

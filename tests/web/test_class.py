@@ -1,0 +1,34 @@
+"""A class: the teacher shows the address, asks, and kicks; pupils answer before it."""
+
+from tests.web.test_page import turns
+
+
+def test_a_class_answers_before_the_kick_and_is_counted_after_it(visit, lab, station):
+    teacher, pupil = visit(), visit(lab.view_url, viewport={"width": 360, "height": 640})
+    teacher.page.click("#class-switch")
+    teacher.page.click("text=Show the address")
+    teacher.page.wait_for_selector(".qr svg path[stroke]")
+    teacher.reads(".address", lab.view_url)
+    teacher.reads(".shown", "Only this computer")
+    assert pupil.page.is_hidden("#class")
+    assert pupil.page.is_hidden("#class-switch")
+
+    before = turns(teacher)
+    teacher.page.click("#class >> text=Phase kick")
+    pupil.reads(".question", "a phase kick, 4 ticks, of both wheels?")
+    pupil.page.click("#answer-0")
+    teacher.reads("#class", "1 of 1 page has answered")
+    assert teacher.page.is_hidden(".bars")
+    assert pupil.state()["poll"]["counts"] is None
+    teacher.page.click("text=Kick now")
+    pupil.until("s.poll.state === 'locked'")
+    pupil.reads(".bars", "1 of 1 say: reverse")
+    pupil.page.wait_for_selector("#class .choices", state="hidden")
+    station.step(2.5)
+    pupil.until("s.poll.state === 'done'")
+    assert turns(teacher) == [-way for way in before]
+    pupil.reads(".bars", "✓ right")
+    pupil.reads("#class", "Your answer: reverse. Correct.")
+    teacher.reads("#class", "the majority in 1 of 1 kick")
+    teacher.page.click("text=End the question")
+    pupil.page.wait_for_selector("#class", state="hidden")
