@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 
 from host.util.intervals import standard_error, wilson
 
+# Numbers are shown with this number of digits at most.
+MOST_DIGITS = 9
+
 
 class Answer(NamedTuple):
     """One result.
@@ -32,9 +35,13 @@ class Answer(NamedTuple):
             return self.value
         unit = f" {self.unit}" if self.unit else ""
         if not self.error:
-            return f"{self.value:.9g}{unit}"
+            return f"{self.value:.{MOST_DIGITS}g}{unit}"
         digits = max(0, 1 - floor(log10(self.error)))
-        return f"{self.value:.{digits}f} ± {self.error:.{digits}f}{unit}"
+        if digits > MOST_DIGITS:
+            return f"{self.value:.{MOST_DIGITS}g} ± {self.error:.1g}{unit}"
+        rounded = round(self.value, digits)
+        value = f"{rounded:.{digits}f}" if rounded else "0"
+        return f"{value} ± {self.error:.{digits}f}{unit}"
 
 
 def share(name: str, done: int, tried: int) -> Answer:

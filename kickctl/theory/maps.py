@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from host.errors import WrongUse
 from host.theory.analysis import outcomes
-from host.theory.analysis.hopf import critical_k
-from host.theory.analysis.phases import phase
+from host.theory.analysis.phases import phases
 from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.ensemble import averages
 from host.theory.engine.kicked import KICKS, Continuous
@@ -45,7 +44,7 @@ class PhaseDiagram(Result):
         omega_mean: mean of omega, rad/s, (taus, ks).
         omega_std: standard deviation of omega, rad/s, (taus, ks).
         phase: 'S' the wheel rests, 'FB' it rolls forth and back, 'LLM' it rolls one way, 'C' it is
-            chaotic, (taus, ks).
+            chaotic, 'undecided' it has not settled after 6000 s more, (taus, ks).
     """
 
     k: Array
@@ -98,14 +97,8 @@ def phase_diagram(
     found = averages(begin, parameters, measured_s, measured_s)
     shape = len(taus), len(ks)
     mean, std = found.omega_mean.reshape(shape), found.omega_std.reshape(shape)
-    names = [
-        [
-            phase(*own, k_hopf)
-            for own in zip(mean[row].tolist(), std[row].tolist(), ks.tolist(), strict=True)
-        ]
-        for row, k_hopf in enumerate(critical_k(wheel._replace(tau=own)) for own in taus.tolist())
-    ]
-    return PhaseDiagram(ks, taus, mean, std, np.array(names))
+    names = np.array(phases(found, parameters)).reshape(shape)
+    return PhaseDiagram(ks, taus, mean, std, names)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

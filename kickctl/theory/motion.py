@@ -100,7 +100,9 @@ class Lyapunov(Result):
         by_pairs_error: its standard error, 1/s.
         omega_mean_abs: mean over the wheels of abs(mean of omega), rad/s.
         omega_std: mean standard deviation of omega, rad/s.
-        shares: the share of wheels on each attractor, without unit, by its name.
+        shares: the share of wheels on each attractor, without unit, by its name. Where it is not
+            one attractor, the start decides.
+        attractors: the exponents on each attractor, 1/s, (4,), by its name.
     """
 
     verdict: str
@@ -112,6 +114,7 @@ class Lyapunov(Result):
     omega_mean_abs: float
     omega_std: float
     shares: dict[str, float]
+    attractors: dict[str, Array]
 
 
 def lyapunov(wheel: Wheel, seconds: float = 250.0, seed: int = 1) -> Lyapunov:
@@ -157,5 +160,6 @@ def lyapunov(wheel: Wheel, seconds: float = 250.0, seed: int = 1) -> Lyapunov:
         found["by_pairs_error"],
         found["omega_mean_abs"],
         found["omega_std"],
-        {kind: own["wheels"] / found["of_wheels"] for kind, own in found["attractors"].items()},
+        {name: own["wheels"] / found["of_wheels"] for name, own in found["attractors"].items()},
+        {name: np.array(own["exponents"]) for name, own in found["attractors"].items()},
     )

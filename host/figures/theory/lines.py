@@ -55,7 +55,7 @@ _MARKERS = {
 }
 # The panel beside the Hopf line ends there.
 _CLOSE = 2.0
-_GREYS = {"S": "#ffffff", "FB": "#e6e6e6", "LLM": "#d0dcea", "C": "#bdbdbd"}
+_GREYS = {"S": "#ffffff", "FB": "#e6e6e6", "LLM": "#d0dcea", "C": "#bdbdbd", "undecided": "#f0c0c0"}
 _LABELS = {
     "k": "spring constant $k$",
     "tau": r"time constant $\tau$ (s)",

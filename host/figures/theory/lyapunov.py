@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, styled
+from host.runs.answers import Answer
 from host.runs.contract import Findings
 from host.theory.studies.lyapunov_numbers import Numbers
 from host.theory.studies.lyapunov_rows import LyapunovRow, SeriesRow, series_of
@@ -33,12 +34,13 @@ def draw(rows: list[LyapunovRow], findings: Findings) -> Figure:
 def _title(numbers: Numbers) -> str:
     constants = numbers["constants"]
     where = f"$k$ = {constants['k']:g}, $\\tau$ = {constants['tau']:g} s"
-    return f"{where}: {numbers['verdict']}, dimension {numbers['dimension']:.2f}"
-
-
-def _rounded(value: float) -> str:
-    """With four digits after the point, and no sign before zero."""
-    return f"{round(value, 4) + 0.0:.4f}"
+    title = f"{where}: {numbers['verdict']}, dimension {numbers['dimension']:.2f}"
+    point = numbers["point"]
+    others = [
+        f"{own['wheels'] / point['of_wheels']:.0%} of starts lead to another attractor: {name}"
+        for name, own in list(point["attractors"].items())[1:]
+    ]
+    return "\n".join([title, *others])
 
 
 def _draw_series(axes: Axes, series: list[SeriesRow]) -> None:
@@ -60,7 +62,7 @@ def _draw_exponents(axes: Axes, numbers: Numbers) -> None:
     for number, (value, error) in enumerate(zip(values, errors, strict=True)):
         colour = COLOURS[1] if value > 5 * error and value > 0.0 else COLOURS[0]
         axes.errorbar(number, value, 1.96 * error, fmt="o", color=colour, capsize=6, markersize=7)
-        words = f"  {_rounded(value)} ± {_rounded(error)}"
+        words = "  " + Answer("", float(value), float(error)).in_words()
         axes.annotate(words, (number, value), (8, 6), textcoords="offset points", fontsize=12)
     axes.axhline(0.0, color="grey", linewidth=0.8, zorder=0)
     axes.set_yscale("symlog", linthresh=0.1)

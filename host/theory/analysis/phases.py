@@ -4,34 +4,49 @@ from __future__ import annotations
 
 from typing import Literal
 
-Phase = Literal["S", "FB", "LLM", "C"]
-PHASES: tuple[Phase, ...] = ("S", "FB", "LLM", "C")
+import numpy as np
+
+from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL
+from host.theory.analysis.deciding import UNDECIDED, decide
+from host.theory.engine.ensemble import Averages
+from host.theory.model.wheel import Array
+
+Phase = Literal["S", "FB", "LLM", "C", "undecided"]
+PHASES: tuple[Phase, ...] = ("S", "FB", "LLM", "C", "undecided")
 
 # A wheel rests if mean and deviation of omega (rad/s) are below STILL. It rolls one way if the mean
 # is above ROLLING_MEAN (rad/s) and the deviation below ROLLING_SPREAD of it.
 STILL, ROLLING_MEAN, ROLLING_SPREAD = 0.02, 0.1, 0.6
-# Cycles around a resting angle end below this multiple of the k of their Hopf bifurcation.
-NEAR_HOPF = 2.0
+# A wheel that is slower still (rad/s) is not about to begin to swing.
+_DEAD = 1e-6
+_OF_KIND: dict[int, Phase] = {
+    REST: "S",
+    BACK: "FB",
+    ROLL: "LLM",
+    CHAOS: "C",
+    UNDECIDED: "undecided",
+}
 
 
-def phase(omega_mean: float, omega_std: float, k: float, k_hopf: float) -> Phase:
-    """The phase of a wheel that has settled.
+def phases(found: Averages, parameters: Array) -> list[Phase]:
+    """The phases of wheels.
 
-    A wheel that neither rests nor rolls one way goes forth and back if k is near the Hopf line,
-    where the cycles around the resting angles are; elsewhere it is chaotic.
+    Those that neither rest nor roll are followed on: one that repeats itself goes forth and back,
+    or rolls unevenly, and one that does not is chaotic if small differences grow.
 
     Args:
-        omega_mean: Mean of omega, rad/s.
-        omega_std: Standard deviation of omega, rad/s.
-        k: The wheel's spring constant.
-        k_hopf: The spring constant at which its rest becomes unstable.
+        found: Averages of the wheels, and where they ended.
+        parameters: Their constants, (constants, wheels).
 
     Returns:
-        S for rest, FB for forth and back, LLM for rolling one way, C for chaos.
+        S for rest, FB for forth and back, LLM for rolling one way, C for chaos, 'undecided' for
+        what has not settled after 6000 s more.
     """
-    mean = abs(omega_mean)
-    if mean < STILL and omega_std < STILL:
-        return "S"
-    if mean > ROLLING_MEAN and omega_std < ROLLING_SPREAD * mean:
-        return "LLM"
-    return "FB" if k < NEAR_HOPF * k_hopf else "C"
+    mean, std = np.abs(found.omega_mean), found.omega_std
+    rolls = (mean > ROLLING_MEAN) & (std < ROLLING_SPREAD * mean)
+    dead = np.maximum(mean, std) < _DEAD
+    kinds = np.where(rolls, ROLL, REST)
+    open_ = ~rolls & ~dead
+    if open_.any():
+        kinds[open_] = decide(found.states[:, open_], parameters[:, open_])
+    return [_OF_KIND[kind] for kind in kinds.tolist()]

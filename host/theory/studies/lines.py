@@ -15,8 +15,8 @@ from host.errors import WrongUse
 from host.runs.contract import Setting
 from host.theory.analysis.chaos_edges import LASTING_S, chaos_edges
 from host.theory.analysis.fixpoints import fixpoint
-from host.theory.analysis.hopf import critical_k, hopf
-from host.theory.analysis.phases import phase
+from host.theory.analysis.hopf import hopf
+from host.theory.analysis.phases import phases
 from host.theory.engine.ensemble import averages, require_loose
 from host.theory.engine.flow import steps_for
 from host.theory.model.wheel import resting
@@ -92,14 +92,11 @@ def _phases(first: int, plane: Plane) -> list[PhasePoint]:
     parameters = plane.wheel.columns(xs.size, **{plane.x: xs, plane.y: ys})
     start = resting(np.full(xs.size, _PUSH))
     found = averages(start, parameters, _TRANSIENT_S, _MEASURED_S)
-    rows: list[PhasePoint] = []
-    for x, y, mean, std in zip(
-        *(column.tolist() for column in (xs, ys, found.omega_mean, found.omega_std)), strict=True
-    ):
-        wheel = plane.at(x, y)
-        name = phase(mean, std, wheel.k, critical_k(wheel))
-        rows.append({"kind": "phase", "x": x, "y": y, "phase": name})
-    return rows
+    columns = (xs.tolist(), ys.tolist(), phases(found, parameters))
+    return [
+        {"kind": "phase", "x": x, "y": y, "phase": name}
+        for x, y, name in zip(*columns, strict=True)
+    ]
 
 
 def _chaos(number: int, plane: Plane, rng: np.random.Generator) -> list[ChaosEdgePoint]:

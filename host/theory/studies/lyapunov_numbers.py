@@ -52,10 +52,13 @@ class Accuracy(TypedDict):
 
 
 class Point(Spectrum):
-    """The attractor that most wheels stayed on, beside all others, and how many changed."""
+    """The attractor that most wheels stayed on, beside all others, and how many changed.
+
+    Attractors are named by their kind; a second one of the same kind is 'KIND (2)', and so on.
+    """
 
     kind: Kind
-    attractors: dict[Kind, Spectrum]
+    attractors: dict[str, Spectrum]
     of_wheels: int
     changed: int
     accuracy: Accuracy

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from host.errors import NotDone
-from host.runs.answers import Answer
+from host.runs.answers import Answer, share
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
-from host.theory.analysis.attractors import CHAOS, KINDS
+from host.theory.analysis.attractors import CHAOS, KINDS, Kind
 from host.theory.analysis.series_exponents import from_series, of_noise
 from host.theory.analysis.spectrum import mean
 from host.theory.analysis.tangent import divergence, kaplan_yorke
 from host.theory.analysis.trajectories import SAMPLE_S
-from host.theory.model.wheel import Wheel, wheel_of
+from host.theory.model.wheel import Array, Wheel, wheel_of
 from host.theory.studies.lyapunov_numbers import Numbers, Point, Series, Spectrum
 from host.theory.studies.lyapunov_rows import (
     BlockRow,
@@ -32,6 +34,8 @@ LONG_S = 250.0
 # A normal distribution's 95 % and 99.7 %, in standard errors; and what makes a second exponent
 # positive.
 SURE, VERY_SURE, CERTAIN = 1.96, 3.0, 5.0
+# Regular motions are the same if speeds (rad/s) and exponents (1/s) differ by less, or relatively.
+ALIKE = 0.02
 # A period of the motion in the series, s.
 APART_S = 2.0
 
@@ -57,7 +61,7 @@ def report(rows: list[LyapunovRow], setting: Setting) -> Findings:
         "series": series,
         "accuracy": point["accuracy"],
     }
-    claim = spectrum_claim(point, series, verdict)
+    claim = spectrum_claim(point, series)
     # The interval of the exponent says whether a short run is enough, if it is above zero.
     short = "" if claim.holds else setting.short_of(seconds=LONG_S)
     foreign = setting.elsewhere(**PAPER | {"tau": PAPER_TAU_S, "k": PAPER_K})
@@ -68,17 +72,32 @@ def _answers(numbers: Numbers) -> list[Answer]:
     point = numbers["point"]
     pairs = zip(numbers["exponents"], numbers["standard_errors"], strict=True)
     return [
-        Answer("the wheel is", numbers["verdict"]),
+        Answer("the wheel is", in_words(point)),
         *(Answer(f"exponent {n}", value, error, "/s") for n, (value, error) in enumerate(pairs, 1)),
         Answer("exponent 1, by pairs of wheels", point["by_pairs"], point["by_pairs_error"], "/s"),
         Answer("Lyapunov dimension", numbers["dimension"]),
         Answer("|mean of omega|", point["omega_mean_abs"], None, "rad/s"),
         Answer("standard deviation of omega", point["omega_std"], None, "rad/s"),
-        *(
-            Answer(f"wheels that are {kind}", 100 * own["wheels"] / point["of_wheels"], None, "%")
-            for kind, own in point["attractors"].items()
-        ),
+        *_starts(point),
     ]
+
+
+def _starts(point: Point) -> list[Answer]:
+    """Where starts lead, and the exponents of each attractor if there are several."""
+    count, (_, *others) = point["of_wheels"], point["attractors"].items()
+    answers = [
+        share(f"starts that lead to: {name}", own["wheels"], count)
+        for name, own in point["attractors"].items()
+    ]
+    if point["changed"]:
+        answers.append(share("starts that have not settled", point["changed"], count))
+    for name, own in others:
+        pairs = zip(own["exponents"], own["standard_errors"], strict=True)
+        answers += [
+            Answer(f"{name}: exponent {n}", value, error, "/s")
+            for n, (value, error) in enumerate(pairs, 1)
+        ]
+    return answers
 
 
 def verdict_of(point: Point) -> str:
@@ -89,31 +108,40 @@ def verdict_of(point: Point) -> str:
     return point["kind"]
 
 
+def in_words(point: Point) -> str:
+    """What the wheel is; where starts lead to several attractors, all of them."""
+    _, *others = point["attractors"]
+    return " or ".join([verdict_of(point), *others]) + ("; its start decides" if others else "")
+
+
 def spectrum(rows: list[BlockRow], wheel: Wheel) -> Point:
-    """Exponents (1/s) with standard errors, of each kind of attractor that wheels stayed on.
+    """Exponents (1/s) with standard errors, of each attractor that wheels stayed on.
 
     The attractor that most wheels are on stands at the top.
 
     Raises:
         NotDone: No wheel stayed on its attractor.
     """
-    kinds = {
-        kind: [row for row in rows if row["kind"] == row["kind_after"] == kind] for kind in KINDS
+    found = {
+        name: _spectrum_of(own)
+        for kind in KINDS
+        for name, own in _attractors(
+            kind, [row for row in rows if row["kind"] == row["kind_after"] == kind]
+        )
     }
-    found = {kind: _of_kind(own) for kind, own in kinds.items() if own}
     if not found:
         raise NotDone(
             "no wheel stayed on an attractor while its exponents were measured",
             "measure longer or shorter, with --seconds",
         )
-    main = max(found, key=lambda kind: int(found[kind]["wheels"]))
+    main = max(found, key=lambda name: found[name]["wheels"])
     wheels = len({(row["batch"], row["wheel"]) for row in rows})
     own = found[main]
     error = float(np.hypot(own["standard_errors"][0], own["by_pairs_error"]))
     return {
         **own,
-        "kind": main,
-        "attractors": found,
+        "kind": next(kind for kind in KINDS if main.startswith(kind)),
+        "attractors": dict(sorted(found.items(), key=lambda pair: -pair[1]["wheels"])),
         "of_wheels": wheels,
         "changed": wheels - sum(entry["wheels"] for entry in found.values()),
         "accuracy": {
@@ -125,21 +153,44 @@ def spectrum(rows: list[BlockRow], wheel: Wheel) -> Point:
     }
 
 
-def _of_kind(rows: list[BlockRow]) -> Spectrum:
-    """Means over wheels and blocks, with their errors."""
-    by_wheel: dict[tuple[int, int], list[BlockRow]] = {}
+def _by_wheel(rows: list[BlockRow]) -> list[list[BlockRow]]:
+    """The blocks of each wheel."""
+    found: dict[tuple[int, int], list[BlockRow]] = {}
     for row in rows:
-        by_wheel.setdefault((row["batch"], row["wheel"]), []).append(row)
-    values = np.array(
-        [
-            [
-                [row["exponent_1"], row["exponent_2"], row["exponent_3"], row["exponent_4"]]
-                for row in own
-            ]
-            for own in by_wheel.values()
-        ]
-    )
-    pairs = mean(np.array([[row["by_pairs"] for row in own] for own in by_wheel.values()]))
+        found.setdefault((row["batch"], row["wheel"]), []).append(row)
+    return list(found.values())
+
+
+def _exponents_of(row: BlockRow) -> list[float]:
+    return [row["exponent_1"], row["exponent_2"], row["exponent_3"], row["exponent_4"]]
+
+
+def _attractors(kind: Kind, rows: list[BlockRow]) -> Iterator[tuple[str, list[BlockRow]]]:
+    """The attractors of one kind, by name, and the rows of their wheels.
+
+    Regular motions are the same if their speeds and exponents are; wheels that turn opposite ways
+    are on the same one. Chaotic wheels are taken together.
+    """
+    groups: list[tuple[Array, list[BlockRow]]] = []
+    for own in _by_wheel(rows):
+        speeds = [abs(own[0]["omega_mean"]), own[0]["omega_std"]]
+        place = np.array([*speeds, *np.mean([_exponents_of(row) for row in own], axis=0)])
+        for other, same in groups:
+            if kind == KINDS[CHAOS] or np.allclose(place, other, rtol=ALIKE, atol=ALIKE):
+                same.extend(own)
+                break
+        else:
+            groups.append((place, own))
+    groups.sort(key=lambda group: -len(group[1]))
+    for number, (_, same) in enumerate(groups, 1):
+        yield (kind if number == 1 else f"{kind} ({number})"), same
+
+
+def _spectrum_of(rows: list[BlockRow]) -> Spectrum:
+    """Means over wheels and blocks, with their errors."""
+    by_wheel = _by_wheel(rows)
+    values = np.array([[_exponents_of(row) for row in own] for own in by_wheel])
+    pairs = mean(np.array([[row["by_pairs"] for row in own] for own in by_wheel]))
     means = [mean(values[:, :, number]) for number in range(4)]
     flow = means[0] if rows[0]["along_flow"] else None
     means.sort(key=lambda one: -one.value)
@@ -186,7 +237,7 @@ def of_series(rows: list[SeriesRow]) -> Series | None:
     }
 
 
-def spectrum_claim(point: Point, series: Series | None, verdict: str) -> Claim:
+def spectrum_claim(point: Point, series: Series | None) -> Claim:
     """M8: the largest exponent is positive by two algorithms, which have to agree."""
     rate, error = point["exponents"][0], point["standard_errors"][0]
     off = point["accuracy"]["two_algorithms_differ_by"]
@@ -199,7 +250,7 @@ def spectrum_claim(point: Point, series: Series | None, verdict: str) -> Claim:
     if series is not None:
         from_force = f"{series['per_s']:.2f}/s, and of noise {series['of_noise']:.2f}/s"
     pairs = zip(point["exponents"], point["standard_errors"], strict=True)
-    all_four = ", ".join(f"{exponent:.4f} +- {own:.4f}" for exponent, own in pairs)
+    all_four = ", ".join(Answer("", exponent, own).in_words() for exponent, own in pairs)
     return Claim(
         "M8",
         "at k = 15 and tau = 1 s a wheel is chaotic: its largest Lyapunov exponent is positive",
@@ -210,6 +261,7 @@ def spectrum_claim(point: Point, series: Series | None, verdict: str) -> Claim:
         positive and off < VERY_SURE * most_off,
         f"the largest exponent. By pairs of near wheels it is {point['by_pairs']:.3f} +-"
         f" {point['by_pairs_error']:.3f}/s, from the time series of the force {from_force}; all"
-        f" exponents: {all_four} 1/s, dimension {point['dimension']:.3f}: the wheel is {verdict};"
-        f" {chaotic} of {point['of_wheels']} wheels are chaotic ({low:.0%} to {high:.0%})",
+        f" exponents: {all_four} 1/s, dimension {point['dimension']:.3f}: the wheel is"
+        f" {in_words(point)}; {chaotic} of {point['of_wheels']} wheels are chaotic ({low:.0%} to"
+        f" {high:.0%})",
     )

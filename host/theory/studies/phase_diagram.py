@@ -1,7 +1,8 @@
 """The study `phase-diagram`: standard deviation and mean of omega over (k, tau).
 
 k is swept up from rest and down from rolling. The phases say what a wheel does in the end: S it
-rests, FB it rolls forth and back, LLM it rolls one way, C it is chaotic.
+rests, FB it rolls forth and back, LLM it rolls one way, C it is chaotic (see
+host.theory.analysis.phases).
 """
 
 from __future__ import annotations
@@ -12,11 +13,10 @@ from typing import Any
 import numpy as np
 
 from host.runs.contract import Part, Row, Setting, as_rows
-from host.theory.analysis.hopf import critical_k
-from host.theory.analysis.phases import phase
+from host.theory.analysis.phases import phases
 from host.theory.engine.ensemble import FINE, Averages, averages, require_loose
 from host.theory.model.turning import rolling_states
-from host.theory.model.wheel import PHI, Array, resting, wheel_of
+from host.theory.model.wheel import PHI, Array, Wheel, resting, wheel_of
 from host.theory.studies.phase_diagram_report import report
 from host.theory.studies.phase_diagram_rows import (
     PANELS,
@@ -93,7 +93,7 @@ def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Itera
     """k up and down. Each wheel starts, pushed, in the state in which it ended at the last k."""
     ks, all_taus = axes_of(cell["panel"], options)
     taus = all_taus[cell["first"] : cell["end"]]
-    count, line = len(taus), _hopf_line(options, taus)
+    count = len(taus)
     both = np.concatenate([taus, taus])
     states = None if begun is None else np.array(begun.state)
     found: list[Point] = []
@@ -107,8 +107,8 @@ def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Itera
         states[PHI] += PUSH
         result = _averages(states, parameters, options)
         states = result.states
-        found += _points("up", up, taus, line, _part(result, 0, count))
-        found += _points("down", down, taus, line, _part(result, count, 2 * count))
+        swept: list[Way] = [way for way in ("up", "down") for _ in range(count)]
+        found += _points(swept, result, parameters)
         if number % KS_OF_A_PART == 0 or number == len(ways):
             yield Part(as_rows(found), states.tolist(), number / len(ways))
             found = []
@@ -118,7 +118,7 @@ def _one_start(cell: BandCell, options: dict[str, Any], begun: Part | None) -> I
     """Many k at once, each wheel from rest or from rolling."""
     ks, all_taus = axes_of(cell["panel"], options)
     taus = all_taus[cell["first"] : cell["end"]]
-    count, line = len(taus), _hopf_line(options, taus)
+    count = len(taus)
     way: Way = options["start"]
     done = 0 if begun is None else len(begun.rows) // count
     for first in range(done, len(ks), KS_OF_A_PART):
@@ -126,41 +126,26 @@ def _one_start(cell: BandCell, options: dict[str, Any], begun: Part | None) -> I
         parameters = _parameters(options, np.tile(taus, len(own)), np.repeat(own, count))
         start = _at_rest(parameters) if way == "rest" else rolling_states(parameters)
         result = _averages(start, parameters, options)
-        found: list[Point] = []
-        for i, k in enumerate(own.tolist()):
-            found += _points(way, k, taus, line, _part(result, i * count, (i + 1) * count))
+        found = _points(len(own) * count * [way], result, parameters)
         yield Part(as_rows(found), None, min(1.0, (first + KS_OF_A_PART) / len(ks)))
 
 
-def _part(whole: Averages, first: int, end: int) -> Averages:
-    """The averages of the wheels number `first` to `end` - 1."""
-    return Averages(*(values[..., first:end] for values in whole))
-
-
-def _hopf_line(options: dict[str, Any], taus: Array) -> list[float]:
-    """The k above which rest is unstable at each tau."""
-    wheel = wheel_of(options)
-    return [critical_k(wheel._replace(tau=tau)) for tau in taus.tolist()]
-
-
-def _points(way: Way, k: float, taus: Array, line: list[float], found: Averages) -> list[Point]:
-    """The points at one k, over tau."""
-    columns = (taus, found.omega_mean, found.omega_std)
-    points: list[Point] = []
-    for tau, mean, std, k_hopf in zip(*(column.tolist() for column in columns), line, strict=True):
-        name = phase(mean, std, k, k_hopf)
-        points.append(
-            {
-                "way": way,
-                "tau": tau,
-                "k": k,
-                "omega_mean": mean,
-                "omega_std": std,
-                "chaotic": float(name == "C"),
-                "phase": name,
-            }
-        )
-    return points
+def _points(ways: list[Way], found: Averages, parameters: Array) -> list[Point]:
+    """A row for each wheel."""
+    taus, ks = (parameters[Wheel._fields.index(name)].tolist() for name in ("tau", "k"))
+    columns = (found.omega_mean.tolist(), found.omega_std.tolist(), phases(found, parameters))
+    return [
+        {
+            "way": way,
+            "tau": tau,
+            "k": k,
+            "omega_mean": mean,
+            "omega_std": std,
+            "chaotic": float(name == "C"),
+            "phase": name,
+        }
+        for way, tau, k, mean, std, name in zip(ways, taus, ks, *columns, strict=True)
+    ]
 
 
 def _step_checks(options: dict[str, Any], seed: int) -> list[StepCheck]:
@@ -182,11 +167,12 @@ def _step_checks(options: dict[str, Any], seed: int) -> list[StepCheck]:
             "k": k,
             "omega_mean": mean,
             "omega_std": std,
+            "phase": name,
             "mean_off_by": mean_off,
             "std_off_by": std_off,
         }
-        for tau, k, mean, std, mean_off, std_off in zip(
-            *(column.tolist() for column in columns), strict=True
+        for tau, k, mean, std, mean_off, std_off, name in zip(
+            *(column.tolist() for column in columns), phases(plain, parameters), strict=True
         )
     ]
 

@@ -42,7 +42,7 @@ class Point(TypedDict):
         omega_mean: mean of omega (rad/s).
         omega_std: standard deviation of omega (rad/s).
         chaotic: 1 in phase C, else 0.
-        phase: S, FB, LLM or C.
+        phase: S, FB, LLM, C or undecided.
     """
 
     way: Way
@@ -62,6 +62,7 @@ class StepCheck(TypedDict):
         k: spring constant.
         omega_mean: mean of omega (rad/s).
         omega_std: standard deviation of omega (rad/s).
+        phase: S, FB, LLM, C or undecided.
         mean_off_by: by how much |omega_mean| changes with finer steps (rad/s).
         std_off_by: by how much omega_std changes with finer steps (rad/s).
     """
@@ -70,6 +71,7 @@ class StepCheck(TypedDict):
     k: float
     omega_mean: float
     omega_std: float
+    phase: Phase
     mean_off_by: float
     std_off_by: float
 

@@ -27,6 +27,7 @@ from host.theory.model.wheel import PHI, Wheel, rates, resting
 from host.theory.studies import lyapunov as study
 from host.theory.studies import lyapunov_line, lyapunov_plane
 from host.theory.studies import lyapunov_pieces as pieces
+from host.theory.studies.lyapunov_report import in_words, spectrum
 from host.theory.studies.registry import TABLE
 from tests.paper.theory import independent
 
@@ -263,6 +264,40 @@ def test_where_there_is_no_chaos_the_study_says_so(small, options, kind):
     assert (claim["id"], claim["verdict"]) == ("M8", "undecided")
     assert "the claim is made for" in claim["note"]
     json.dumps(summary, allow_nan=False)
+
+
+def test_where_starts_lead_to_different_attractors_each_has_its_exponents(small):
+    """One rod rolls, or rests at 0° with the eigenvalues that differences give."""
+    found = perform("lyapunov", 3, out="here", seconds=50.0, k=15.0, tau=0.19, rods=1)
+    attractors = found["numbers"]["point"]["attractors"]
+    assert set(attractors) == {"rolling", "at rest"}
+    shares = [row["value"] for row in found["answers"] if row["name"].startswith("starts")]
+    assert sum(shares) == pytest.approx(100.0)
+    wheel = Wheel(k=15.0, tau=0.19, rods=1.0)
+    rest, steps = np.array([1.0, 0.0, 0.0, 0.0]), 1e-5 * np.eye(4)
+    matrix = [
+        (independent.rates(rest + step, wheel) - independent.rates(rest - step, wheel)) / 2e-5
+        for step in steps
+    ]
+    expected = np.sort(np.linalg.eigvals(matrix).real)[::-1]
+    assert attractors["at rest"]["exponents"] == pytest.approx(expected, abs=1e-6)
+
+
+def test_two_ways_to_roll_are_two_attractors_and_two_directions_are_one():
+    """Wheels 0 and 1 turn opposite ways; wheel 2 is slower."""
+    exponents = {f"exponent_{n}": 1.0 - n for n in range(1, 5)}
+    kinds = {"kind": "rolling", "kind_after": "rolling"}
+    measured = {"batch": 0, "block": 0, "omega_std": 0.5, "along_flow": True, "by_pairs": 0.0}
+    rows = [
+        {**exponents, **kinds, **measured, "wheel": wheel, "omega_mean": mean}
+        for wheel, mean in enumerate((5.0, -5.0, 4.0))
+    ]
+    point = spectrum(rows, Wheel())
+    assert {name: own["wheels"] for name, own in point["attractors"].items()} == {
+        "rolling": 2,
+        "rolling (2)": 1,
+    }
+    assert in_words(point) == "rolling or rolling (2); its start decides"
 
 
 def test_the_papers_point_is_judged(small):

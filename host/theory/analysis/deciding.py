@@ -1,0 +1,64 @@
+"""What wheels do in the end: they are followed until it is decided.
+
+A wheel that repeats itself is decided by two windows of time that agree
+(host.theory.analysis.attractors), a chaotic one by a close wheel that parts from it. A transient
+does neither: as it leaves an unstable rest or cycle, a difference grows too, but only as much as
+the transient itself.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host.theory.analysis.attractors import AGREE, CHAOS, REST, settle, watch
+from host.theory.engine.ensemble import rate_per_s
+from host.theory.model.wheel import Array
+
+UNDECIDED = -1
+# Each round takes twice the time of the one before, s.
+FIRST_S, ROUNDS = 50.0, 6
+# Two wheels that are CLOSE at the start of a round and APART at its end (rad, rad/s, potentials)
+# are chaotic: a transient that begins 1e-4 away from what it leaves grows 1e4 times.
+CLOSE, APART = 1e-8, 3e-2
+# What takes more steps than this in a round is left undecided.
+MOST_STEPS = 100_000
+# Steps where a kind is enough (see host.theory.engine.ensemble).
+_FINENESS = 0.6
+# A slower wheel (rad/s) that gets slower comes to rest.
+_SLOW = 0.02
+
+
+def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
+    """The attractors of wheels.
+
+    Args:
+        states: Where the wheels start, (4, wheels).
+        parameters: Their constants, (constants, wheels).
+
+    Returns:
+        Indices of host.theory.analysis.attractors.KINDS, or UNDECIDED, (wheels,).
+    """
+    kinds = np.full(states.shape[1], UNDECIDED)
+    left, sizes = np.arange(states.shape[1]), np.full(states.shape[1], _SLOW)
+    for number in range(ROUNDS):
+        seconds = FIRST_S * 2**number
+        quick = rate_per_s(parameters[:, left]) * seconds <= MOST_STEPS
+        states, left, sizes = states[:, quick], left[quick], sizes[quick]
+        if not len(left):
+            break
+        close = np.hstack([states, states + CLOSE])
+        ended = settle(close, np.tile(parameters[:, left], (1, 2)), seconds, _FINENESS)
+        states, others = np.hsplit(ended, 2)
+        chaotic = np.abs(states - others).max(axis=0) > APART
+        kinds[left[chaotic]] = CHAOS
+        states, left, sizes = states[:, ~chaotic], left[~chaotic], sizes[~chaotic]
+        if not len(left):
+            break
+        seen = watch(states, parameters[:, left], seconds, _FINENESS)
+        regular, now = seen.apart < AGREE, np.hypot(seen.omega_mean, seen.omega_std)
+        # One that gets slower rests, unless a later round sees otherwise.
+        so_far = np.where((now < sizes) & (now < _SLOW), REST, UNDECIDED)
+        kinds[left] = np.where(regular, seen.kinds(), so_far)
+        states, left, sizes = seen.states[:, ~regular], left[~regular], now[~regular]
+    return kinds
