@@ -98,7 +98,7 @@ class BlackBox(object):
     @property
     def oldest_tick(self):
         """The first tick that can still be read, with all events since."""
-        return max(self.next_tick - self._capacity, self._base_tick, 0)
+        return max(self.next_tick - self._capacity, self._base_tick)
 
     def append(self, fields):
         """Keep a tick's record under the next number.

@@ -9,33 +9,40 @@ from robot.loop import LATENESS_EDGES_S
 from robot.words import person
 
 Command = namedtuple("Command", "name sealed arguments doc run")
+# The part of the status that says how punctual ticks are, as JSON without the counts.
+_LATENESS = b'{"lateness":{"edges_s":%s,"counts":%%s}}' % wire.dump(LATENESS_EDGES_S)
 
 
 @lru_cache(maxsize=1)
-def _params_in_force(values):
-    """The part of the status that seldom changes, as JSON: bytes."""
-    return wire.dump({"params": OrderedDict(zip(params.TABLE, values))})
+def _seldom_new(facts, values):
+    """The part of the status that seldom changes, as JSON: bytes.
+
+    `facts` are pairs of a name and a value, `values` those of the parameters.
+    """
+    return wire.dump(dict(facts, params=OrderedDict(zip(params.TABLE, values))))
 
 
 def _status(loop, session, message):
     safety, lease, now = loop.safety, loop.lease, loop.clock.now()
-    varying = {
-        "state": record.STATES[safety.state],
-        "reason": safety.reason,
+    facts = (
+        ("state", record.STATES[safety.state]),
+        ("reason", safety.reason),
+        ("battery_v", loop.battery_v),
+        ("controller", None if lease.holder is None else lease.name),
+        ("missed", loop.missed),
+        ("overruns", loop.overruns),
+        ("clamped", loop.clamped),
+        ("real_time", loop.real_time),
+        ("memory_locked", loop.memory_locked),
+    )
+    often_new = {
         "tick": loop.blackbox.next_tick,
         "clock_s": now - loop.epoch,
         "oldest_tick": loop.blackbox.oldest_tick,
-        "battery_v": loop.battery_v,
-        "controller": None if lease.holder is None else lease.name,
         "controller_held_s": lease.held_s(now),
-        "missed": loop.missed,
-        "overruns": loop.overruns,
-        "clamped": loop.clamped,
-        "real_time": loop.real_time,
-        "memory_locked": loop.memory_locked,
-        "lateness": {"edges_s": LATENESS_EDGES_S, "counts": loop.lateness},
     }
-    return wire.join(wire.dump(varying), _params_in_force(params.IN_FORCE(loop.params)))
+    status = wire.join(wire.dump(often_new), _LATENESS % wire.dump(loop.lateness))
+    return wire.join(status, _seldom_new(facts, params.IN_FORCE(loop.params)))
 
 
 def _describe(loop, session, message):

@@ -17,6 +17,7 @@ from robot.sources import of_robot
 from robot.words import person
 
 _BATCH = wire.MAX_SAMPLES // STRUCT.size
+_SEALED = (wire.COMMAND, wire.BEAT)
 # Computed before the loop runs: reading files would delay a tick.
 _SOURCES = of_robot()
 _HARDWARE_ID = hardware_id()
@@ -50,8 +51,8 @@ SEE_PROTOCOL = "see PROTOCOL.md for what the robot understands"
 
 
 def new_id():
-    """Sixteen random bytes as hexadecimal text: a nonce, or the name of a boot."""
-    return binascii.hexlify(os.urandom(wire.NONCE_BYTES)).decode("ascii")
+    """The name of a boot: sixteen random bytes as hexadecimal text."""
+    return binascii.hexlify(os.urandom(16)).decode("ascii")
 
 
 @lru_cache(maxsize=1)
@@ -94,7 +95,7 @@ def _name_in(payload):
 def _identity(message):
     """The number of a request, which its reply repeats. Raises BadMessage if there is none."""
     number = message.get("id")
-    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < 2**63:
+    if type(number) is not int or not 0 <= number < 2**63:  # True is an int too
         raise wire.BadMessage("a request needs an id, a whole number from 0 to 2^63 - 1")
     return number
 
@@ -183,7 +184,7 @@ class Session(object):
 
     def _carry_out(self, kind, payload):
         """Do what a request says, and answer it. Raises BadMessage if it is none."""
-        if kind in (wire.COMMAND, wire.BEAT):
+        if kind in _SEALED:
             if not self.trusted:
                 return self.refuse(
                     "token",
@@ -258,13 +259,12 @@ class Session(object):
         self.trusted = False
         self._counter = 0
         self._cursor = None
-        own_nonce = new_id()
-        self._host_nonce, self._own_nonce = nonce, binascii.unhexlify(own_nonce)
+        self._host_nonce, self._own_nonce = nonce, os.urandom(wire.NONCE_BYTES)
         loop = self._loop
         lease, box, now = loop.lease, loop.blackbox, loop.clock.now()
         answer = {
-            "nonce": own_nonce,
-            "host_nonce": binascii.hexlify(nonce).decode("ascii"),
+            "nonce": binascii.hexlify(self._own_nonce).decode("ascii"),
+            "host_nonce": message["nonce"],
             "tick": box.next_tick,
             "oldest_tick": box.oldest_tick,
             "clock_s": now - loop.epoch,

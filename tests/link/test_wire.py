@@ -198,11 +198,16 @@ def test_any_payload_is_a_message_or_a_bad_one(payload):
         "{",
         '{"a": 1}x',
         "\ufeff{}",
+        "\xa0{}",
     ],
 )
 def test_what_is_no_json_object_is_a_bad_message(text):
     with pytest.raises(wire.BadMessage):
         wire.load(text.encode())
+
+
+def test_json_may_have_spaces_around_it():
+    assert wire.load(b' \t\r\n{"a": 1}\n ') == {"a": 1}
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])

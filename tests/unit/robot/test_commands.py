@@ -4,6 +4,7 @@ import pytest
 
 from robot import commands, wire
 from robot.errors import Refused
+from robot.loop import LATENESS_EDGES_S
 from robot.session import Session
 from tests.rig import TOKEN, Rig
 
@@ -81,3 +82,26 @@ def test_what_cannot_be_done_is_refused_in_words(session, do, arguments, code):
 def test_a_kick_needs_a_request(session):
     execute(session, "lease")
     assert refusal(session, "kick", kick=1).code == "usage"
+
+
+def test_the_status_says_what_holds_now(session):
+    loop = session._loop
+    before = execute(session, "status")
+    execute(session, "lease")
+    execute(session, "set", set={"k": 7.0})
+    execute(session, "start")
+    loop.missed += 1
+    loop.lateness[0] += 1
+    after = execute(session, "status")
+    assert {name for name in before if before[name] != after[name]} == {
+        "state",
+        "reason",
+        "controller",
+        "controller_held_s",
+        "missed",
+        "params",
+        "lateness",
+    }
+    assert after["params"] == dict(before["params"], k=7.0)
+    assert after["lateness"]["edges_s"] == list(LATENESS_EDGES_S)
+    assert after["lateness"]["counts"] == loop.lateness
