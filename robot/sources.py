@@ -75,13 +75,14 @@ def _sources(folder):
 
     The name begins with the folder's own.
     """
-    parent = os.path.dirname(os.path.abspath(folder))
+    folder = os.path.abspath(folder)
+    above = len(os.path.join(os.path.dirname(folder), ""))
     if os.path.isfile(folder):
-        return [(os.path.basename(folder), folder)]
+        return [(folder[above:], folder)]
     paths = [
         os.path.join(place, name)
-        for place, _, names in os.walk(os.path.abspath(folder))
+        for place, _, names in os.walk(folder)
         for name in names
         if name.endswith(KINDS)
     ]
-    return sorted((os.path.relpath(path, parent).replace(os.sep, "/"), path) for path in paths)
+    return sorted((path[above:].replace(os.sep, "/"), path) for path in paths)
