@@ -12,9 +12,15 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
         head: What stands above the columns.
         rows: The cells of each row.
     """
-    lines = [head, ["---"] * len(head), *rows]
-    cells = ([cell.replace("|", "\\|") for cell in line] for line in lines)
-    return "".join(f"| {' | '.join(line)} |\n" for line in cells)
+    first, *others = (
+        "|" + "".join(f" {cell} |" if cell else " |" for cell in map(_in_table, row))
+        for row in (head, *rows)
+    )
+    return "\n".join([first, "|" + "---|" * len(head), *others, ""])
+
+
+def _in_table(cell: str) -> str:
+    return cell.replace("|", "\\|")
 
 
 def toctree(paths: Iterable[str], *, hidden: bool = True) -> str:

@@ -55,6 +55,7 @@ def run(options: argparse.Namespace) -> int:
                 "at_preset": at_preset,
                 "skipped": done.skipped,
                 "report": page,
+                **done.origin,
             },
             essentials,
         )

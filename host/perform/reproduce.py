@@ -42,12 +42,14 @@ class Reproduction(NamedTuple):
             what the paper leaves open. Empty for a real robot, which is as it is.
         skipped: Why a claim was not measured, by its id.
         page: The path of the report; None if it could not be written.
+        origin: Version and commit of the program, and the random seed, by these names.
     """
 
     claims: list[Claim]
     at_preset: dict[str, Claim]
     skipped: dict[str, str]
     page: Path | None
+    origin: dict[str, Any]
 
 
 def claim_ids() -> list[str]:
@@ -137,4 +139,5 @@ def reproduce(
     except OSError as error:  # the claims are known all the same
         say(f"the report cannot be written: {error.filename}: {error.strerror}")
         page = None
-    return Reproduction(found, at_preset, skipped, page)
+    origin = {name: summaries[0][name] for name in ("version", "commit", "seed")}
+    return Reproduction(found, at_preset, skipped, page, origin)

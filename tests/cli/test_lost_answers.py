@@ -64,7 +64,8 @@ def test_what_was_done_is_said_where_it_can_be(kickctl, monkeypatch, line, numbe
 )
 def test_what_was_saved_is_said_too(kickctl, monkeypatch, line, words, json_too):
     found = [Found("anna", "robot", "tcp://h:5425", "h", ("192.0.2.1",))]
-    done = SimpleNamespace(claims=[], at_preset={}, skipped={}, page=Path("results/report.html"))
+    page = Path("results/report.html")
+    done = SimpleNamespace(claims=[], at_preset={}, skipped={}, page=page, origin={})
     with monkeypatch.context() as patch:
         patch.setenv("XDG_CONFIG_HOME", str(kickctl.folder))
         patch.setattr("host.link.discovery.look_around", lambda seconds: found)

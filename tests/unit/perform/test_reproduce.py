@@ -28,7 +28,7 @@ def test_reproduce_skips_the_bodies_on_a_robot_and_without_mujoco(
             for number in known
             if number in entry(name).claims
         ]
-        return {"claims": claims, "seed": 1, "version": ""}
+        return {"claims": claims, "seed": 1, "version": "", "commit": ""}
 
     def entry(name):
         return {**TABLE, **reproduce.STUDIES}[name]
@@ -49,7 +49,12 @@ def test_a_simulated_robot_is_measured_in_the_other_setting_too(monkeypatch, tmp
         runs.append((name, preset))
         own = {**TABLE, **reproduce.STUDIES}[name].claims
         claims = [Claim(number, "", "", None, "1", None, holds=preset == PAPER) for number in own]
-        return {"claims": [claim.as_dict() for claim in claims], "seed": 1, "version": ""}
+        return {
+            "claims": [claim.as_dict() for claim in claims],
+            "seed": 1,
+            "version": "",
+            "commit": "",
+        }
 
     monkeypatch.setattr(reproduce, "perform", perform)
     monkeypatch.setattr(reproduce.report, "write", lambda path, *_: path)
