@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from struct import pack
 from typing import Any
 
@@ -89,14 +89,20 @@ class ReplayResult:
             self.beyond = self.beyond or mismatch
 
 
-class _Controller:
-    """The robot's controller as the log describes it: wheels, parameters and the present kick."""
+class Controller:
+    """The robot's controller as the log describes it.
+
+    Attributes:
+        wheels: The left and the right robot.wheel.Wheel after the latest tick.
+        params: The robot.params.Params in force.
+        kick: The latest robot.kicks.Kick, which may be over; None if there is none.
+    """
 
     def __init__(self) -> None:
         self.wheels = [Wheel(side) for side in WHEELS]
         self.params: Any = Params()
         self._snapshot = Snapshot(self.params.values())
-        self._kick: Kick | None = None
+        self.kick: Kick | None = None
 
     def take(self, event: Event) -> None:
         """Change parameters, kick and potentials as an event says."""
@@ -105,7 +111,7 @@ class _Controller:
         else:
             self._snapshot.take(event)
         self.params.apply(self._snapshot.params)
-        self._kick = Kick(**self._snapshot.kick) if self._snapshot.kick else None
+        self.kick = Kick(**self._snapshot.kick) if self._snapshot.kick else None
         if event["event"] == "start":
             for wheel, potentials in zip(self.wheels, event["x"], strict=True):
                 wheel.rest()
@@ -116,7 +122,7 @@ class _Controller:
         for wheel in self.wheels:
             if record.state == RUNNING:
                 wheel.phi = getattr(record, wheel.side + "_phi_rad")
-                wheel.step(record.tick, record.dt_s, self.params, self._kick)
+                wheel.step(record.tick, record.dt_s, self.params, self.kick)
             else:
                 wheel.rest()
 
@@ -171,6 +177,75 @@ def other_sources(info: dict[str, Any]) -> list[str]:
     ]
 
 
+class Replayer:
+    """Replays a log item by item.
+
+    Args:
+        info: The log's.
+
+    Attributes:
+        controller: What computes, as it is after the latest item.
+    """
+
+    def __init__(self, info: dict[str, Any]) -> None:
+        here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
+        self.controller = Controller()
+        self._result = ReplayResult(
+            0.0 if info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE
+        )
+        self._known_before: int | None = None  # the tick before which the potentials are known
+        self._failed = False
+        self._followed = True  # whether parameters and kicks are known
+        self._gaps = Gaps()
+
+    @property
+    def result(self) -> ReplayResult:
+        """What was found so far."""
+        return replace(self._result, missing=sum(end - first for first, end in self._gaps.found))
+
+    def take(self, item: Event | Record) -> tuple[bool, list[Mismatch]]:
+        """Replay the next item.
+
+        Args:
+            item: An event, which only has an effect on what follows, or a record.
+
+        Returns:
+            Whether the log says what the potentials were before this tick, and each channel that
+            differs in any bit.
+        """
+        self._gaps.take(item)
+        if isinstance(item, dict):
+            self._take_event(item)
+            return False, []
+        known = (
+            item.tick == self._known_before
+            and self._followed
+            and not (self._failed and item.state == FAULT)
+        )
+        self.controller.step(item)
+        if not known:
+            self.controller.adopt(item)
+        compares = known or item.state != RUNNING
+        mismatches = list(self.controller.differences(item)) if compares else []
+        for mismatch in mismatches:
+            self._result.note(mismatch)
+        self._result.compared += known
+        self._result.not_comparable += not known
+        self._known_before = item.tick + 1
+        self._failed = False
+        return known, mismatches
+
+    def _take_event(self, event: Event) -> None:
+        self.controller.take(event)
+        if event["event"] == "start":
+            self._known_before = event["tick"]
+        elif event["event"] == "restart":
+            self._known_before = None
+        elif event["event"] in ("lost", "snapshot"):
+            self._followed = event["event"] == "snapshot"
+        self._failed = self._failed or event["event"] == "fault"
+
+
 def replay(log: Log | LogFile) -> ReplayResult:
     """Replay a log. In a log that was neither changed nor damaged, nothing differs.
 
@@ -183,37 +258,7 @@ def replay(log: Log | LogFile) -> ReplayResult:
     Raises:
         LogError: The file cannot be read any more.
     """
-    here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
-    result = ReplayResult(
-        0.0 if log.info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE
-    )
-    controller = _Controller()
-    known_before: int | None = None  # the tick before which the potentials are known
-    failed = False
-    followed = True  # whether parameters and kicks are known
-    gaps = Gaps()
+    replayer = Replayer(log.info)
     for item in log.stream():
-        gaps.take(item)
-        if isinstance(item, dict):
-            controller.take(item)
-            if item["event"] == "start":
-                known_before = item["tick"]
-            elif item["event"] == "restart":
-                known_before = None
-            elif item["event"] in ("lost", "snapshot"):
-                followed = item["event"] == "snapshot"
-            failed = failed or item["event"] == "fault"
-            continue
-        known = item.tick == known_before and followed and not (failed and item.state == FAULT)
-        controller.step(item)
-        if not known:
-            controller.adopt(item)
-        if known or item.state != RUNNING:
-            for mismatch in controller.differences(item):
-                result.note(mismatch)
-        result.compared += known
-        result.not_comparable += not known
-        known_before = item.tick + 1
-        failed = False
-    result.missing = sum(end - first for first, end in gaps.found)
-    return result
+        replayer.take(item)
+    return replayer.result
