@@ -20,7 +20,7 @@ def path_argument(text: str) -> Path:
     return Path(text)
 
 
-def add_force(parser: argparse.ArgumentParser) -> None:
+def add_force(parser: argparse._ActionsContainer) -> None:
     """Add --force, which lets a command replace files."""
     parser.add_argument(
         "--force", action="store_true", help="replace a file that is there already (never a log)"

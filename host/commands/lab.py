@@ -10,6 +10,7 @@ from contextlib import ExitStack, suppress
 from ipaddress import ip_address
 from typing import TYPE_CHECKING, Any
 
+from host.commands import _lab_replay
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
 from host.link.addresses import SIM, sim_options, with_params
@@ -68,11 +69,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="M",
         help="put the simulated robot between two walls at this distance, in m",
     )
+    _lab_replay.add_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Serve the page until ^C. Raises KickctlError if that cannot begin."""
+    if _lab_replay.wants_replay(options):
+        return _lab_replay.run(options, _open)
     from host.lab.forecasts import Forecasts
+    from host.lab.replays import Replays
     from host.lab.server import Lab
     from host.lab.worker import Worker
 
@@ -80,9 +85,18 @@ def run(options: argparse.Namespace) -> int:
         forecasts, basins = Forecasts(), Worker("computes basins", _BASINS_NICENESS)
         stack.callback(forecasts.close)
         stack.callback(basins.close)
+        replays = Replays()
+        stack.callback(replays.close)
         stations = [_station(robot, options, stack) for robot in _robots(options)]
         lab = stack.enter_context(
-            Lab(stations, options.port, options.host, forecasts=forecasts, basins=basins)
+            Lab(
+                stations,
+                options.port,
+                options.host,
+                forecasts=forecasts,
+                basins=basins,
+                replays=replays,
+            )
         )
         with suppress(KeyboardInterrupt):
             _tell(lab, stations, options)

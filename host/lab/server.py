@@ -16,6 +16,7 @@ from aiohttp import web
 from host.errors import KickctlError, NotDone, WrongUse
 from host.lab.forecasts import Forecasts
 from host.lab.keys import Keys
+from host.lab.replays import Replays
 from host.lab.session import Session
 from host.lab.station import Station
 from host.lab.web import PAGE_FOLDER, Site
@@ -39,6 +40,7 @@ class Lab:
         folder: The page's files.
         forecasts: Where kicks are predicted; None if nowhere. It is the caller's, too.
         basins: Where basins are computed; None if nowhere. It is the caller's, too.
+        replays: Where logs are read for pages; None if nowhere. It is the caller's, too.
 
     Attributes:
         session: What pages and robots have to do with each other.
@@ -54,11 +56,12 @@ class Lab:
         folder: Path = PAGE_FOLDER,
         forecasts: Forecasts | None = None,
         basins: Worker | None = None,
+        replays: Replays | None = None,
     ) -> None:
         self.keys = Keys()
         self.session = Session(self.keys, stations)
         self.drive_url = self.view_url = ""
-        self._site = Site(self.session, folder)
+        self._site = Site(self.session, folder, replays)
         self._stations = stations
         for station in stations:
             station.forecasts = forecasts

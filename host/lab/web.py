@@ -17,7 +17,9 @@ from pathlib import Path
 
 from aiohttp import WSMsgType, web
 
+from host.errors import KickctlError
 from host.lab.page_end import Page
+from host.lab.replays import Replays
 from host.lab.requests import MAX_BYTES
 from host.lab.session import Session
 
@@ -54,10 +56,14 @@ class Site:
     Args:
         session: The lab's session.
         folder: The page's files.
+        replays: Where logs are read for pages; None if nowhere.
     """
 
-    def __init__(self, session: Session, folder: Path = PAGE_FOLDER) -> None:
+    def __init__(
+        self, session: Session, folder: Path = PAGE_FOLDER, replays: Replays | None = None
+    ) -> None:
         self._session = session
+        self._replays = replays
         self._folder = folder.resolve()
         self._sockets: set[web.WebSocketResponse] = set()
 
@@ -66,6 +72,7 @@ class Site:
         application = web.Application(middlewares=[_guard], client_max_size=MAX_BYTES)
         application.router.add_get("/messages", self._messages)
         application.router.add_get("/logs/{name}", self._log)
+        application.router.add_get("/replays/{name}", self._replay)
         application.router.add_get("/{path:.*}", self._file)
         application.on_shutdown.append(self._hang_up)
         return application
@@ -97,14 +104,7 @@ class Site:
         )
 
     async def _log(self, request: web.Request) -> web.StreamResponse:
-        scheme, _, key = request.headers.get("Authorization", "").partition(" ")
-        if scheme.lower() != "bearer" or not self._session.may_read(key, local=_is_local(request)):
-            raise web.HTTPUnauthorized(
-                text="logs need the lab's key\n", headers={"WWW-Authenticate": "Bearer"}
-            )
-        path = self._session.log(request.match_info["name"])
-        if path is None or not path.is_file():
-            raise web.HTTPNotFound(text="this lab has recorded no such log\n")
+        path = self._recorded(request)
         return web.FileResponse(
             path,
             headers={
@@ -112,6 +112,34 @@ class Site:
                 "Content-Disposition": f'attachment; filename="{path.name}"',
             },
         )
+
+    async def _replay(self, request: web.Request) -> web.StreamResponse:
+        self._need_key(request)
+        if self._replays is None:
+            raise web.HTTPNotFound(text="this lab replays no logs\n")
+        text = self._replays.given(request.match_info["name"])
+        if text is None:
+            try:
+                text = await self._replays.read(self._recorded(request))
+            except KickctlError as error:
+                raise web.HTTPConflict(text=f"{error.message}; {error.hint}\n") from error
+        return web.Response(text=text, content_type="application/json")
+
+    def _recorded(self, request: web.Request) -> Path:
+        """The log that a request names. Raises HTTPException."""
+        self._need_key(request)
+        path = self._session.log(request.match_info["name"])
+        if path is None or not path.is_file():
+            raise web.HTTPNotFound(text="this lab has recorded no such log\n")
+        return path
+
+    def _need_key(self, request: web.Request) -> None:
+        """Raise HTTPUnauthorized if a request comes without the lab's key."""
+        scheme, _, key = request.headers.get("Authorization", "").partition(" ")
+        if scheme.lower() != "bearer" or not self._session.may_read(key, local=_is_local(request)):
+            raise web.HTTPUnauthorized(
+                text="logs need the lab's key\n", headers={"WWW-Authenticate": "Bearer"}
+            )
 
     # Messages.
 

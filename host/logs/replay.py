@@ -188,11 +188,11 @@ class Replayer:
     """
 
     def __init__(self, info: dict[str, Any]) -> None:
-        here = f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"
+        python = f"{platform.python_implementation()} {platform.python_version()}"
+        here = f"{platform.machine()} {python}"
+        same = info.get("robot_machine", here) == here
         self.controller = Controller()
-        self._result = ReplayResult(
-            0.0 if info.get("robot_machine", here) == here else OTHER_MACHINE_TOLERANCE
-        )
+        self._result = ReplayResult(0.0 if same else OTHER_MACHINE_TOLERANCE)
         self._known_before: int | None = None  # the tick before which the potentials are known
         self._failed = False
         self._followed = True  # whether parameters and kicks are known

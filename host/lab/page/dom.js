@@ -26,6 +26,16 @@ export function show(target, visible) {
     if (target.hidden === visible) target.hidden = !visible;
 }
 
+/** Fill in the words of all elements that name theirs by data-text or data-label. */
+export function fillTexts(texts) {
+    for (const target of document.querySelectorAll("[data-text]")) {
+        target.textContent = texts[target.dataset.text];
+    }
+    for (const target of document.querySelectorAll("[data-label]")) {
+        target.setAttribute("aria-label", texts[target.dataset.label]);
+    }
+}
+
 /**
  * A button with a text.
  * @param {string} text

@@ -3,13 +3,9 @@
 import { createBasins } from "./basins.js";
 import { createBaton } from "./baton.js";
 import { createClass } from "./class_panel.js";
-import { byId, element, setText } from "./dom.js";
-import { draw as drawFloor } from "./draw/floor.js";
-import { draw as drawPlane } from "./draw/plane.js";
-import { draw as drawStrips } from "./draw/strips.js";
-import { draw as drawWheel } from "./draw/wheel.js";
+import { byId, fillTexts, setText } from "./dom.js";
+import { addDrawings, labelWheels } from "./drawings.js";
 import { Frames } from "./frames.js";
-import { onBasins } from "./ground.js";
 import { Hand } from "./hand.js";
 import { createKTrace } from "./k_trace_panel.js";
 import { createKicks } from "./kick_panel.js";
@@ -29,18 +25,7 @@ import { snapshot } from "./snapshot.js";
 import { texts } from "./texts.js";
 import { Views } from "./views.js";
 
-for (const target of document.querySelectorAll("[data-text]")) {
-    target.textContent = texts[target.dataset.text];
-}
-for (const target of document.querySelectorAll("[data-label]")) {
-    target.setAttribute("aria-label", texts[target.dataset.label]);
-}
-
-byId("key").append(
-    ...Object.entries(texts.key).map(([mark, words]) =>
-        element("li", { className: `mark-${mark}`, title: texts.keyHints[mark] ?? "" }, words),
-    ),
-);
+fillTexts(texts);
 
 const address = new URL("messages", location.href);
 address.protocol = address.protocol.replace("http", "ws");
@@ -88,12 +73,7 @@ function update() {
     document.body.classList.toggle("lost", !link.up || Boolean(robot?.lost));
     if (robot) setText(byId("delay"), texts.delay(1000 * DELAY_TICKS * robot.tick_s));
     byId("hand-note").hidden = !hands[0].allowed;
-    for (const side of ["left", "right"]) {
-        byId(`${side}-wheel`).setAttribute(
-            "aria-label",
-            texts.wheelLabel(side, views?.wheels[side]),
-        );
-    }
+    labelWheels(views);
 }
 
 const hands = ["left", "right"].map(
@@ -102,21 +82,9 @@ const hands = ["left", "right"].map(
 const frames = new Frames(update, () => {
     if (lab.store.baton.you) lab.send({ type: "beat" });
 });
-// Each with the room that its text needs: letters in a line, and lines.
-const drawings = [
-    ["left-wheel", drawWheel, () => views.wheels.left, 21, 19],
-    ["right-wheel", drawWheel, () => views.wheels.right, 21, 19],
-    ["strips", drawStrips, () => views.strips, 30, 16],
-    ["lag-plane", onBasins(drawPlane), () => views.lag, 17, 10],
-    ["phi-plane", drawPlane, () => views.phi, 17, 10],
-    ["x-plane", drawPlane, () => views.x, 17, 10],
-    ["floor", drawFloor, () => views.floor, 17, 10],
-    ["k-plane", kTrace.draw, kTrace.view, 24, 16],
-];
-for (const [id, draw, view, letters, lines] of drawings) {
-    const canvas = byId(id);
-    frames.add(canvas, draw, () => views && [view(), screen.themeFor(canvas, letters, lines)]);
-}
+addDrawings(frames, screen, () => views);
+const kPlane = byId("k-plane");
+frames.add(kPlane, kTrace.draw, () => views && [kTrace.view(), screen.themeFor(kPlane, 24, 16)]);
 const { canvas: score, draw: drawScore, view: scoreView } = kicks.verdict;
 frames.add(score, drawScore, () => [scoreView(), screen.themeFor(score, 22, 6)]);
 

@@ -20,7 +20,7 @@ export function createRecording(root, lab) {
     const renew = async () => {
         try {
             const { logs } = await lab.request({ type: "logs" });
-            const items = logs.map((log) => element("li", {}, link(log, lab)));
+            const items = logs.map((log) => element("li", {}, link(log, lab), opened(log)));
             list.replaceChildren(...items);
             none.hidden = items.length > 0;
         } catch {
@@ -47,6 +47,14 @@ const recordingOf = (lab) => lab.store.robot?.status.recording ?? null;
 
 function link({ name, whole, failed }, lab) {
     return button(texts.download(name, whole, failed), () => download(name, lab), "link");
+}
+
+/** A link that opens a log as a replay; a growing one as far as it is written. */
+function opened({ name }) {
+    const href = `replay.html?log=${encodeURIComponent(name)}#view=${readKey()}`;
+    const link = element("a", { href, target: "_blank", textContent: texts.replay });
+    link.setAttribute("aria-label", texts.replayLabel(name));
+    return link;
 }
 
 /** Fetch a log with the page's key, which an ordinary link could not show. */

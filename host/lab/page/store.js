@@ -15,11 +15,14 @@ export const AT_REST = ["idle", "stopped", "fault"];
 
 /** One robot, as far as the page knows it. */
 export class RobotView {
-    /** @param {object} info The robot's entry in the welcome. */
-    constructor(info) {
+    /**
+     * @param {object} info The robot's entry in the welcome.
+     * @param {{records: number, kicks: number}} kept How many are kept.
+     */
+    constructor(info, kept = { records: CAPACITY, kicks: KICKS_KEPT }) {
         this.info = info;
         this.name = info.name;
-        this.ring = new Ring([...info.channels, ...info.derived], CAPACITY);
+        this.ring = new Ring([...info.channels, ...info.derived], kept.records);
         this.playout = new Playout(info.tick_s);
         /** The newest `state` message; of what it does not say, what an earlier one said. */
         this.status = { link: "up", since_s: 0, params: {} };
@@ -30,7 +33,11 @@ export class RobotView {
         /** @type {?object} The newest `basins` message. */
         this.picture = null;
         /** Where a kick made the membrane potentials jump, in the places of the ring. */
-        this.jumped = { left: new Uint8Array(CAPACITY), right: new Uint8Array(CAPACITY) };
+        this.jumped = {
+            left: new Uint8Array(kept.records),
+            right: new Uint8Array(kept.records),
+        };
+        this.kicksKept = kept.kicks;
         /** How often the robot has been heard of: a record or a state. */
         this.heard = 0;
         for (const event of info.events ?? []) this.takeEvent(event);
@@ -73,12 +80,21 @@ export class RobotView {
         for (let i = 0; i < count; i += 1) {
             const offset = HEADER_BYTES + i * this.ring.bytes;
             if (view.getUint32(offset, true) <= this.ring.newest("tick")) this.#restart();
-            this.ring.push(view, offset);
-            this.#date();
+            this.push(view, offset);
         }
         if (count) this.playout.arrive(this.ring.newest("t_s"), now_s);
         this.playout.tick_s = this.tick_s;
         this.heard += 1;
+    }
+
+    /**
+     * Take a record.
+     * @param {DataView} view Where it stands.
+     * @param {number} offset From which byte on.
+     */
+    push(view, offset) {
+        this.ring.push(view, offset);
+        this.#date();
     }
 
     /** Take an event of the robot. */
@@ -149,7 +165,7 @@ export class RobotView {
 
     #add(kick) {
         this.kicks.push(kick);
-        if (this.kicks.length > KICKS_KEPT) this.kicks.shift();
+        if (this.kicks.length > this.kicksKept) this.kicks.shift();
     }
 }
 

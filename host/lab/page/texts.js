@@ -205,6 +205,8 @@ export const texts = {
     noLogs: "This lab has recorded no log yet.",
     download: (name, whole, failed) =>
         name + (failed ? " (ends early: not written in full)" : whole ? "" : " (still growing)"),
+    replay: "Replay",
+    replayLabel: (name) => `Replay ${name} in a new tab`,
     downloadFailed: (why) => ({ message: `the log did not come: ${why}`, hint: "try again" }),
 
     takeOver: (host) => `Take over from ${host}`,

@@ -1,0 +1,114 @@
+/** The words of a replay that the live page has not. */
+
+import { capital, counted, number, sentences } from "./words.js";
+import { texts } from "./texts.js";
+
+const wheelsOf = ({ wheels = [] }) =>
+    wheels.length === 1 ? `${texts.sides[wheels[0]].toLowerCase()} wheel` : "both wheels";
+const why = (name) => (event) => name + (event.reason ? `: ${event.reason}` : "");
+const FACTS = {
+    brick: "Robot",
+    started_utc: "Connected (UTC)",
+    robot_software: "Release",
+    seed: "Random seed",
+    battery_v: "Battery (V)",
+};
+
+export const words = {
+    ...texts,
+    title: "Kick control replay",
+    skip: "Skip to the time slider",
+    loading: "Reading the log …",
+    failed: (message) => sentences("The log cannot be shown", message),
+    strips: "The seconds before",
+    lagNote: texts.lagNote,
+    floorNote: "From the turns of the wheels since the log began. A wheel that slips misleads it.",
+
+    working: "The equations in this tick",
+    workingNote:
+        "xᵃ: where a rod is. xˢ: what its neuron sees of it, which is xᵃ but for a kick. xᵗ: where" +
+        " the neuron wants it. An older position stands for xᵃ in F if rod_lag_s is not 0. ✓: the" +
+        " robot has logged the same bits.",
+    digits: "All digits",
+    digitsLabel: "All digits of each number, as exact as the log",
+    quantity: "Quantity",
+    workingLabel: "Equations of both wheels with the numbers of this tick",
+    at: ({ tick, since_s, dt_s }) =>
+        `Tick ${tick}, ${number(since_s, 2)} s, Δt = ${number(1000 * dt_s, 1)} ms`,
+    compared: [
+        "Not compared: the log does not say what the potentials were before this tick.",
+        "The robot's program computes the same bits from the logged angles.",
+        "As logged but for rounding: the robot's machine has other mathematical functions.",
+        "The robot's program computes something else than the log says.",
+    ],
+    off: "The motors are off in this tick: no equation acts, and the potentials stay.",
+    asLogged: "✓",
+    notLogged: (value) => `✗ logged: ${value}`,
+
+    play: "Play",
+    pause: "Pause",
+    back: "One tick back",
+    forth: "One tick on",
+    former: "What happened before",
+    next: "What happened next",
+    speed: "Speed",
+    speeds: { 0.1: "1/10", 0.25: "1/4", 1: "1", 4: "4", 16: "16" },
+    slider: "Time",
+    sliderText: (tick, since_s, total_s) =>
+        `tick ${tick}, ${number(since_s, 2)} s of ${number(total_s, 2)} s`,
+    time: (since_s, total_s) => `${number(since_s, 2)} / ${number(total_s, 2)} s`,
+    keys:
+        "← and → go a tick, Page up and Page down a second, Home and End to the ends; Space plays" +
+        " and pauses; , and . go to what happened before and next.",
+    happened: "What happened",
+    nothingHappened: "Nothing but rolling on.",
+    happenedAt: (since_s, said) => `${number(since_s, 2)} s  ${capital(said)}`,
+    marks: {
+        kick: "kick",
+        fault: "fault",
+        stop: "stop",
+        missing: "ticks missing",
+        differs: "not as computed",
+    },
+    about: "About this log",
+    facts: { ...FACTS, log: "Log", part: "Part", params: "Parameters in this tick" },
+
+    verdict: ({ compared, exact, reproduced, worst, not_comparable: left, missing }) => {
+        const ticks = counted(compared, "tick", "ticks");
+        const found = !compared
+            ? "no tick could be compared"
+            : exact
+              ? `${ticks} recomputed, bit for bit as logged`
+              : reproduced
+                ? `${ticks} recomputed, as logged within ${worst.toExponential(0)}`
+                : `this log does NOT match the robot's program (${ticks} recomputed)`;
+        return sentences(
+            found,
+            left && `${counted(left, "tick", "ticks")} not comparable`,
+            missing && `${counted(missing, "tick is", "ticks are")} missing`,
+        );
+    },
+    events: {
+        kick: ({ kick }) => `${texts.kickLine(kick)}, ${wheelsOf(kick)}`,
+        start: () => "start",
+        stop: why("stop"),
+        hold: why("held"),
+        resume: () => "goes on",
+        fault: why("fault"),
+        clear: () => "the fault is cleared",
+        take_over: why("another host drives"),
+        link_loss: why("link lost"),
+        battery: why("battery"),
+        restart: () => "the robot's program began again: its ticks count from 0",
+        lost: () => "ticks are missing here",
+        params: ({ set }) =>
+            Object.entries(set)
+                .map(([name, value]) => `${name} = ${value}`)
+                .join(", "),
+    },
+    otherEvent: ({ event }) => event,
+    missing: (ticks) => counted(ticks, "tick is missing here", "ticks are missing here"),
+    missed: (periods) =>
+        `${counted(periods, "control period", "control periods")} without a tick before this one`,
+    differs: "the log is not what the robot's program computes",
+};

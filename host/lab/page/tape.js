@@ -1,0 +1,31 @@
+/**
+ * A log to be replayed, as the lab has prepared it. It stands in the page itself, or the lab has it.
+ */
+
+import { readKey } from "./keys.js";
+
+/**
+ * Get the tape of this page.
+ * @returns {Promise<{tape: object, records: DataView}>} What the tape says, and its packed records.
+ *     It fails with an Error in words.
+ */
+export async function loadTape() {
+    const inside = document.getElementById("tape");
+    const { records, ...tape } = JSON.parse(inside ? inside.textContent : await fetched());
+    return { tape, records: await unpacked(records) };
+}
+
+async function fetched() {
+    const name = new URLSearchParams(location.search).get("log") ?? "";
+    const headers = { Authorization: `Bearer ${readKey()}` };
+    const answer = await fetch(`replays/${encodeURIComponent(name)}`, { headers });
+    const text = await answer.text();
+    if (!answer.ok) throw new Error(text);
+    return text;
+}
+
+async function unpacked(base64) {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new DataView(await new Response(plain).arrayBuffer());
+}

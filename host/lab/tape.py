@@ -1,0 +1,252 @@
+"""A log as the page replays it: its records with all that is drawn and shown beside them.
+
+A tape is plain data, and the same for a page that a lab serves and for a replay in one file. The
+page calculates nothing: derived channels and the numbers of the equations come with each record.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import struct
+from math import inf, nan
+from typing import Any, NamedTuple
+
+from host.errors import WrongUse, printable
+from host.lab import derived, worked
+from host.logs.log import Gaps, Log
+from host.logs.mcap_reading import LogFile
+from host.logs.replay import Mismatch, Replayer, other_sources
+from host.logs.tap import Event
+from robot.record import STRUCT, Record, describe
+from robot.safety import RUNNING
+
+# Ten minutes of 30 ms ticks: as many as the robot's black box holds, and about 10 MB.
+MOST_TICKS = 20_000
+_DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
+_NO_SPEED = (nan,) * len(derived.CHANNELS)
+_COMPRESSION = 6
+
+
+class Cut(NamedTuple):
+    """The part of a log that is wanted: from when to when, in s from its first tick."""
+
+    from_s: float = 0.0
+    to_s: float = inf
+
+    def __str__(self) -> str:
+        if self == Cut():
+            return "all of it"
+        return f"from {self.from_s:g} s to " + (
+            "its end" if self.to_s == inf else f"{self.to_s:g} s"
+        )
+
+
+class _Clock:
+    """A clock that goes on where the robot's program, and with it its own clock, begins again."""
+
+    def __init__(self) -> None:
+        self.begin_s: float | None = None
+        self._shift_s = 0.0
+        self._latest_s = 0.0
+        self._restarted = False
+
+    def restart(self) -> None:
+        self._restarted = True
+
+    def read(self, record: Record) -> float:
+        """The time of the next record (s)."""
+        if self._restarted and self.begin_s is not None:
+            self._shift_s = self._latest_s + record.dt_s - record.t_s
+        self._restarted = False
+        self._latest_s = float(record.t_s + self._shift_s)
+        if self.begin_s is None:
+            self.begin_s = self._latest_s
+        return self._latest_s
+
+
+class _Writer:
+    """Follows a log, and packs the ticks of a cut."""
+
+    def __init__(self, name: str, info: dict[str, Any], cut: Cut) -> None:
+        self.clock = _Clock()
+        self.replayer = Replayer(info)
+        self.packed: list[bytes] = []
+        self.events: list[dict[str, Any]] = []
+        self.gaps: list[dict[str, int]] = []
+        self.past = False
+        self._name = name
+        self._cut = cut
+        self._follower = derived.Follower()
+        self._gaps = Gaps()
+        self._waiting: list[Event] = []
+
+    def take_event(self, event: Event) -> None:
+        self._gaps.take(event)
+        self.replayer.take(event)
+        self._follower.take_event(event)
+        if event["event"] == "restart":
+            self.clock.restart()
+        self._waiting.append(event)
+
+    def take_record(self, record: Record) -> None:
+        t_s = self.clock.read(record)
+        since_s = t_s - (self.clock.begin_s or 0.0)
+        if since_s > self._cut.to_s:
+            self.past = True
+            return
+        known_gaps = len(self._gaps.found)
+        self._gaps.take(record)
+        numbers = self._work_out(record)
+        values = self._follower.derive(record) or _NO_SPEED
+        if since_s < self._cut.from_s:
+            self._waiting.clear()
+            return
+        if len(self.packed) == MOST_TICKS:
+            raise too_long(self._name, self._cut)
+        if not self.packed:
+            self._note(self._follower.snapshot(record.tick))
+        for first, end in self._gaps.found[known_gaps:]:
+            self.gaps.append({"place": len(self.packed), "ticks": end - first})
+        self.flush()
+        # What the clock adds after a restart is 0 in all other logs: then the bits are the log's.
+        own = STRUCT.pack(*record._replace(t_s=t_s))
+        self.packed.append(own + _DERIVED.pack(*values) + worked.STRUCT.pack(*numbers))
+
+    def flush(self) -> None:
+        """Note the events that came before the next record."""
+        for event in self._waiting:
+            self._note(event)
+        self._waiting.clear()
+
+    def _note(self, event: Event) -> None:
+        self.events.append({"place": len(self.packed), "event": event})
+
+    def _work_out(self, record: Record) -> tuple[float, ...]:
+        controller = self.replayer.controller
+        before = [worked.Before.of(wheel) for wheel in controller.wheels]
+        known, mismatches = self.replayer.take(record)
+        running = record.state == RUNNING
+        wheels = (
+            worked.work_out(
+                wheel, one if known else None, record, controller.params, controller.kick
+            )
+            if running
+            else worked.OFF
+            for wheel, one in zip(controller.wheels, before, strict=True)
+        )
+        compared = self._level(mismatches) if known or not running else worked.NOT_COMPARABLE
+        return (compared, *(number for numbers in wheels for number in numbers))
+
+    def _level(self, mismatches: list[Mismatch]) -> int:
+        if not mismatches:
+            return worked.SAME
+        tolerance = self.replayer.result.tolerance
+        small = all(abs(one.recorded - one.replayed) <= tolerance for one in mismatches)
+        return worked.ROUNDED if small and tolerance else worked.OTHER
+
+
+def make_tape(log: Log | LogFile, name: str, cut: Cut | None = None) -> dict[str, Any]:
+    """Make the tape of a log.
+
+    Args:
+        log: In memory, or a file, which is read as a stream.
+        name: What to call it on the page, such as its file's name.
+        cut: Which part of it; None for all. What came before a cut is followed, so that the cut's
+            first tick is known in full.
+
+    Returns:
+        Plain JSON data, see MESSAGES.md.
+
+    Raises:
+        WrongUse: The part has no tick, or more than MOST_TICKS.
+        LogError: The file cannot be read any more.
+    """
+    cut = cut or Cut()
+    total = log.total if isinstance(log, LogFile) else len(log)
+    if total is not None and total > MOST_TICKS and cut == Cut():
+        raise too_long(name, cut)
+    writer = _Writer(name, log.info, cut)
+    for item in log.stream():
+        if isinstance(item, dict):
+            writer.take_event(item)
+        else:
+            writer.take_record(item)
+        if writer.past:
+            break
+    else:
+        writer.flush()
+    if not writer.packed:
+        raise WrongUse(
+            f"{name} has no tick in this part: {cut}",
+            "--from and --to count in s from its first tick; `kickctl log list` shows how long"
+            " logs are",
+        )
+    return {
+        "name": name,
+        "part": "" if cut == Cut() else str(cut),
+        "ticks": len(writer.packed),
+        "begin_s": writer.clock.begin_s,
+        "robot": _robot(log.info),
+        "facts": _facts(log.info),
+        "events": writer.events,
+        "gaps": writer.gaps,
+        "verdict": _verdict(writer.replayer, log),
+        "equations": {side: worked.lines_of(side) for side in ("left", "right")},
+        "records": base64.b64encode(
+            gzip.compress(b"".join(writer.packed), _COMPRESSION, mtime=0)
+        ).decode("ascii"),
+    }
+
+
+def too_long(name: str, cut: Cut) -> WrongUse:
+    """Why a log cannot be replayed as a whole."""
+    part = "" if cut == Cut() else f", {cut},"
+    return WrongUse(
+        f"{name}{part} has more than {MOST_TICKS:,} ticks, and a browser gets no more at once",
+        "take a part of it: --from 0 --to 300 are its first five minutes",
+    )
+
+
+def _robot(info: dict[str, Any]) -> dict[str, Any]:
+    """The robot as a page's welcome describes one."""
+    place = derived.body()
+    return {
+        "name": printable(str(info.get("brick", ""))),
+        "channels": describe(),
+        "derived": [*derived.describe(), *(dict(row._asdict()) for row in worked.CHANNELS)],
+        "tick_s": info.get("params", {}).get("tick_s", 0.03),
+        "stall": None,
+        "track_m": place.track_m,
+        "wheel_radius_m": place.wheel_radius_m,
+        "walls": None,
+        "hand": False,
+    }
+
+
+def _facts(info: dict[str, Any]) -> dict[str, str]:
+    """What a person wants to know of a log's origin, in words; what is unknown is left out."""
+    named = {
+        "brick": info.get("brick"),
+        "started_utc": str(info.get("started_utc", ""))[:19].replace("T", " "),
+        "robot_software": info.get("robot_software"),
+        "seed": info.get("seed"),
+        "battery_v": info.get("battery_v"),
+    }
+    return {name: printable(str(value)) for name, value in named.items() if value not in (None, "")}
+
+
+def _verdict(replayer: Replayer, log: Log | LogFile) -> dict[str, Any]:
+    """What the replay found, up to the end of the cut."""
+    result = replayer.result
+    return {
+        "exact": result.exact,
+        "reproduced": result.reproduced,
+        "compared": result.compared,
+        "not_comparable": result.not_comparable,
+        "missing": result.missing,
+        "worst": result.worst,
+        "first_mismatch": None if result.first is None else str(result.first),
+        "other_sources": other_sources(log.info),
+        "damage": log.damage() if isinstance(log, LogFile) else "",
+    }
