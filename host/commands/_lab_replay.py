@@ -97,10 +97,8 @@ def _refuse_robots(options: argparse.Namespace) -> None:
             raise WrongUse(f"--{name} is for robots, and {way} shows a log", "leave it out")
     if way == "--replay" and options.force:
         raise WrongUse("--force replaces a file, and --replay writes none", "leave it out")
-    if way == "--export" and (options.host or options.no_open):
-        raise WrongUse(
-            "--host and --no-open are for a page, and --export writes a file", "leave it out"
-        )
+    if way == "--export" and options.host:
+        raise WrongUse("--host is for a page, and --export writes a file", "leave it out")
 
 
 def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, Any]]:

@@ -88,8 +88,8 @@ class Line(NamedTuple):
 
 
 _LINES = (
-    Line("x₁ᵃ", "cos φ", "cos {phi_rad}", "actual1"),
-    Line("x₂ᵃ", "sin φ", "sin {phi_rad}", "actual2"),
+    Line("x₁ᵃ", "cos φ", "cos({phi_rad})", "actual1"),
+    Line("x₂ᵃ", "sin φ", "sin({phi_rad})", "actual2"),
     Line(
         "x₁ˢ", "(1 - 2β) cos(φ + δ)",
         "(1 - 2 · {beta}) · cos({phi_rad} + {shift_rad})", "seen1", when="shifted",
@@ -115,7 +115,7 @@ _LINES = (
         "F_tan", "F₁ sin φ - F₂ cos φ",
         "{force1} · {actual2} - {force2} · {actual1}", "force", "force",
     ),
-    Line("M", "tanh F_tan", "tanh {force}", "torque", "torque"),
+    Line("M", "tanh F_tan", "tanh({force})", "torque", "torque"),
     Line(
         "duty", "M in %, scaled, limited, rounded", "{max_duty_pct} · {duty_scale} · {torque}",
         "duty_pct", "duty_pct", unit="%",

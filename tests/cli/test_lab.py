@@ -7,11 +7,13 @@ import subprocess
 import sys
 import tempfile
 from contextlib import ExitStack, contextmanager
+from urllib.request import Request, urlopen
 
 import pytest
 
 from host.client.robot import connect
 from host.lab.desk_robot import DeskRobot, child_options
+from tests.fakes import eventful
 from tests.lab.browser import browse
 from tests.live import wait_until
 from tests.sysfs.mount import ROOT
@@ -171,6 +173,15 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--host", "::"), 2, "give one IP address of this computer"),
         (("--host", "lab.example"), 2, "give one IP address of this computer"),
         (("--set", "k=-1"), 2, "k cannot be"),
+        (("--from", "1"), 2, "--from cuts a log, and there is none"),
+        (("--force",), 2, "--force replaces a file, and none is written"),
+        (("--replay", "none.mcap"), 2, "none.mcap cannot be read"),
+        (("--replay", "x.mcap", "--brick", "sim://"), 2, "`lab --replay` reaches none"),
+        (("--replay", "x.mcap", "--walls", "2"), 2, "--walls is for robots"),
+        (("--replay", "x.mcap", "--from", "2", "--to", "1"), 2, "--from 2 lies behind --to 1"),
+        (("--export", "x.txt", "x.mcap"), 2, "has another ending than .html"),
+        (("--export", "no/x.html", "x.mcap"), 2, "there is no folder no"),
+        (("--export", "x.html", "x.mcap", "--host", "::1"), 2, "--export writes a file"),
     ],
 )
 def test_what_cannot_be_is_said_in_words(kickctl, arguments, status, words):
@@ -180,3 +191,38 @@ def test_what_cannot_be_is_said_in_words(kickctl, arguments, status, words):
         done, out, err = kickctl("lab", "--no-open", "--json", *arguments)
     assert done == json.loads(out)["error"]["status"] == status
     assert words in err
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    return eventful().log().save(tmp_path_factory.mktemp("logs") / "eventful.mcap")
+
+
+def test_an_export_says_its_size_and_replaces_no_file(kickctl, log):
+    status, out, err = kickctl("lab", "--export", "a.html", str(log), "--to", "3", "--json")
+    told = json.loads(out)
+    page = kickctl.folder / "a.html"
+    assert (status, err) == (0, "")
+    assert (told["file"], told["bytes"]) == ("a.html", page.stat().st_size)
+    assert (told["ticks"], told["reproduced"], told["lost"]) == (92, True, 0)
+    assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
+    status, _, err = kickctl("lab", "--export", "a.html", str(log))
+    assert status == 2
+    assert "a.html exists already" in err
+    status, out, _ = kickctl("lab", "--export", "a.html", str(log), "--force")
+    assert status == 0
+    assert out.startswith("486 ticks in a.html, 0.")
+
+
+def test_a_replay_is_served_until_it_is_ended(log):
+    with lab("--replay", str(log)) as (process, info):
+        place, _, key = info["replay"].partition("#view=")
+        address = place.replace("replay.html?log=", "replays/")
+        request = Request(address, headers={"Authorization": f"Bearer {key}"})  # noqa: S310
+        with urlopen(request) as answer:  # noqa: S310
+            tape = json.load(answer)
+        assert (tape["name"], tape["ticks"]) == ("eventful.mcap", info["ticks"])
+        assert info["exact"]
+        process.send_signal(signal.SIGINT)
+        assert process.wait() == 0
+        assert process.said() == ""

@@ -25,7 +25,8 @@ class Visitor:
             self.complaints.append(message.text)
 
     def _look(self, request):
-        if not request.url.startswith((self._home, self._home.replace("http", "ws"), "blob:")):
+        here = (self._home, self._home.replace("http", "ws"), "blob:", "data:")
+        if not request.url.startswith(here):
             self.complaints.append("a request to " + request.url)
 
     def forgive(self, beginning):

@@ -65,6 +65,8 @@ export function createPlayer(root, cursor, { marks, ticks, begin_s }) {
         speed,
     );
     addEventListener("keydown", (event) => press(event, acts, slider));
+    // A click leaves the focus on no control, so that the keys move the cursor.
+    addEventListener("click", (event) => event.detail > 0 && document.activeElement?.blur());
 
     return () => {
         if (Number(slider.value) !== cursor.place) slider.value = cursor.place;

@@ -1,4 +1,4 @@
-/** The page of a replay: a log in the place of a robot, and a cursor in the place of the present. */
+/** The page of a replay: a log instead of a robot, and a cursor instead of the present. */
 
 import { Cursor } from "./cursor.js";
 import { byId, element, fillTexts, setText, show } from "./dom.js";
@@ -15,6 +15,11 @@ import { STATES } from "./store.js";
 import { loadTape } from "./tape.js";
 import { Views } from "./views.js";
 import { createWorking } from "./working.js";
+
+// How many frames are drawn after the last change: what scrolls into view is drawn, too.
+const FRAMES_AFTER = 30;
+// Half of the width of the slider's thumb, CSS pixels.
+const THUMB = 8;
 
 fillTexts(words);
 const screen = new Screen();
@@ -41,10 +46,20 @@ function begin(tape, robot) {
     const happened = createHappened(byId("happened"), marks, cursor, tape.begin_s);
     const about = createAbout(byId("about"), tape);
     let labelled = null;
+    let drawn = [];
+    let left = 0;
+    const renew = () => (left = FRAMES_AFTER);
+    for (const change of ["scroll", "resize", "click", "keydown"]) {
+        addEventListener(change, renew, true);
+    }
 
     const frames = new Frames(
         () => {
             cursor.advance(performance.now() / 1000);
+            left -= 1;
+            const now = [cursor.time_s, screen.theme];
+            if (now.some((one, n) => one !== drawn[n])) renew();
+            drawn = now;
             robot.setPlace(cursor.place);
             views.update();
             player();
@@ -59,10 +74,10 @@ function begin(tape, robot) {
         },
         () => {},
     );
-    addDrawings(frames, screen, () => views);
-    const [band, edge] = [byId("marks"), 8];
-    const state = { marks, count: tape.ticks, edge };
-    frames.add(band, drawMarks, () => [state, screen.themeFor(band, 1, 1.5)]);
+    addDrawings(frames, screen, () => (left > 0 ? views : null));
+    const band = byId("marks");
+    const state = { marks, count: tape.ticks, edge: THUMB };
+    frames.add(band, drawMarks, () => left > 0 && [state, screen.themeFor(band, 1, 1.5)]);
     show(byId("log"), true);
 
     window.lab = {

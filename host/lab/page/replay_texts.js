@@ -21,13 +21,12 @@ export const words = {
     loading: "Reading the log …",
     failed: (message) => sentences("The log cannot be shown", message),
     strips: "The seconds before",
-    lagNote: texts.lagNote,
     floorNote: "From the turns of the wheels since the log began. A wheel that slips misleads it.",
 
     working: "The equations in this tick",
     workingNote:
-        "xᵃ: where a rod is. xˢ: what its neuron sees of it, which is xᵃ but for a kick. xᵗ: where" +
-        " the neuron wants it. An older position stands for xᵃ in F if rod_lag_s is not 0. ✓: the" +
+        "xᵃ: where a rod is. xˢ: where its neuron sees it, the same but for a kick. xᵗ: where the" +
+        " neuron wants it. An older position stands for xᵃ in F if rod_lag_s is not 0. ✓: the" +
         " robot has logged the same bits.",
     digits: "All digits",
     digitsLabel: "All digits of each number, as exact as the log",

@@ -1,5 +1,5 @@
 /**
- * A log to be replayed, as the lab has prepared it. It stands in the page itself, or the lab has it.
+ * A log to be replayed, as the lab has prepared it. The page itself holds it, or the lab does.
  */
 
 import { readKey } from "./keys.js";

@@ -73,7 +73,7 @@ function newCell() {
     return { root: element("td", {}, numbers, result, logged), numbers, result, logged };
 }
 
-/** Put the numbers of a tick into a cell; a line that does not concern this tick leaves it empty. */
+/** Put a tick's numbers into a cell. A line that does not concern this tick leaves it empty. */
 function fill({ root, numbers, result, logged }, line, value, exact) {
     const concerns = !line.when || value(line.when);
     const text = (name) => written(value(name), exact);
@@ -103,5 +103,5 @@ function written(value, exact) {
 
 /** A negative number has brackets behind an operator. */
 const bracketed = (text, before) =>
-    text.startsWith("-") && /[^(]$/.test(before) ? `(${text})` : text;
+    text.startsWith("-") && /[-+·/] ?$/.test(before) ? `(${text})` : text;
 const typeset = (text) => text.replaceAll("-", "−");

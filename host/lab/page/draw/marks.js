@@ -6,7 +6,7 @@
 
 /**
  * @typedef {Object} MarksState
- * @property {{place: number, ticks: number, kind: string}[]} marks in which record, and for how many
+ * @property {{place: number, ticks: number, kind: string}[]} marks in which record, how long, what
  * @property {number} count how many records there are
  * @property {number} edge from the canvas's edge to the middle of the slider's thumb at its ends,
  *     CSS pixels

@@ -1,0 +1,226 @@
+"""A replay: a log in the place of a robot, from a server or from one file on a disk."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from host.lab.one_file import one_file
+from host.lab.replays import Replays
+from host.lab.server import Lab
+from host.lab.tape import make_tape
+from robot.record import NAMES
+from tests.fakes import eventful
+from tests.web.test_access import assert_no_findings
+from tests.web.visitor import Visitor
+
+
+class Reader(Visitor):
+    """A browser's page with a replay."""
+
+    def until(self, condition):
+        """Wait until a condition on `s`, the page's state, is true."""
+        known = "const s = window.lab?.state()"
+        self.page.wait_for_function(f"() => {{ {known}; return s?.log && ({condition}); }}")
+
+    def go(self, place):
+        """Move the slider to a tick. Returns the page's state there."""
+        self.page.locator("#time").fill(str(place))
+        self.until(f"s.place === {place} && s.drawing.shown_s === s.time_s")
+        return self.state()
+
+
+@pytest.fixture(scope="module")
+def log():
+    return eventful().log()
+
+
+@pytest.fixture(scope="module")
+def tape(log):
+    return make_tape(log, "eventful </script>.mcap")
+
+
+@pytest.fixture
+def read(browser):
+    """A function that opens a replay from a page's address, and waits until it is drawn."""
+    readers = []
+
+    def read(url, **context):
+        home = SimpleNamespace(drive_url=url.partition("replay.html?")[0])
+        reader = Reader(browser, home, url, **context)
+        readers.append(reader)
+        reader.until("s.drawing.frames > 2")
+        return reader
+
+    yield read
+    complaints = [words for reader in readers for words in reader.complaints]
+    for reader in readers:
+        reader.context.close()
+    assert complaints == []
+
+
+@pytest.fixture
+def read_file(read, tmp_path):
+    """A function that opens a tape as a file from disk."""
+
+    def read_file(tape, **context):
+        path = tmp_path / "replay.html"
+        path.write_text(one_file(tape), encoding="utf-8")
+        return read(path.as_uri(), **context)
+
+    return read_file
+
+
+MINUS = "\N{MINUS SIGN}"
+
+
+def typeset(text):
+    """A text with its hyphens as the page writes minus signs."""
+    return text.replace("-", MINUS)
+
+
+def results(state):
+    """The results in the working of both wheels: numbers by their symbols, the last of each."""
+    found = {}
+    for formula, *cells in state["working"]["lines"]:
+        numbers = [cell.rpartition(" = ")[2].split()[0] for cell in cells if cell]
+        found[formula.partition(" ")[0]] = [float(one.replace(MINUS, "-")) for one in numbers]
+    return found
+
+
+def place_of(log, tick_of):
+    """The place of the first record with a kick of this kind, numbered as in its channel."""
+    return next(place for place, record in enumerate(log.records) if record.kick == tick_of)
+
+
+def test_a_file_from_disk_shows_each_tick_with_its_equations(read_file, log, tape):
+    reader = read_file(tape)
+    page = reader.page
+    page.click("#digits")
+    place = place_of(log, 3) + 1
+    state = reader.go(place)
+    record = log.records[place]
+    assert [state["record"][name] for name in NAMES if "late" not in name] == [
+        getattr(record, name) for name in NAMES if "late" not in name
+    ]
+    assert state["working"]["said"] == (
+        "The robot's program computes the same bits from the logged angles."
+    )
+    for symbol, name in (("x₁", "x1"), ("x₂", "x2"), ("F_tan", "force"), ("M", "torque")):
+        logged = [getattr(record, f"{side}_{name}") for side in ("left", "right")]
+        assert results(state)[symbol] == logged, symbol
+    assert typeset("(1 - 2 · 0) · cos(") in state["working"]["lines"][2][1]
+    assert state["working"]["lines"][2][2] == ""  # the right wheel is not kicked
+    shown = page.locator("#working tbody").inner_text()
+    assert typeset(repr(record.left_torque)) in shown
+    wheel = state["drawing"]["wheels"]["left"]
+    assert (wheel["torque"], wheel["kick"]) == (record.left_torque, "Phase")
+    membrane = place_of(log, 1)
+    jumps = reader.go(membrane)["working"]["lines"]
+    before = log.records[membrane - 1].left_x1
+    assert any(typeset(f"from {before} to") in cells[0] for _, *cells in jumps)
+    assert page.query_selector("#stop, #kicks, .kick, #hand-note") is None
+
+
+def test_keys_move_the_cursor_and_space_plays(read_file, tape):
+    reader = read_file(tape)
+    press = reader.page.keyboard.press
+    press("ArrowRight")
+    press("ArrowRight")
+    press("ArrowLeft")
+    reader.until("s.place === 1")
+    press("PageDown")
+    reader.until("s.place > 20 && s.place < 40")
+    press("End")
+    reader.until(f"s.place === {tape['ticks'] - 1}")
+    press(",")
+    marks = [mark["place"] for mark in reader.state()["marks"]]
+    reader.until(f"s.place === {max(place for place in marks if place < tape['ticks'] - 1)}")
+    press("Home")
+    press(".")
+    reader.until(f"s.place === {min(place for place in marks if place)}")
+    reader.page.click("#speed-4")
+    press("Home")
+    press(" ")
+    reader.until("s.playing && s.place > 50")
+    press(" ")
+    reader.until("!s.playing && s.drawing.shown_s === s.record.t_s")
+    press("End")
+    press(" ")  # from the end it plays from the beginning
+    reader.until("s.playing && s.place > 0")
+    reader.until(f"!s.playing && s.place === {tape['ticks'] - 1}")
+
+
+def test_everything_that_happened_is_marked_and_a_click_goes_there(read_file, log, tape):
+    reader = read_file(tape)
+    marks = reader.state()["marks"]
+    named = [event for event in log.events if event["event"] != "snapshot"]
+    assert len(marks) == len(named) + sum(record.missed > 0 for record in log.records)
+    kicks = [mark for mark in marks if mark["kind"] == "kick"]
+    begins = [event["kick"]["begin"] for event in log.events if event["event"] == "kick"]
+    assert [log.records[mark["place"]].tick for mark in kicks] == begins
+    fault = next(mark for mark in marks if mark["kind"] == "fault")
+    reader.page.click("#happened [data-kind=fault]")
+    reader.until(f"s.place === {fault['place']} && s.state === 'fault'")
+    reader.reads("#working", "The motors are off in this tick")
+    reader.reads("#about", "recomputed, bit for bit as logged")
+
+
+def test_a_log_that_is_not_computed_says_so(read_file, log, tape):
+    records = log.records
+    forged = records[77]._replace(left_x1=records[77].left_x1 + 1e-9)
+    log.records[77] = forged
+    try:
+        reader = read_file(make_tape(log, "forged"))
+    finally:
+        log.records[77] = records[77]._replace(left_x1=records[77].left_x1)
+    reader.reads("#about", "does NOT match")
+    reader.page.click("#happened [data-kind=differs]")
+    reader.until("s.place === 77")
+    reader.reads("#working", "computes something else than the log says")
+    reader.reads("#working td.differs", typeset(f"✗ logged: {forged.left_x1}"))
+
+
+def test_everybody_can_read_it(read_file, tape):
+    reader = read_file(tape, viewport={"width": 320, "height": 800})
+    reader.go(77)
+    assert reader.page.evaluate("document.documentElement.scrollWidth") <= 320
+    reader.page.emulate_media(color_scheme="dark")
+    assert_no_findings(reader.page)
+    reader.page.emulate_media(color_scheme="light")
+    reader.page.set_viewport_size({"width": 1280, "height": 720})
+    assert_no_findings(reader.page)
+
+
+def test_a_lab_without_robots_serves_a_replay(browser, read, tape):
+    replays = Replays()
+    replays.give(tape)
+    with Lab([], port=0, replays=replays) as lab:
+        url = lab.view_url.replace("/#", "/replay.html?log=eventful%20%3C/script%3E.mcap#")
+        reader = read(url)
+        assert reader.state()["log"] == tape["name"]
+        stranger = Visitor(browser, lab, url.partition("#")[0])
+        stranger.reads("#loading", "The log cannot be shown. Logs need the lab's key")
+        stranger.context.close()
+    replays.close()
+
+
+def test_a_log_just_recorded_opens_in_a_replay(browser, station):
+    station.step(1)
+    replays = Replays()
+    with Lab([station], port=0, replays=replays) as lab:
+        visitor = Visitor(browser, lab, lab.drive_url)
+        visitor.page.click(".record")
+        visitor.until("r.status.recording")
+        station.step(2)
+        visitor.page.click(".record")
+        visitor.until("!r.status.recording")
+        with visitor.page.expect_popup() as popup:
+            visitor.page.click(".logs a")
+        popup.value.wait_for_function("() => window.lab?.state().log")
+        state = popup.value.evaluate("lab.state()")
+        visitor.context.close()
+    replays.close()
+    assert json.dumps(state["verdict"]["exact"]) == "true"
+    assert state["ticks"] >= 66
+    assert visitor.complaints == []
