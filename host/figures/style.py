@@ -86,13 +86,14 @@ def save(
 
 
 def _fix_layout(figure: Figure) -> None:
-    """Lay a figure out, once for all formats: this takes as long as drawing it.
+    """Lay a figure out, once for all formats: this takes longer than drawing it.
 
     Afterwards a strip below the figure moves no legend that is outside of all panels.
     """
-    if not isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+    engine = figure.get_layout_engine()
+    if not isinstance(engine, ConstrainedLayoutEngine):
         return
-    figure.draw_without_rendering()
+    engine.execute(figure)
     figure.set_layout_engine("none")
     for legend in figure.legends:
         if legend.get_bbox_to_anchor() is figure.bbox:
