@@ -13,7 +13,7 @@ PAGES = [
     "SECURITY.md",
     "robot/README.md",
     "robot/PROTOCOL.md",
-] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / "docs").glob("*.md"))
+] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md"))
 
 
 def prose(text):
@@ -36,5 +36,6 @@ def test_the_readme_is_read_in_five_minutes():
 
 def test_every_page_is_in_the_index():
     index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
-    pages = {path.name for path in (ROOT / "docs").glob("*.md")} - {"README.md"}
+    docs = ROOT / "docs"
+    pages = {str(path.relative_to(docs)) for path in docs.rglob("*.md")} - {"README.md"}
     assert {page for page in pages if f"({page})" not in index} == set()
