@@ -5,7 +5,8 @@ import shutil
 import sys
 from pathlib import Path
 
-from docs.site.layout import ROOT, lay_out
+from docs.site import ROOT
+from docs.site.layout import lay_out
 
 
 def build(folder: Path, notebooks: str) -> int:

@@ -9,13 +9,12 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
+from docs.site import ROOT
 from docs.site.markdown import table
 from host.runs.claims import FAILS, Claim
 
-ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "docs" / "claims.json"
 PAGE = ROOT / "docs" / "claims.md"
 _SHARE = "the share of "

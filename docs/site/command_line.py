@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+from docs.site import ROOT
 from docs.site.markdown import table, toctree
 from host.cli import make_parser
 from host.experiments.efforts import EFFORTS, in_words
@@ -14,9 +15,11 @@ from host.perform.catalogue import find
 from host.perform.reproduce import claim_ids
 from host.runs.columns import Kind, kinds_of
 
-COLUMNS = 90
+# As many as fit beside both columns of navigation.
+COLUMNS = 76
 # The verbs whose inner verbs have a page each.
 RUNS = ("experiment", "theory")
+PICTURES = ROOT / "docs" / "pictures"
 
 
 def pages(folder: str) -> tuple[dict[str, str], dict[str, str]]:
@@ -64,10 +67,13 @@ def _help(parser: argparse.ArgumentParser) -> str:
 
 def _run(name: str, parser: argparse.ArgumentParser) -> str:
     found = find(name)
-    parts = [f"# {name}\n\n{_help(parser)}"]
+    parts = [f"# {name}\n"]
+    if (PICTURES / f"{name}.png").is_file():
+        parts.append(f"![What {name} draws](/{PICTURES.relative_to(ROOT)}/{name}.png)\n")
+    parts.append(_help(parser))
     claims = [claim for claim in claim_ids() if claim in found.entry.claims]
     if claims:
-        parts.append(f"It measures the claims {', '.join(claims)}: [claims](/docs/claims.md).\n")
+        parts.append(f"[What the paper claims](/docs/claims.md) of it: {', '.join(claims)}.\n")
     if name in EFFORTS:
         defaults = {option.name: option.default for option in found.entry.options}
         parts.append(f"On a real robot it takes {in_words(EFFORTS[name].seconds(defaults))}.\n")

@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from docs.site import ROOT
 from docs.site.markdown import toctree
 from docs.site.reference import pages as reference
 
-ROOT = Path(__file__).resolve().parents[2]
 INDEX = "docs/README.md"
 _LINK = re.compile(r"(?<=\]\()(?!\w+:|#)[^)#\s]+(?=[)#])|(?<=src=\")(?!\w+:)[^\"]+")
 _SECTION = re.compile(r"^## (.+)\n", re.MULTILINE)
@@ -73,7 +73,8 @@ def _slug(title: str) -> str:
 def _targets(page: str, text: str) -> list[str]:
     """The paths, from the root, that the links of a page lead to."""
     folder = posixpath.dirname(page)
-    return [posixpath.normpath(posixpath.join(folder, link)) for link in _LINK.findall(text)]
+    paths = (posixpath.join(folder, link) for link in _LINK.findall(text))
+    return [posixpath.normpath(path).lstrip("/") for path in paths]
 
 
 def _moved(page: str, text: str) -> str:

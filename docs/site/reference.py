@@ -33,7 +33,8 @@ def pages() -> dict[str, str]:
 
 _INDEX = """\
 Each page here is made from the program's own tables, so that it says what this release does.
-`kickctl help WORD` searches them in a terminal.
+`kickctl help WORD` searches them in a terminal. Each [experiment](experiment.md) and each [study of
+the model](theory.md) has a page, with the columns of its tables.
 """
 
 
