@@ -1,11 +1,13 @@
 """One panel of a figure alone, as large as the whole figure.
 
 A module that draws a figure names its panels in PANELS, in the order in which it makes their axes.
-Where this depends on the run, axes have their names as labels.
+Where this depends on the run, axes have their names as labels, and the module may have a function
+`panels` that gives the names from the run's options.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import ModuleType
 from typing import Any
 
@@ -17,9 +19,10 @@ from matplotlib.legend import Legend
 from host.errors import WrongUse
 
 
-def require_panel(figures: ModuleType, panel: str) -> None:
+def require_panel(figures: ModuleType, panel: str, options: Mapping[str, Any]) -> None:
     """Raise WrongUse if the figures of a module never have this panel, as far as it knows."""
-    names = getattr(figures, "PANELS", ())
+    of_run = getattr(figures, "panels", None)
+    names = of_run(options) if of_run else getattr(figures, "PANELS", ())
     if names and panel not in names:
         raise _unknown(panel, names)
 

@@ -35,7 +35,7 @@ STYLE: Any = {
 STRIP = 0.25
 # With this strip a slide of 16:9, 1920 by 1080 pixels.
 SIZE: Any = {"figsize": (12.0, 6.75 - STRIP), "dpi": 160, "layout": "constrained"}
-_CORNER: Any = {"ha": "right", "va": "center", "fontsize": 10, "color": "dimgrey"}
+_CORNER: Any = {"ha": "right", "va": "center", "fontsize": 10, "color": "#333333"}
 
 
 @contextmanager

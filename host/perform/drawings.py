@@ -12,6 +12,7 @@ from host.perform.catalogue import BODY, STUDY, Found
 from host.runs.contract import Findings, Row, Setting
 from host.runs.robot_options import defaults_besides
 from host.runs.runner import Draw
+from host.theory.studies.registry import K
 from host.util.arguments import need_text
 
 FORMATS = ("png", "svg", "pdf")
@@ -42,13 +43,19 @@ class Files(NamedTuple):
     panel: str | None
 
 
-def files(figures: str, formats: str | Sequence[str], panel: str | None) -> Files:
+def files(
+    figures: str,
+    formats: str | Sequence[str],
+    panel: str | None,
+    options: Mapping[str, Any],
+) -> Files:
     """Check which files of a figure are wanted.
 
     Args:
         figures: The name of the module that draws the figure.
         formats: The formats, as a list or as text with commas.
         panel: One panel; None for all.
+        options: Those of the run.
 
     Raises:
         WrongUse: There is no such format, or the figure never has this panel.
@@ -65,7 +72,7 @@ def files(figures: str, formats: str | Sequence[str], panel: str | None) -> File
         from host.figures.panels import require_panel
 
         need_text("panel", panel, "the name of a panel of the figure")
-        require_panel(importlib.import_module(figures), panel)
+        require_panel(importlib.import_module(figures), panel, options)
     return Files(figures, found, panel)
 
 
@@ -107,6 +114,8 @@ def parameters(found: Found, setting: Setting, name: str) -> dict[str, Any]:
     options = setting.options
     own = {key: None if isinstance(one, list) else one for key, one in options.items()}
     on_axes = dict.fromkeys(options[axis] for axis in _AXES if axis in options)
+    if options.get("along", "k") != "k" and own["k"] is None:
+        own["k"] = K.default
     if found.kind in (STUDY, BODY):
         return {**own, **on_axes}
     return {**defaults_besides(options), **setting.preset.params, **own, **_SET.get(name, {})}

@@ -100,7 +100,7 @@ def perform(
     swept = axes(found.entry, options)
     sweep = Sweep(name, swept) if swept else None
     experiment = sweep or found.work
-    wanted = files("host.figures.sweep" if swept else found.figures, formats, panel)
+    wanted = files("host.figures.sweep" if swept else found.figures, formats, panel, options)
     settings: dict[str, Any] = {
         "experiment": name,
         "options": options,

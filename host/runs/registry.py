@@ -25,6 +25,8 @@ ELSEWHERE = {
     "noise": "for white noise of the torque there is: kickctl theory escape --noise 0.1",
     "angle_noise": "for white noise of the angle there is: kickctl theory escape --angle-noise 0.1",
     "rods": "one rod is for wheels of the model, such as in: kickctl theory hopf --rods 1",
+    "k": "k is not free here: the run finds it, varies it, or has its own",
+    "point": "leave it out: kickctl theory lyapunov --k 15 --tau 1 answers at a point",
     "bounded": (
         "another bound of the torque than the robot's is for wheels of the model, such as in:"
         " kickctl theory portrait --bounded 1"
@@ -150,7 +152,7 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
     for name in ELSEWHERE:
         if all(option.name != name for option in entry.options):
             flag = "--" + name.replace("_", "-")
-            parser.add_argument(flag, dest=name, help=argparse.SUPPRESS)
+            parser.add_argument(flag, dest=name, nargs="?", const=True, help=argparse.SUPPRESS)
     parser.add_argument(
         "--out",
         default="results",

@@ -54,11 +54,7 @@ def need_wheel(value: object) -> Wheel:
     """The value, if it is a wheel that can be. Raises WrongUse."""
     if not isinstance(value, Wheel):
         raise wrong("wheel", value, "a Wheel, such as Wheel(k=8, tau=0.25)")
-    try:
-        constants = {name: float(own) for name, own in value._asdict().items()}
-    except (TypeError, ValueError, OverflowError):
-        raise wrong("wheel", value, "a Wheel whose constants are numbers") from None
-    return Wheel(**constants).checked()
+    return Wheel(**{name: float(own) for name, own in value.checked()._asdict().items()})
 
 
 def need_numbers(name: str, values: object, wanted: str) -> Array:

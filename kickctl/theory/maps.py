@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees
+from math import degrees, isqrt
 from typing import Literal
 
 import numpy as np
@@ -24,6 +24,8 @@ from host.theory.studies.phase_diagram import PUSH
 from host.util.arguments import need_whole, wrong
 from kickctl.theory._values import Result, need_ascending, need_smooth, need_symmetric, need_wheel
 
+# What memory holds, and minutes are enough for.
+_MOST_POINTS, _MOST_PHASES = 1_000_000, 10_000
 _LENGTHS = "lengths (s) that begin with 0 and ascend"
 
 Names = NDArray[np.str_]
@@ -86,6 +88,11 @@ def phase_diagram(
     if start not in ("rest", "roll"):
         raise wrong("start", start, "'rest' or 'roll'")
     (measured_s,) = need_ascending("seconds", seconds, "a number of seconds, 1 or more", 1.0)
+    if len(ks) * len(taus) > _MOST_POINTS:
+        raise WrongUse(
+            f"{len(ks):,} values of k and {len(taus):,} of tau are too many points",
+            f"give at most {_MOST_POINTS:,} points at once",
+        )
     parameters = wheel.columns(
         len(ks) * len(taus), tau=np.repeat(taus, len(ks)), k=np.tile(ks, len(taus))
     )
@@ -135,7 +142,7 @@ def basins(wheel: Wheel, points: int = 120) -> Basins:
     Args:
         wheel: The wheel.
         points: How many angles from -pi to pi, and how many speeds from minus to plus twice the
-            speed that the springs can give; 16 or more.
+            speed that the springs can give; 16 to 1000.
 
     Returns:
         What each wheel does in the end.
@@ -143,7 +150,7 @@ def basins(wheel: Wheel, points: int = 120) -> Basins:
     Raises:
         WrongUse: An argument is none of these, or wheels are too stiff or settle too slowly.
     """
-    count = _need_count("points", points, 16)
+    count = _need_count("points", points, 16, isqrt(_MOST_POINTS))
     wheel = need_wheel(wheel)
     study.require_settling(wheel)
     phi, omega = study.angles(count), study.omegas(wheel, count)
@@ -205,7 +212,7 @@ def kicks(
         sign: Sign of a phase kick's shift, 1 or -1; by default 1.
         length: Lengths of the kick, s; they begin with 0 and ascend. By default every 5 ms up to
             0.4 s.
-        phases: At how many moments of a quarter turn it comes, 4 or more.
+        phases: At how many moments of a quarter turn it comes, 4 to 10 000.
 
     Returns:
         The outcomes.
@@ -222,7 +229,7 @@ def kicks(
     own_sign = sign if sign is not None else 1 if mode == "phase" else 0
     if (mode, own_sign) not in KICKS:
         raise wrong("sign", sign, "1 or -1 for a phase kick, and nothing for other kicks")
-    count = _need_count("phases", phases, 4)
+    count = _need_count("phases", phases, 4, _MOST_PHASES)
     lengths = [0.0]
     if not outcomes.acts_at_once(mode):
         given = LENGTHS_S[CONTINUOUS] if length is None else length
@@ -252,8 +259,9 @@ def kicks(
     )
 
 
-def _need_count(name: str, value: object, least: int) -> int:
-    count = need_whole(name, value, f"a whole number, {least} or more")
-    if count < least:
-        raise wrong(name, value, f"a whole number, {least} or more")
+def _need_count(name: str, value: object, least: int, most: int) -> int:
+    wanted = f"a whole number from {least} to {most}"
+    count = need_whole(name, value, wanted)
+    if not least <= count <= most:
+        raise wrong(name, value, wanted)
     return count

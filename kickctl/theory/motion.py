@@ -15,6 +15,8 @@ from kickctl.theory._values import Result, need_ascending, need_numbers, need_sm
 
 # Time between the states of a trajectory that is given by its length, s.
 _SAMPLE_S = 0.02
+# This number of states takes 32 MB.
+_MOST_SAMPLES = 1_000_000
 # Wheels settle, and are measured for at least this long, s.
 _LEAST_S, _MOST_S = 50.0, 250.0
 
@@ -57,7 +59,8 @@ def trajectory(
 
     Args:
         wheel: The wheel.
-        t: How long to follow it, s; or the times of the states, s, ascending from 0 or later.
+        t: How long to follow it, s, at most 20 000; or the times of the states, s, ascending from 0
+            or later.
         start: The state at time 0: x1, x2, phi (rad) and omega (rad/s). By default a wheel that
             rests at 0.01 rad.
 
@@ -70,6 +73,13 @@ def trajectory(
     wheel = need_wheel(wheel)
     times = need_ascending("t", t, "a number of seconds, or times that ascend from 0", 0.0)
     if len(times) == 1:
+        if times[0] > _MOST_SAMPLES * _SAMPLE_S:
+            raise wrong(
+                "t",
+                t,
+                f"at most {_MOST_SAMPLES * _SAMPLE_S:g} s, which are {_MOST_SAMPLES:,} states, or"
+                " the times of the states that you need, of two or more",
+            )
         times = np.asarray(np.arange(round(times[0] / _SAMPLE_S) + 1) * _SAMPLE_S)
     state = need_numbers("start", start, "four numbers: x1, x2, phi (rad) and omega (rad/s)")
     if len(state) != 4:

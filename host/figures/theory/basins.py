@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
 from typing import Any
 
@@ -54,14 +55,35 @@ _SLICE = (
 )
 
 
+def panels(options: Mapping[str, Any]) -> list[str]:
+    """The names of the panels; those of kicks are missing if no wheel rolls."""
+    return [
+        *(_starts_label(model) for model in MODEL_NAMES),
+        *(_kicks_label(kind, model) for model in MODEL_NAMES for kind in _LABELS),
+        *(_reversed_label(kind) for kind in _LABELS),
+    ]
+
+
+def _starts_label(model: ModelName) -> str:
+    return f"starts-{model}"
+
+
+def _kicks_label(kind: tuple[str, int], model: ModelName) -> str:
+    return f"kicks-{_LABELS[kind]}-{model}"
+
+
+def _reversed_label(kind: tuple[str, int]) -> str:
+    return f"reversed-{_LABELS[kind]}"
+
+
 def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
     """The figure of the study's rows; without the kicks, if no wheel rolls."""
     numbers: Numbers = findings.numbers
     with styled():
         figure = Figure(**SIZE)
         if len(numbers["no_wheel_rolls"]) == len(MODEL_NAMES):
-            panels: Any = figure.subplots(1, 2, sharey=True)
-            used = _draw_basins(panels, rows, findings)
+            grid: Any = figure.subplots(1, 2, sharey=True)
+            used = _draw_basins(grid, rows, findings)
             figure.legend(
                 handles=_patches(used),
                 loc="outside lower center",
@@ -74,23 +96,23 @@ def draw(rows: list[BasinsRow], findings: Findings) -> Figure:
                 fontsize=17,
             )
             return figure
-        panels = figure.subplots(3, 4, width_ratios=(1.5, 1, 1, 1))
+        grid = figure.subplots(3, 4, width_ratios=(1.5, 1, 1, 1))
         figure.supxlabel(_SLICE, fontsize=11)
-        for axes in panels.flat:
+        for axes in grid.flat:
             axes.tick_params(labelsize=10)
-        used = _draw_basins(panels[:2, 0], rows, findings)
-        for line, model in zip(panels, MODEL_NAMES, strict=False):
+        used = _draw_basins(grid[:2, 0], rows, findings)
+        for line, model in zip(grid, MODEL_NAMES, strict=False):
             for axes, kind in zip(line[1:], _KINDS, strict=True):
-                axes.set_label(f"kicks-{_LABELS[kind]}-{model}")
+                axes.set_label(_kicks_label(kind, model))
                 used |= _draw_kicks(axes, kicks_of(rows, model, *kind), model)
                 axes.set_ylabel(f"{model}:\nlength (ms)", fontsize=11)
                 axes.set_xlabel("phase of rolling (°)", fontsize=11)
-        for (top, _, bottom), (kind, name) in zip(panels[:, 1:].T, _KINDS.items(), strict=True):
+        for (top, _, bottom), (kind, name) in zip(grid[:, 1:].T, _KINDS.items(), strict=True):
             top.set_title(name, fontsize=12)
-            bottom.set_label(f"reversed-{_LABELS[kind]}")
+            bottom.set_label(_reversed_label(kind))
             _draw_shares(bottom, rows, kind)
             bottom.set_ylabel("reversed (%)", fontsize=11)
-        _explain(panels[2, 0], used, rows)
+        _explain(grid[2, 0], used, rows)
         figure.suptitle(
             "Which start, and which kick of a wheel that rolls forward, leads where", fontsize=17
         )
@@ -105,7 +127,7 @@ def _draw_basins(panels: Any, rows: list[BasinsRow], findings: Findings) -> set[
     }
     used: set[int] = set()
     for axes, (model, title) in zip(panels, titles.items(), strict=True):
-        axes.set_label(f"starts-{model}")
+        axes.set_label(_starts_label(model))
         used |= _draw_starts(axes, starts_of(rows, model))
         axes.set_title(title, fontsize=12)
         axes.set_xlabel(r"angle $\varphi$ at the start", fontsize=11)

@@ -5,7 +5,7 @@ Laid out like the paper's figure of the homoclinic route, from locomotion down t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import ceil, floor, pi
 from typing import Any, Literal
 
@@ -19,6 +19,7 @@ from host.figures.theory.manifold_sides import sides
 from host.runs.contract import Findings
 from host.theory.analysis.phases import Phase
 from host.theory.model.wheel import Array
+from host.theory.studies.portrait import PAPERS_K
 from host.theory.studies.portrait_rows import (
     LinePart,
     PointRow,
@@ -59,21 +60,30 @@ _TURN, _WAY = 2 * pi, 6 * pi
 _FINE = 0.05
 
 
+def panels(options: Mapping[str, Any]) -> list[str]:
+    """The names of the panels."""
+    return [_label(k) for k in (PAPERS_K if options["k"] is None else [options["k"]])]
+
+
+def _label(k: float) -> str:
+    return f"k={k:g}"
+
+
 def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
     """The figure of the study's rows."""
     found = sorted(summaries(rows), key=lambda row: -row["k"])
     with styled():
         figure = Figure(**SIZE)
-        panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
-        for axes, row in zip(panels, found, strict=True):
+        column = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, row in zip(column, found, strict=True):
             _draw(axes, points(rows, row["k"]), row)
-        panels[-1].set_xlabel(r"wheel angle $\varphi$")
-        panels[-1].set_xticks(
+        column[-1].set_xlabel(r"wheel angle $\varphi$")
+        column[-1].set_xticks(
             np.arange(-4, 5) * pi / 4, [f"{degrees}°" for degrees in range(-180, 181, 45)]
         )
         share_legend(
             figure,
-            panels,
+            column,
             loc="outside lower center",
             ncols=5,
             fontsize=10.5,
@@ -84,7 +94,7 @@ def draw(rows: list[PortraitRow], findings: Findings) -> Figure:
 
 
 def _draw(axes: Axes, rows: list[PointRow], found: SummaryRow) -> None:
-    axes.set_label(f"k={found['k']:g}")
+    axes.set_label(_label(found["k"]))
     most = found["fastest"] / (2 * pi)
     _draw_lines(axes, rows, most)
     _draw_fixpoints(axes, rows)

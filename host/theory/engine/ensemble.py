@@ -176,7 +176,9 @@ def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
     )
     return WrongUse(
         f"{seconds:g} s of a wheel with {words} would take {steps:.1e} steps",
-        "choose a larger tau or I, a smaller k" if constants[4] else "give f above 0",
+        "choose a shorter time, a larger tau or I, or a smaller k"
+        if constants[4]
+        else "give f above 0",
     )
 
 

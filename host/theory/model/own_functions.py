@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from math import isfinite
+from pathlib import Path
 from types import FunctionType
 from typing import Any, NamedTuple
 
@@ -58,9 +60,19 @@ def parts(number: int) -> dict[str, Callable[..., Any]]:
     return {_PLACES[role]: function for role, function in own.items() if function is not None}
 
 
+def _place(error: Exception, function: FunctionType) -> str:
+    """Where a function does not compile, and why, as far as the compiler says."""
+    own = function.__code__
+    name = re.escape(Path(own.co_filename).name)
+    lines = re.findall(rf'{name}"?(?:, line | \()(\d+)', str(error))
+    why = [line.strip(" .") for line in str(error).splitlines() if line.strip()]
+    reason = why[1] if why[0].startswith("Failed in") and why[1:] else why[0]
+    return f"line {lines[-1] if lines else own.co_firstlineno} of {own.co_filename}: {reason}"
+
+
 def _require_compiled(role: str, function: Any) -> None:
     """Raise WrongUse if a function does not compile, or gives no finite number."""
-    from numba.core.errors import NumbaError
+    from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
     from sim_motor.compiled import compiled
 
@@ -77,10 +89,15 @@ def _require_compiled(role: str, function: Any) -> None:
         )
     try:
         value = compiled(function)(*arguments)
-    except (NumbaError, TypeError, NameError) as error:
-        first = str(error).strip().splitlines()[0]
+    except (
+        NumbaError,
+        UnsupportedBytecodeError,
+        AttributeError,
+        NameError,
+        TypeError,
+    ) as error:
         raise WrongUse(
-            f"{role} does not compile: {first}",
+            f"{role} does not compile, the function {function.__name__}, {_place(error, function)}",
             f"write a function of {signature}: numbers only, with functions of the module math;"
             " no arrays, texts, dictionaries or classes",
         ) from error

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import inf, isfinite
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 
 from host.errors import WrongUse
 from host.theory.model import own_functions
+from host.util.arguments import wrong
 from robot.controller import (
     actual_positions,
     membrane_rate,
@@ -145,10 +147,14 @@ class Wheel(NamedTuple):
         """The same wheel. Raises WrongUse if no wheel can have these constants."""
         above_0 = ("tau", "I", "bounded")
         for name, value in self._asdict().items():
+            wanted = "a finite number, " + ("above 0" if name in above_0 else "0 or more")
+            if name == "bounded":
+                wanted += ", or leave it out for no bound"
+            if not isinstance(value, Real) or isinstance(value, bool):
+                raise wrong(name, value, wanted)
             finite = isfinite(value) or (name == "bounded" and value == inf)
             if not finite or value < 0.0 or (value == 0.0 and name in above_0):
-                least = "above 0" if name in above_0 else "0 or more"
-                raise WrongUse(f"{name} cannot be {value!r}", f"give a finite number, {least}")
+                raise wrong(name, value, wanted)
         if self.rods not in (1, 2):
             raise WrongUse(f"a wheel cannot have {self.rods:g} rods", "give 1 or 2")
         if self.a > STEEPEST:

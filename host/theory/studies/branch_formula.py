@@ -132,19 +132,38 @@ def claim_m6(
     value, last, end = deviations[-1]
     name = _END.get(end, "the end of the branch")
     where = " and ".join(f"{low:.6g} to {high:.6g}" for low, high in near) or "nowhere"
-    shown = ", ".join(
-        f"{_formula(entry, wheel) / entry['omega'] - 1:+.1%} at k = {entry['k']:g}"
-        for entry in turned
-        if entry["rolling_wheel_off_by"] is not None
-    )
     return replace(
         claim,
         measured=last,
         holds=any(high == value for _, high in near),
         note=f"the formula's relative error at {along} = {value:.8g}, {name}; below"
-        f" 5 % for {along} = {where}; {shown}. The formula begins at k = {estimate(wheel):.4g},"
-        f" {estimate(wheel) / hopf(wheel).k:.2f} of the Hopf line's, where no rotation exists",
+        f" 5 % for {along} = {where}; {_shown(turned, wheel)}. {_begin(along, wheel)}",
     )
+
+
+def _shown(turned: list[Turning], wheel: Wheel) -> str:
+    """The formula's errors for wheels that roll, at their k and the wheel's other constants."""
+    errors = [
+        f"{_formula(entry, wheel) / entry['omega'] - 1:+.1%} at k = {entry['k']:g}"
+        for entry in turned
+        if entry["rolling_wheel_off_by"] is not None
+    ]
+    return ", ".join(errors) or "no wheel rolls at the k that were tried"
+
+
+def _begin(along: str, wheel: Wheel) -> str:
+    """Where the formula begins along a constant, in words."""
+    if along == "k":
+        return (
+            f"The formula begins at k = {estimate(wheel):.4g},"
+            f" {estimate(wheel) / hopf(wheel).k:.2f} of the Hopf line's, where no rotation exists"
+        )
+    if along == "I":
+        return "The formula is the same for all I"
+    if along == "f":
+        return f"The formula ends at f = a k tau / 2 = {wheel.a * wheel.k * wheel.tau / 2:.4g}"
+    least = 2 * wheel.f / (wheel.k * (wheel.tau if along == "a" else wheel.a))
+    return f"The formula begins at {along} = {least:.4g}, where a k tau = 2 f"
 
 
 def _formula(entry: Turning, wheel: Wheel) -> float:

@@ -28,6 +28,11 @@ _PASSAGES: dict[CyclePart, int] = {"FB": 2, "LLM": 4, "dry": 4}
 _LAST, _CLOSE = 25, 1e-2
 # A line for the period is fitted to this number of them.
 _CLOSEST = 8
+# The limit of the period's slope is off by up to three times what its highest term changes, and is
+# not given if this is more than a part of it.
+SAFE, _SMALL = 3.0, 0.03
+# Nor is it given if the saddle's rates differ by less than this part.
+_NEARLY_EQUAL = 0.03
 # Two values of a merging that differ by less (relative) are the same.
 _SAME = 1e-6
 # Where the paper's portraits find a wheel forth and back, and rolling.
@@ -47,7 +52,8 @@ class PeriodLaw(TypedDict):
     Attributes:
         slope_s: of a line through the last cycles.
         limit_s: of the law itself, from a fit to the last cycles that takes the saddle's second
-            rate into account.
+            rate into account; None if its error is not small, or both rates nearly agree.
+        limit_error_s: its error: SAFE times what the fit's highest term changes.
         predicted_s: minus the passages by a saddle in a period, divided by this rate.
         explained_s: the slope of a line through the same cycles by the law with both rates of the
             saddle, none of them fitted: what is left between slope_s and predicted_s is due to the
@@ -56,7 +62,8 @@ class PeriodLaw(TypedDict):
     """
 
     slope_s: float
-    limit_s: float
+    limit_s: float | None
+    limit_error_s: float | None
     predicted_s: float
     explained_s: float
     power: float
@@ -108,30 +115,36 @@ def period_law(rows: list[BranchRow], part: CyclePart, merging: MergingRow) -> P
     periods = np.array([row["period"] for row in cycles])
     times = periods / _PASSAGES[part]
 
-    def terms(rate: float) -> Array:
-        decays = np.exp(np.outer(times - times[0], [-rate, -faster, -2 * rate]))
-        return np.asarray(decays / distances[:, None])
+    def fitted(rate: float, count: int) -> Array:
+        """Distances by the law with `count` terms, in units of those of the cycles."""
+        decays = np.exp(np.outer(times - times[0], [-rate, -faster, -2 * rate][:count]))
+        terms = decays / distances[:, None]
+        return np.asarray(terms @ np.linalg.lstsq(terms, np.ones_like(times), rcond=None)[0])
 
-    def fitted(rate: float) -> Array:
-        """Distances by the law, in units of those of the cycles."""
-        coefficients = np.linalg.lstsq(terms(rate), np.ones_like(times), rcond=None)[0]
-        return np.asarray(terms(rate) @ coefficients)
-
-    def misfit(rate: float) -> float:
-        return float(np.sum((fitted(rate) - 1) ** 2))
+    def limit(count: int) -> float:
+        low, high = 0.8 * slower, 1.2 * slower
+        rate = minimize_scalar(
+            lambda rate: np.sum((fitted(rate, count) - 1) ** 2),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": 1e-9},
+        ).x
+        return -_PASSAGES[part] / float(rate)
 
     def slope(distances: Array) -> float:
         close = slice(-_CLOSEST, None)
         return float(np.polyfit(np.log(np.abs(distances[close])), periods[close], 1)[0])
 
     power = faster / slower - 1.0
-    bounds = (0.8 * slower, 1.2 * slower)
-    rate = minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-9}).x
+    found = limit(3)
+    error = SAFE * abs(found - limit(2))
+    known = power > _NEARLY_EQUAL and error < _SMALL * abs(found)
     return {
         "slope_s": slope(distances),
-        "limit_s": -_PASSAGES[part] / float(rate),
+        "limit_s": found if known else None,
+        "limit_error_s": error if known else None,
         "predicted_s": -_PASSAGES[part] / slower,
-        "explained_s": slope(fitted(slower) * distances),
+        "explained_s": slope(fitted(slower, 3) * distances),
         "power": power,
     }
 

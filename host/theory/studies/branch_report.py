@@ -146,8 +146,14 @@ def _answers(rows: list[BranchRow], numbers: Numbers, near: list[list[float]]) -
     ]
     for part, law in numbers["period_law"].items():
         if law:
+            limit = Answer("", law["limit_s"], law["limit_error_s"], "s").in_words()
+            if law["limit_s"] is None:
+                limit = (
+                    "not to be extrapolated, as the saddle's rates differ by"
+                    f" {100 * law['power']:.2g} % only"
+                )
             words = (
-                f"{law['slope_s']:.5g} s per ln(distance), in the limit {law['limit_s']:.5g} s;"
+                f"{law['slope_s']:.5g} s per ln(distance), in the limit {limit};"
                 f" predicted {law['predicted_s']:.5g} s. The saddle's second rate explains"
                 f" {law['explained_s']:.5g} s at these distances; what it adds falls as"
                 f" distance^{law['power']:.3g}"

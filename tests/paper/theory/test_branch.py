@@ -10,6 +10,7 @@ from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.theory.model.wheel import Wheel
 from host.theory.studies import branch
+from host.theory.studies.branch_formula import Deviation, claim_m6
 from host.theory.studies.branch_merging import period_law
 from host.theory.studies.registry import TABLE
 from tests.paper.theory import independent
@@ -76,26 +77,39 @@ def test_the_period_grows_towards_the_merging_as_the_saddles_growth_rate_says(fo
     for part, passages in (("FB", 2), ("LLM", 4)):
         law = found.numbers["period_law"][part]
         assert law["predicted_s"] == pytest.approx(-passages / growth, rel=1e-9)
-        assert law["limit_s"] == pytest.approx(law["predicted_s"], rel=2e-3)
+        assert law["limit_s"] == pytest.approx(law["predicted_s"], abs=law["limit_error_s"])
+        assert law["limit_error_s"] < 4e-3
         assert law["slope_s"] == pytest.approx(law["predicted_s"], rel=0.025)
         assert law["slope_s"] == pytest.approx(law["explained_s"], rel=2e-4)
         assert law["slope_s"] != pytest.approx(law["predicted_s"], rel=0.01)
 
 
-def test_where_the_saddle_quantity_is_positive_the_rate_of_decay_rules_the_period():
-    """As 2 exp(-0.8 T/2) + exp(-0.9 T/2), with the rates of another saddle."""
+def _law_of(growth, higher=0.0):
+    """The law of cycles whose distances fall as exp(-0.8 T/2) and exp(-growth T/2)."""
     periods = np.linspace(8.0, 30.0, 40)
-    values = 1.0 - 1e-3 * (2 * np.exp(-0.4 * periods) + np.exp(-0.45 * periods))
+    slow, fast = (np.exp(-rate * periods / 2) for rate in (0.8, growth))
+    values = 1.0 - 1e-3 * (2 * slow + fast + higher * (slow + fast) ** 2)
     rows = [
         {"part": "FB", "kind": "cycle", "way": None, "value": value, "period": period}
         for value, period in zip(values.tolist(), periods.tolist(), strict=True)
     ]
-    merging = {"value": 1.0, "eigenvalues": [[0.9, 0.0], [-0.8, 0.0], [-1.0, 0.0], [-11.0, 0.0]]}
-    law = period_law(rows, "FB", merging)
+    rates = (growth, -0.8, -1.0, -11.0)
+    merging = {"value": 1.0, "eigenvalues": [[rate, 0.0] for rate in rates]}
+    return period_law(rows, "FB", merging)
+
+
+def test_where_the_saddle_quantity_is_positive_the_rate_of_decay_rules_the_period():
+    law = _law_of(0.9)
     assert law["predicted_s"] == pytest.approx(-2 / 0.8)
     assert law["limit_s"] == pytest.approx(-2 / 0.8, rel=1e-4)
     assert law["explained_s"] == pytest.approx(law["slope_s"], rel=1e-6)
     assert law["power"] == pytest.approx(0.125)
+
+
+def test_the_limit_has_an_error_and_is_refused_where_both_rates_nearly_agree():
+    law = _law_of(0.9, 0.3)
+    assert abs(law["limit_s"] + 2 / 0.8) < law["limit_error_s"] < 0.02
+    assert _law_of(0.81, 0.3)["limit_s"] is None
 
 
 def test_rest_swings_and_rotations_are_stable_where_the_paper_finds_them(rows):
@@ -217,11 +231,25 @@ def test_nothing_to_find_is_said_and_drawn():
 def test_another_constant_is_followed_to_the_same_merging():
     along = setting(along="f", k=1.77731184665692)
     rows = rows_of(branch, along, ("merging",))
-    (point,) = branch.report([*rows, *rows_of(branch, along, ("turning",))], along).numbers[
-        "special_points"
-    ]
+    report = branch.report([*rows, *rows_of(branch, along, ("turning",))], along)
+    (point,) = report.numbers["special_points"]
     assert (point["type"], point["f"], point["k"]) == (
         "merging",
         pytest.approx(0.5, rel=1e-10),
         1.77731184665692,
     )
+
+
+@pytest.mark.parametrize(
+    ("along", "words"),
+    [
+        ("k", "begins at k = 1,"),
+        ("a", "begins at a = 2.162,"),
+        ("tau", "begins at tau = 0.1351,"),
+        ("f", "ends at f = a k tau / 2 = 0.925"),
+        ("I", "same for all I"),
+    ],
+)
+def test_m6_says_where_the_formula_begins_along_each_constant(along, words):
+    note = claim_m6([Deviation(1.0, 0.1, "")], [], [], along, Wheel()).note
+    assert words in note

@@ -225,7 +225,7 @@ def texts(x, a):
         (_outside(), "factor of the function around it"),
         (no_number, "return one finite number"),
         (infinite, "return one finite number"),
-        (texts, "does not compile"),
+        (texts, f"the function texts, line {texts.__code__.co_firstlineno + 1} of"),
         (lambda x: x, "does not compile"),
         (abs, "plain Python function"),
     ],

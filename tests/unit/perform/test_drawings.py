@@ -14,6 +14,8 @@ from host.runs.contract import Setting
 from host.runs.registry import complete_options
 from host.theory.studies import hopf
 
+_ALONG_A = "τ = 0.25 s   k = 1.85   f = 0.5 s   I = 0.05 s²   dry friction 0"
+
 
 def test_what_cannot_be_drawn_is_refused_before_work_begins(tmp_path, monkeypatch):
     monkeypatch.setattr(hopf, "simulate", None)
@@ -55,6 +57,7 @@ def test_a_panel_has_a_file_of_its_own(tmp_path):
         ("bifurcation", {}, "a = 4   τ = 0.25 s   tick 0.03 s"),
         ("leave-chaos", {}, "a = 4   τ = 1 s   k = 15   tick 0.03 s"),
         ("train-start", {}, ""),
+        ("branch", {"along": "a", "dry": 0.0}, _ALONG_A),
     ],
 )
 def test_the_corner_has_the_parameters_that_the_run_had(name, options, words):
@@ -64,4 +67,20 @@ def test_the_corner_has_the_parameters_that_the_run_had(name, options, words):
 
 
 def test_formats_are_written_once_and_in_their_order():
-    assert files("host.figures.theory.hopf", "svg, png,svg", None).formats == ("svg", "png")
+    assert files("host.figures.theory.hopf", "svg, png,svg", None, {}).formats == ("svg", "png")
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "there"),
+    [
+        ("portrait", {}, "k=1.65"),
+        ("portrait", {"k": 2.0}, "k=2"),
+        ("basins", {}, "kicks-phase-plus-sampled"),
+    ],
+)
+def test_a_panel_that_depends_on_the_run_is_refused_before_it(name, options, there):
+    found = find(name)
+    complete = complete_options(name, found.entry, options)
+    assert files(found.figures, "png", there, complete).panel == there
+    with pytest.raises(WrongUse, match="no panel 'k=3'"):
+        files(found.figures, "png", "k=3", complete)
