@@ -10,10 +10,13 @@ import sys
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
+from host.client.robot import connect
 from host.lab.forecasts import Forecasts
+from host.lab.one_file import one_file
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
+from host.lab.tape import make_tape
 from host.lab.worker import Worker
 from tests.lint.sources import ROOT
 
@@ -75,6 +78,7 @@ def main():
             take(browser, place, {"width": width, "height": height}, forecasts, basins)
         forecasts.close()
         basins.close()
+        take_replay(browser)
         browser.close()
     return 0
 
@@ -95,6 +99,25 @@ def take(browser, place, viewport, forecasts, basins):
                 shutil.copy(path, BEST / f"lab-{place}.png")
         page.close()
     station.close()
+
+
+def take_replay(browser):
+    """Take a picture of a replay, in a tick of a phase kick."""
+    with connect("sim://?seed=3") as robot, robot.recording() as log:
+        robot.wait(10.0)
+        robot.kick("phase", ticks=4, wheel="left")
+        robot.wait(5.0)
+        robot.kick("membrane")
+        robot.wait(5.0)
+    page = browser.new_page(viewport={"width": 1280, "height": 720})
+    page.set_content(one_file(make_tape(log, "phase-and-membrane.mcap")))
+    page.wait_for_function("() => window.lab")
+    page.locator("#time").fill(str(log.kicks()[0][0] + 1))
+    page.evaluate("document.activeElement.blur()")
+    page.wait_for_timeout(400)
+    path = save(page.screenshot(), "replay")
+    shutil.copy(path, BEST / "lab-replay.png")
+    page.close()
 
 
 if __name__ == "__main__":

@@ -9,14 +9,14 @@ from __future__ import annotations
 import base64
 import gzip
 import struct
-from math import inf, nan
+from math import inf, isfinite, nan
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse, printable
 from host.lab import derived, worked
 from host.logs.log import Gaps, Log
 from host.logs.mcap_reading import LogFile
-from host.logs.replay import Mismatch, Replayer, other_sources
+from host.logs.replay import Mismatch, Replayer, other_sources, too_large
 from host.logs.tap import Event
 from robot.record import STRUCT, Record, describe
 from robot.safety import RUNNING
@@ -160,7 +160,7 @@ def make_tape(log: Log | LogFile, name: str, cut: Cut | None = None) -> dict[str
 
     Raises:
         WrongUse: The part has no tick, or more than MOST_TICKS.
-        LogError: The file cannot be read any more.
+        LogError: The file cannot be read any more, or its numbers are too large to compute with.
     """
     cut = cut or Cut()
     total = log.total if isinstance(log, LogFile) else len(log)
@@ -171,19 +171,24 @@ def make_tape(log: Log | LogFile, name: str, cut: Cut | None = None) -> dict[str
         if isinstance(item, dict):
             writer.take_event(item)
         else:
-            writer.take_record(item)
+            try:
+                writer.take_record(item)
+            except OverflowError as error:
+                raise too_large(item) from error
         if writer.past:
             break
     else:
         writer.flush()
     if not writer.packed:
+        if cut == Cut():
+            raise WrongUse(f"{name} has no tick", "`kickctl log list` shows logs and their ticks")
         raise WrongUse(
             f"{name} has no tick in this part: {cut}",
             "--from and --to count in s from its first tick; `kickctl log list` shows how long"
             " logs are",
         )
     return {
-        "name": name,
+        "name": printable(name),
         "part": "" if cut == Cut() else str(cut),
         "ticks": len(writer.packed),
         "begin_s": writer.clock.begin_s,
@@ -245,7 +250,7 @@ def _verdict(replayer: Replayer, log: Log | LogFile) -> dict[str, Any]:
         "compared": result.compared,
         "not_comparable": result.not_comparable,
         "missing": result.missing,
-        "worst": result.worst,
+        "worst": result.worst if isfinite(result.worst) else None,
         "first_mismatch": None if result.first is None else str(result.first),
         "other_sources": other_sources(log.info),
         "damage": log.damage() if isinstance(log, LogFile) else "",

@@ -13,6 +13,7 @@ from struct import pack
 from typing import Any
 
 from host.logs.log import Gaps, Log
+from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import LogFile
 from host.logs.tap import Event
 from host.util.provenance import sources
@@ -212,6 +213,9 @@ class Replayer:
         Returns:
             Whether the log says what the potentials were before this tick, and each channel that
             differs in any bit.
+
+        Raises:
+            LogError: The numbers of the log are too large to compute with.
         """
         self._gaps.take(item)
         if isinstance(item, dict):
@@ -222,7 +226,10 @@ class Replayer:
             and self._followed
             and not (self._failed and item.state == FAULT)
         )
-        self.controller.step(item)
+        try:
+            self.controller.step(item)
+        except OverflowError as error:
+            raise too_large(item) from error
         if not known:
             self.controller.adopt(item)
         compares = known or item.state != RUNNING
@@ -246,6 +253,14 @@ class Replayer:
         self._failed = self._failed or event["event"] == "fault"
 
 
+def too_large(record: Record) -> LogError:
+    """What to say of a record with which nobody can compute."""
+    return LogError(
+        f"tick {record.tick} of the log, or the one before, has numbers too large to compute with",
+        "no robot has these: the log was changed or damaged; take one that is whole",
+    )
+
+
 def replay(log: Log | LogFile) -> ReplayResult:
     """Replay a log. In a log that was neither changed nor damaged, nothing differs.
 
@@ -256,7 +271,7 @@ def replay(log: Log | LogFile) -> ReplayResult:
         What was compared, and what differs.
 
     Raises:
-        LogError: The file cannot be read any more.
+        LogError: The file cannot be read any more, or its numbers are too large to compute with.
     """
     replayer = Replayer(log.info)
     for item in log.stream():

@@ -9,6 +9,7 @@ from host.lab import tape as tapes
 from host.lab.tape import Cut, make_tape
 from host.lab.worked import NOT_COMPARABLE, OTHER, ROUNDED, SAME
 from host.logs.log import Log
+from host.logs.mcap_files import LogError
 from host.logs.replay import replay
 from robot.record import NAMES, Record
 from robot.safety import RUNNING
@@ -109,6 +110,11 @@ def test_a_changed_log_says_in_which_tick(log, rows):
     elsewhere = make_tape(forged, "log")
     assert [row["tick"] for row in rows_of(elsewhere) if row["compared"] == ROUNDED] == [77]
     assert elsewhere["verdict"]["reproduced"]
+
+
+def test_numbers_that_no_page_can_show_are_said(log):
+    with pytest.raises(LogError, match=r"tick 77 .* numbers too large"):
+        make_tape(altered(log, 77, left_phi_rad=1e300), "log")
 
 
 def test_missing_ticks_and_a_second_start_of_the_program_have_their_places(log):

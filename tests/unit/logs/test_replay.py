@@ -5,6 +5,7 @@ from struct import pack, unpack
 import pytest
 
 from host.logs.log import Log
+from host.logs.mcap_files import LogError
 from host.logs.replay import replay
 from robot.loop import BATTERY_TICKS
 from robot.motors import Battery
@@ -232,3 +233,9 @@ def test_nothing_is_not_reproduced():
     rig = Rig()
     rig.run(1)
     assert not replay(rig.log()).reproduced
+
+
+def test_numbers_too_large_to_compute_with_are_said(rig):
+    log = changed(rig.log(), lambda record: record._replace(dt_s=1e300))
+    with pytest.raises(LogError, match="has numbers too large"):
+        replay(log)
