@@ -57,6 +57,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where the part of the log ends, in s from its first tick (default: its end). A page"
         " takes 20,000 ticks: ten minutes of 30 ms",
     )
+    group.add_argument(
+        "--twin",
+        nargs="?",
+        const="",
+        metavar="MOTOR",
+        help="show beside the robot a simulated one under the same kicks, with this entry of a"
+        " motors file, as `kickctl experiment calibrate` writes one (default: the EV3's motor)",
+    )
     add_force(group)
 
 
@@ -69,6 +77,10 @@ def wants_replay(options: argparse.Namespace) -> bool:
             raise WrongUse(
                 f"{name} cuts a log, and there is none", "name one: --replay LOG --from 10 --to 20"
             )
+    if options.twin is not None:
+        raise WrongUse(
+            "--twin goes beside a log, and there is none", "name one: --replay LOG --twin"
+        )
     if options.force:
         raise WrongUse("--force replaces a file, and none is written", "leave it out")
     return False
@@ -103,6 +115,7 @@ def _refuse_robots(options: argparse.Namespace) -> None:
 
 def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, Any]]:
     """The log and its tape. Says what is wrong with it."""
+    from host.kicking.robot_motor import EV3_ENTRY
     from host.lab.tape import Cut, make_tape
     from host.logs.mcap_reading import LogFile
 
@@ -113,7 +126,8 @@ def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, A
             "exchange them: both count from the start",
         )
     log = LogFile(path)
-    tape = make_tape(log, path.name, Cut(from_s, to_s))
+    motor = None if options.twin is None else options.twin or EV3_ENTRY
+    tape = make_tape(log, path.name, Cut(from_s, to_s), motor)
     verdict = tape["verdict"]
     if not verdict["reproduced"]:
         say(
@@ -127,7 +141,10 @@ def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, A
 
 def _facts(log: LogFile, tape: dict[str, Any]) -> dict[str, Any]:
     verdict = {name: value for name, value in tape["verdict"].items() if name != "damage"}
-    return {"ticks": tape["ticks"], **verdict, **damage_facts(log)}
+    facts = {"ticks": tape["ticks"], **verdict, **damage_facts(log)}
+    if tape["twin"] is not None:
+        facts["twin"] = {"motor": tape["twin"]["motor"], "kicks": tape["twin"]["kicks"]}
+    return facts
 
 
 def _export(options: argparse.Namespace, path: Path, source: Path) -> int:

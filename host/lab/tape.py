@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from host.errors import WrongUse, printable
 from host.lab import derived, worked
+from host.lab.twin import Twin, compare_kicks
 from host.logs.log import Gaps, Log
 from host.logs.mcap_reading import LogFile
 from host.logs.replay import Mismatch, Replayer, other_sources, too_large
@@ -68,9 +69,12 @@ class _Clock:
 class _Writer:
     """Follows a log, and packs the ticks of a cut."""
 
-    def __init__(self, name: str, info: dict[str, Any], cut: Cut) -> None:
+    def __init__(self, name: str, info: dict[str, Any], cut: Cut, twin: Twin | None) -> None:
         self.clock = _Clock()
         self.replayer = Replayer(info)
+        self.twin = twin
+        self.pair: tuple[list[Record], list[Record]] = ([], [])
+        self.packed_twin: list[bytes] = []
         self.packed: list[bytes] = []
         self.events: list[dict[str, Any]] = []
         self.gaps: list[dict[str, int]] = []
@@ -78,6 +82,7 @@ class _Writer:
         self._name = name
         self._cut = cut
         self._follower = derived.Follower()
+        self._twins_follower = derived.Follower()
         self._gaps = Gaps()
         self._waiting: list[Event] = []
 
@@ -85,6 +90,9 @@ class _Writer:
         self._gaps.take(event)
         self.replayer.take(event)
         self._follower.take_event(event)
+        self._twins_follower.take_event(event)
+        if self.twin is not None:
+            self.twin.take_event(event)
         if event["event"] == "restart":
             self.clock.restart()
         self._waiting.append(event)
@@ -101,6 +109,8 @@ class _Writer:
         values = self._follower.derive(record) or _NO_SPEED
         if since_s < self._cut.from_s:
             self._waiting.clear()
+            if self.twin is not None:
+                self.twin.pass_over(record, t_s)
             return
         if len(self.packed) == MOST_TICKS:
             raise too_long(self._name, self._cut)
@@ -110,8 +120,17 @@ class _Writer:
             self.gaps.append({"place": len(self.packed), "ticks": end - first})
         self.flush()
         # What the clock adds after a restart is 0 in all other logs: then the bits are the log's.
-        own = STRUCT.pack(*record._replace(t_s=t_s))
-        self.packed.append(own + _DERIVED.pack(*values) + worked.STRUCT.pack(*numbers))
+        shown = record._replace(t_s=t_s)
+        own = STRUCT.pack(*shown) + _DERIVED.pack(*values)
+        self.packed.append(own + worked.STRUCT.pack(*numbers))
+        if self.twin is not None:
+            self._take_twin(self.twin.take_record(shown, t_s), shown)
+
+    def _take_twin(self, twin: Record, robot: Record) -> None:
+        values = self._twins_follower.derive(twin) or _NO_SPEED
+        self.packed_twin.append(STRUCT.pack(*twin) + _DERIVED.pack(*values))
+        self.pair[0].append(robot)
+        self.pair[1].append(twin)
 
     def flush(self) -> None:
         """Note the events that came before the next record."""
@@ -146,7 +165,9 @@ class _Writer:
         return worked.ROUNDED if small and tolerance else worked.OTHER
 
 
-def make_tape(log: Log | LogFile, name: str, cut: Cut | None = None) -> dict[str, Any]:
+def make_tape(
+    log: Log | LogFile, name: str, cut: Cut | None = None, motor: str | None = None
+) -> dict[str, Any]:
     """Make the tape of a log.
 
     Args:
@@ -154,19 +175,21 @@ def make_tape(log: Log | LogFile, name: str, cut: Cut | None = None) -> dict[str
         name: What to call it on the page, such as its file's name.
         cut: Which part of it; None for all. What came before a cut is followed, so that the cut's
             first tick is known in full.
+        motor: The entry of a motors file with which a simulated twin goes beside the robot; None
+            for no twin.
 
     Returns:
         Plain JSON data, see MESSAGES.md.
 
     Raises:
-        WrongUse: The part has no tick, or more than MOST_TICKS.
+        WrongUse: The part has no tick, or more than MOST_TICKS; or there is no such motor.
         LogError: The file cannot be read any more, or its numbers are too large to compute with.
     """
     cut = cut or Cut()
     total = log.total if isinstance(log, LogFile) else len(log)
     if total is not None and total > MOST_TICKS and cut == Cut():
         raise too_long(name, cut)
-    writer = _Writer(name, log.info, cut)
+    writer = _Writer(name, log.info, cut, None if motor is None else _twin(motor, log.info))
     for item in log.stream():
         if isinstance(item, dict):
             writer.take_event(item)
@@ -198,10 +221,29 @@ def make_tape(log: Log | LogFile, name: str, cut: Cut | None = None) -> dict[str
         "gaps": writer.gaps,
         "verdict": _verdict(writer.replayer, log),
         "equations": {side: worked.lines_of(side) for side in ("left", "right")},
-        "records": base64.b64encode(
-            gzip.compress(b"".join(writer.packed), _COMPRESSION, mtime=0)
-        ).decode("ascii"),
+        "records": _written(writer.packed),
+        "twin": None
+        if writer.twin is None
+        else {
+            "motor": motor,
+            "derived": derived.describe(),
+            "kicks": compare_kicks(*writer.pair, writer.events),
+            "records": _written(writer.packed_twin),
+        },
     }
+
+
+def _written(packed: list[bytes]) -> str:
+    return base64.b64encode(gzip.compress(b"".join(packed), _COMPRESSION, mtime=0)).decode("ascii")
+
+
+def _twin(motor: str, info: dict[str, Any]) -> Twin:
+    from sim_motor.constants import load
+
+    try:
+        return Twin(load(motor), info.get("battery_v"))
+    except ValueError as error:
+        raise WrongUse(str(error), "name one of these: --twin NAME") from error
 
 
 def too_long(name: str, cut: Cut) -> WrongUse:

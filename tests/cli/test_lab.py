@@ -179,6 +179,7 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--replay", "x.mcap", "--brick", "sim://"), 2, "`lab --replay` reaches none"),
         (("--replay", "x.mcap", "--walls", "2"), 2, "--walls is for robots"),
         (("--replay", "x.mcap", "--from", "2", "--to", "1"), 2, "--from 2 lies behind --to 1"),
+        (("--twin",), 2, "--twin goes beside a log, and there is none"),
         (("--export", "x.txt", "x.mcap"), 2, "has another ending than .html"),
         (("--export", "no/x.html", "x.mcap"), 2, "there is no folder no"),
         (("--export", "x.html", "x.mcap", "--host", "::1"), 2, "--export writes a file"),
@@ -199,13 +200,19 @@ def log(tmp_path_factory):
 
 
 def test_an_export_says_its_size_and_replaces_no_file(kickctl, log):
-    status, out, err = kickctl("lab", "--export", "a.html", str(log), "--to", "3", "--json")
+    status, out, err = kickctl(
+        "lab", "--export", "a.html", str(log), "--to", "3", "--twin", "--json"
+    )
     told = json.loads(out)
     page = kickctl.folder / "a.html"
     assert (status, err) == (0, "")
     assert (told["file"], told["bytes"]) == ("a.html", page.stat().st_size)
     assert (told["ticks"], told["reproduced"], told["lost"]) == (92, True, 0)
+    assert told["twin"]["motor"] == "pybricks"
     assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
+    status, _, err = kickctl("lab", "--export", "b.html", str(log), "--twin", "none")
+    assert status == 2
+    assert "--twin NAME" in err
     status, _, err = kickctl("lab", "--export", "a.html", str(log))
     assert status == 2
     assert "a.html exists already" in err

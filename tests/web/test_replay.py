@@ -11,6 +11,7 @@ from host.lab.server import Lab
 from host.lab.tape import make_tape
 from robot.record import NAMES
 from tests.fakes import eventful
+from tests.lab.tapes import twins_rows_of
 from tests.web.test_access import assert_no_findings
 from tests.web.visitor import Visitor
 
@@ -120,6 +121,7 @@ def test_a_file_from_disk_shows_each_tick_with_its_equations(read_file, log, tap
     before = log.records[membrane - 1].left_x1
     assert any(typeset(f"from {before} to") in cells[0] for _, *cells in jumps)
     assert page.query_selector("#stop, #kicks, .kick, #hand-note") is None
+    assert page.locator("#twin-left").is_hidden()
 
 
 def test_keys_move_the_cursor_and_space_plays(read_file, tape):
@@ -190,6 +192,23 @@ def test_everybody_can_read_it(read_file, tape):
     reader.page.emulate_media(color_scheme="light")
     reader.page.set_viewport_size({"width": 1280, "height": 720})
     assert_no_findings(reader.page)
+
+
+def test_a_twin_stands_beside_the_robot(read_file, log):
+    tape = make_tape(log, "log", motor="pybricks")
+    reader = read_file(tape)
+    reader.go(300)
+    wheels = reader.state()["drawing"]["wheels"]
+    twin = reader.state()["twin"]
+    assert twin["kicks"] == tape["twin"]["kicks"]
+    row = twins_rows_of(tape)[300]
+    assert (row["left_x1"], row["right_torque"]) == (
+        twin["wheels"]["left"]["x1"],
+        twin["wheels"]["right"]["torque"],
+    )
+    assert twin["wheels"]["left"]["phi_rad"] != wheels["left"]["phi_rad"]
+    assert reader.page.locator("#twin-left").is_visible()
+    reader.reads("#about", "No kick was left alone for a second")
 
 
 def test_a_lab_without_robots_serves_a_replay(browser, read, tape):

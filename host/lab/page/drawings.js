@@ -40,9 +40,9 @@ export function addDrawings(frames, screen, views) {
 }
 
 /** Say by the labels of the wheels' canvases how they turn. */
-export function labelWheels(views) {
-    for (const side of ["left", "right"]) {
+export function labelWheels(views, ids = ["left-wheel", "right-wheel"]) {
+    ["left", "right"].forEach((side, n) => {
         const label = texts.wheelLabel(side, views?.wheels[side]);
-        byId(`${side}-wheel`).setAttribute("aria-label", label);
-    }
+        byId(ids[n]).setAttribute("aria-label", label);
+    });
 }

@@ -36,7 +36,8 @@ export function marksOf(tape, ring) {
         const { begin, ticks } = event.kick;
         let first = place;
         while (first < last && tick[first] < begin) first += 1;
-        add(first, "kick", said, ticks);
+        const twin = tape.twin?.kicks.find((one) => one.place === place);
+        add(first, "kick", twin ? words.beside(said, twin) : said, ticks);
     }
     for (const { place, ticks } of tape.gaps) add(place, "missing", words.missing(ticks));
     let differences = 0;

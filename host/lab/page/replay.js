@@ -13,6 +13,7 @@ import { words } from "./replay_texts.js";
 import { Screen } from "./screen.js";
 import { STATES } from "./store.js";
 import { loadTape } from "./tape.js";
+import { createTwin } from "./twin.js";
 import { Views } from "./views.js";
 import { createWorking } from "./working.js";
 
@@ -25,20 +26,21 @@ fillTexts(words);
 const screen = new Screen();
 setText(byId("loading"), words.loading);
 try {
-    const { tape, records } = await loadTape();
-    begin(tape, new RecordedRobot(tape, records));
+    const { tape, records, twin } = await loadTape();
+    begin(tape, new RecordedRobot(tape, records), twin);
     show(byId("loading"), false);
 } catch (error) {
     setText(byId("loading"), words.failed(error.message));
     window.lab = { state: () => ({ failed: error.message }) };
 }
 
-function begin(tape, robot) {
+function begin(tape, robot, twinTape) {
     const { columns } = robot.ring;
     const cursor = new Cursor(columns.t_s);
     robot.playout = cursor;
     const views = new Views(robot);
     views.linked = true;
+    const twin = twinTape && createTwin(tape, twinTape, cursor);
     const marks = marksOf(tape, robot.ring);
     const log = { marks, ticks: columns.tick, begin_s: tape.begin_s };
     const player = createPlayer(byId("player"), cursor, log);
@@ -62,6 +64,7 @@ function begin(tape, robot) {
             drawn = now;
             robot.setPlace(cursor.place);
             views.update();
+            twin?.update();
             player();
             working.update(cursor.place);
             happened();
@@ -70,11 +73,13 @@ function begin(tape, robot) {
             if (!cursor.playing && labelled !== cursor.place) {
                 labelled = cursor.place;
                 labelWheels(views);
+                twin?.label();
             }
         },
         () => {},
     );
     addDrawings(frames, screen, () => (left > 0 ? views : null));
+    twin?.add(frames, screen, () => left > 0);
     const band = byId("marks");
     const state = { marks, count: tape.ticks, edge: THUMB };
     frames.add(band, drawMarks, () => left > 0 && [state, screen.themeFor(band, 1, 1.5)]);
@@ -95,6 +100,7 @@ function begin(tape, robot) {
                 marks,
                 verdict: tape.verdict,
                 working: working.state(),
+                twin: twin?.state() ?? null,
                 drawing: { frames: frames.count, shown_s: views.time, wheels: views.wheels },
             }),
     };
@@ -112,7 +118,8 @@ function createAbout(root, tape) {
     const verdict = element("p", { className: "verdict" }, words.verdict(tape.verdict));
     verdict.classList.toggle("differs", !reproduced);
     const params = element("dd");
-    const facts = { log: tape.name, part: tape.part, ...tape.facts };
+    const motor = tape.twin?.motor;
+    const facts = { log: tape.name, part: tape.part, ...tape.facts, motor };
     const rows = Object.entries(facts)
         .filter(([, value]) => value)
         .flatMap(([name, value]) => [
@@ -120,6 +127,7 @@ function createAbout(root, tape) {
             element("dd", {}, value),
         ]);
     const list = element("dl", {}, ...rows, element("dt", {}, words.facts.params), params);
+    if (tape.twin) notes.push(words.twinKept(tape.twin.kicks));
     const said = notes.filter(Boolean).map((note) => element("p", { className: "fine" }, note));
     root.append(verdict, ...said, list);
     byId("log-name").textContent = tape.name;

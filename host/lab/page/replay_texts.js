@@ -6,12 +6,19 @@ import { texts } from "./texts.js";
 const wheelsOf = ({ wheels = [] }) =>
     wheels.length === 1 ? `${texts.sides[wheels[0]].toLowerCase()} wheel` : "both wheels";
 const why = (name) => (event) => name + (event.reason ? `: ${event.reason}` : "");
+const sameResults = ({ robot, twin }) =>
+    Object.entries(robot).every(([side, result]) => twin[side] === result);
+const listed = (results) =>
+    Object.entries(results)
+        .map(([side, result]) => `${texts.sides[side].toLowerCase()} ${result}`)
+        .join(", ");
 const FACTS = {
     brick: "Robot",
     started_utc: "Connected (UTC)",
     robot_software: "Release",
     seed: "Random seed",
     battery_v: "Battery (V)",
+    motor: "Motor of the twin",
 };
 
 export const words = {
@@ -22,6 +29,18 @@ export const words = {
     failed: (message) => sentences("The log cannot be shown", message),
     strips: "The seconds before",
     floorNote: "From the turns of the wheels since the log began. A wheel that slips misleads it.",
+
+    twin: "Its simulated twin",
+    twinStrips: "The twin's seconds before",
+    twinKept: (kicks) => {
+        const [same, total] = [kicks.filter(sameResults).length, kicks.length];
+        return total
+            ? `The simulated twin did the same after ${same} of ${counted(total, "kick", "kicks")}.`
+            : "No kick was left alone for a second, to compare the simulated twin.";
+    },
+    beside: (said, kick) =>
+        `${said}; twin: ${sameResults(kick) ? "the same" : listed(kick.twin)}` +
+        (sameResults(kick) ? "" : `, robot: ${listed(kick.robot)}`),
 
     working: "The equations in this tick",
     workingNote:

@@ -6,13 +6,18 @@ import { readKey } from "./keys.js";
 
 /**
  * Get the tape of this page.
- * @returns {Promise<{tape: object, records: DataView}>} What the tape says, and its packed records.
- *     It fails with an Error in words.
+ * @returns {Promise<{tape: object, records: DataView, twin: ?object}>} What the tape says, its
+ *     packed records, and those of the twin with their own derived channels. It fails with an Error
+ *     in words.
  */
 export async function loadTape() {
     const inside = document.getElementById("tape");
-    const { records, ...tape } = JSON.parse(inside ? inside.textContent : await fetched());
-    return { tape, records: await unpacked(records) };
+    const { records, twin, ...tape } = JSON.parse(inside ? inside.textContent : await fetched());
+    return {
+        tape: { ...tape, twin: twin && { motor: twin.motor, kicks: twin.kicks } },
+        records: await unpacked(records),
+        twin: twin && { derived: twin.derived, records: await unpacked(twin.records) },
+    };
 }
 
 async function fetched() {
