@@ -63,7 +63,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         const="",
         metavar="MOTOR",
         help="show beside the robot a simulated one under the same kicks, with this entry of a"
-        " motors file, as `kickctl experiment calibrate` writes one (default: the EV3's motor)",
+        " motors file, as `kickctl experiment calibrate` writes one (default: the EV3's motor)."
+        " It takes as long again",
     )
     add_force(group)
 
