@@ -9,11 +9,13 @@ from robot.kernel import socket
 from robot.lights import Lights
 from robot.motors import MonotonicClock, MotorFault
 from robot.notify import Notify
-from robot.program import choose_seed, parser, run, say
+from robot.program import arguments, choose_seed, run
 from robot.speaker import Speaker
 from robot.watchdog import Watchdog, stop_all
+from robot.words import say
 
 PORTS = ("outA", "outB", "outC", "outD")
+_LEFT, _RIGHT, _SYSFS = "outB", "outC", "/sys/class"
 _NO_WATCHDOG = (
     "the process that would watch the program cannot start ({}): end other programs, or restart the"
     " machine"
@@ -66,39 +68,28 @@ def main():
     Returns:
         The exit status: 0 when it was ended, 2 if it could not start.
     """
-    arguments = parser("The robot's program on the brick.", host=_everywhere())
-    arguments.add_argument(
-        "--left", default="outB", choices=PORTS, help="port of the left motor (default %(default)s)"
-    )
-    arguments.add_argument(
-        "--right",
-        default="outC",
-        choices=PORTS,
-        help="port of the right motor (default %(default)s)",
-    )
-    arguments.add_argument(
-        "--sysfs",
-        default="/sys/class",
-        metavar="FOLDER",
-        help="where the kernel's devices are (default %(default)s)",
-    )
-    arguments.add_argument(
-        "--motors",
-        metavar="MODULE:FACTORY",
-        help="drive your own motors, which this function returns, instead of the brick's; see"
+    known = arguments("The robot's program on the brick.", _everywhere())
+    known.add("left", _LEFT, "port of the left motor", "PORT", choices=PORTS)
+    known.add("right", _RIGHT, "port of the right motor", "PORT", choices=PORTS)
+    known.add("sysfs", _SYSFS, "where the kernel's devices are", "FOLDER")
+    known.add(
+        "motors",
+        None,
+        "drive your own motors, which this function returns, instead of the brick's; see"
         " docs/own-motors.md",
+        "MODULE:FACTORY",
     )
-    options = arguments.parse_args()
+    options = known.parse(sys.argv[1:])
     if options.motors is not None:
-        for name in ("left", "right", "sysfs"):
-            if getattr(options, name) != arguments.get_default(name):
-                arguments.error(
+        for name, default in (("left", _LEFT), ("right", _RIGHT), ("sysfs", _SYSFS)):
+            if getattr(options, name) != default:
+                known.error(
                     "--{} is about the brick's motors, and --motors replaces them: leave one of"
                     " them out".format(name)
                 )
         return _drive_own(options)
     if options.left == options.right:
-        arguments.error("both motors cannot be at {}".format(options.left))
+        known.error("both motors cannot be at {}".format(options.left))
     return _drive_brick(options)
 
 

@@ -1,14 +1,14 @@
 """The table of the robot's commands: what anyone may ask, and what the host with the lease may."""
 
-from collections import OrderedDict, namedtuple
+from collections import OrderedDict
 from functools import lru_cache
+from types import SimpleNamespace
 
 from robot import params, record, wire
 from robot.errors import Refused
 from robot.loop import LATENESS_EDGES_S
 from robot.words import person
 
-Command = namedtuple("Command", "name sealed arguments doc run")
 # The part of the status that says how punctual ticks are, as JSON without the counts.
 _LATENESS = b'{"lateness":{"edges_s":%s,"counts":%%s}}' % wire.dump(LATENESS_EDGES_S)
 
@@ -138,60 +138,65 @@ def _set(loop, session, message):
     return {"tick": loop.set_params(message.get("set"))}
 
 
+# Not a namedtuple, see robot/params.py.
+def _row(name, sealed, arguments, doc, run):
+    return SimpleNamespace(name=name, sealed=sealed, arguments=arguments, doc=doc, run=run)
+
+
 _ROWS = (
-    Command(
+    _row(
         "status",
         False,
         (),
         "state, parameters in force, battery, who controls, and how punctual the ticks are",
         _status,
     ),
-    Command(
+    _row(
         "describe",
         False,
         ("table",),
         "one of the robot's tables: params, channels, commands",
         _describe,
     ),
-    Command(
+    _row(
         "subscribe",
         False,
         ("from",),
         "send records and events from a tick on, by default from the next",
         _subscribe,
     ),
-    Command("unsubscribe", False, (), "send no more records", _unsubscribe),
-    Command(
+    _row("unsubscribe", False, (), "send no more records", _unsubscribe),
+    _row(
         "identify", False, (), "show which robot this is for 3 s: blink, beep, or say it", _identify
     ),
-    Command(
+    _row(
         "lease",
         True,
         ("take_over",),
         "take control; refused while another host has it, unless take_over is true",
         _lease,
     ),
-    Command("release", True, (), "give control back; the robot goes on as it is", _release),
-    Command(
+    _row("release", True, (), "give control back; the robot goes on as it is", _release),
+    _row(
         "heartbeat",
         True,
         (),
         "show the robot that the host that controls it is alive; says who has taken over from it",
         _heartbeat,
     ),
-    Command("start", True, (), "run, from random membrane potentials", _controlled(_start)),
-    Command(
+    _row("start", True, (), "run, from random membrane potentials", _controlled(_start)),
+    _row(
         "stop", True, (), "stop the motors; anyone may also send a stop frame", _controlled(_stop)
     ),
-    Command("clear", True, (), "leave a fault once its cause is mended", _controlled(_clear)),
-    Command(
+    _row("clear", True, (), "leave a fault once its cause is mended", _controlled(_clear)),
+    _row(
         "kick",
         True,
         ("kick",),
         "begin a kick in the next tick; a repeated id is answered, not repeated",
         _controlled(_kick),
     ),
-    Command(
+    _row(
         "set",
         True,
         ("set",),
@@ -208,7 +213,8 @@ def describe():
     Returns:
         A list of dictionaries: name, sealed, arguments, doc.
     """
-    return [OrderedDict(zip(Command._fields[:-1], row)) for row in _ROWS]
+    keys = ("name", "sealed", "arguments", "doc")
+    return [OrderedDict((key, getattr(row, key)) for key in keys) for row in _ROWS]
 
 
 def execute(loop, session, message, sealed):

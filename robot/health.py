@@ -3,7 +3,6 @@
 `kickctl deploy` has the brick ask this before it trusts a release.
 """
 
-import argparse
 import binascii
 import os
 import socket
@@ -11,8 +10,9 @@ import sys
 import time
 
 from robot import __version__, sources, token, wire
-from robot.program import say
+from robot.arguments import Arguments
 from robot.wire import PORT
+from robot.words import say
 
 # Where a program that listens on every address of its machine is asked.
 LOOPBACK = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104
@@ -122,13 +122,11 @@ def main():
 
     Returns WELL, UNWELL, or IN_FAULT if the program is well but the robot is in fault.
     """
-    arguments = argparse.ArgumentParser(
-        description="Asks the robot's program on this machine whether it is well."
-    )
-    arguments.add_argument("--host", default="127.0.0.1")
-    arguments.add_argument("--port", type=int, default=PORT)
-    arguments.add_argument("--token", default=token.default_path())
-    options = arguments.parse_args()
+    arguments = Arguments("Asks the robot's program on this machine whether it is well.")
+    arguments.add("host", "127.0.0.1", "address on which it listens", "ADDRESS")
+    arguments.add("port", PORT, "its TCP port", "PORT", int)
+    arguments.add("token", token.default_path(), "its token file", "FILE")
+    options = arguments.parse(sys.argv[1:])
     try:
         words, fault = _describe(examine(options.host, options.port, token.load(options.token)))
     except token.TokenError as error:

@@ -163,11 +163,11 @@ class Loop(object):
 
     def _drive(self, side, polarity, tick, dt_s):
         """One wheel's tick, from its angle to its duty cycle in %. Raises MotorFault."""
-        wheel, motor, travel = side
+        wheel, motor = side.wheel, side.motor
         wheel.phi = phi = polarity * motor.angle_rad()
         if not isfinite(phi):
             raise MotorFault("the {} motor's angle is no number: {}".format(wheel.side, phi))
-        travel.append(phi)
+        side.travel.append(phi)
         if self.safety.state != RUNNING:
             wheel.rest()
             return 0

@@ -3,101 +3,70 @@
 The brick and the simulated brick differ only in the motors, battery, clock and panels they hand in.
 """
 
-import argparse
 import os
 import sys
 
 from robot import schedule, token
+from robot.arguments import WRONG_USE, Arguments
 from robot.errors import Refused
 from robot.kernel import signal, socket
 from robot.loop import Loop
 from robot.serial_line import BAUD, SerialLine
 from robot.server import Server
 from robot.wire import PORT
+from robot.words import say
 
 # On the brick, sending a record takes as long as a tick, and sending four hardly longer.
 RECORDS_S = 0.1
-
-
-def say(text, stream):
-    """Print a line, if it can be printed.
-
-    A full card, a closed terminal or a letter that it does not know must not end the program.
-
-    Args:
-        text: The line.
-        stream: sys.stdout or sys.stderr; None if the program has none.
-    """
-    if stream is None:
-        return
-    encoding = stream.encoding or "ascii"
-    try:
-        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
-    except (OSError, ValueError):
-        pass
 
 
 def _warn(text):
     say(text, sys.stderr)
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose help can be printed in every locale, whatever a path in it is."""
-
-    def print_help(self, file=None):
-        say(self.format_help().rstrip(), file or sys.stdout)
-
-
-def parser(description, host):
-    """The parser of the arguments that every robot program has.
+def arguments(description, host):
+    """The arguments that every robot program has.
 
     Args:
         description: What the program is, for its help text.
         host: The address on which it listens by default.
 
     Returns:
-        An argparse.ArgumentParser, to which a program may add its own arguments.
+        A robot.arguments.Arguments, to which a program may add its own.
     """
-    arguments = _Parser(prog="robot", description=description)
-    arguments.add_argument(
-        "--host", default=host, help="address to listen on (default %(default)s)"
+    known = Arguments(description)
+    known.add("host", host, "address to listen on", "ADDRESS")
+    known.add("port", PORT, "TCP port to listen on, 0 for any that is free", "PORT", int)
+    known.add(
+        "serial",
+        None,
+        "serve this serial line as well (default baud rate {})".format(BAUD),
+        "DEVICE[@BAUD]",
     )
-    arguments.add_argument(
-        "--port",
-        type=int,
-        default=PORT,
-        help="TCP port to listen on, 0 for any that is free (default %(default)s)",
+    known.add(
+        "token",
+        token.default_path(),
+        "token file; the program writes one if there is none",
+        "FILE",
     )
-    arguments.add_argument(
-        "--serial",
-        metavar="DEVICE[@BAUD]",
-        help="serve this serial line as well (default baud rate {})".format(BAUD),
+    known.add("seed", None, "random seed of the neurons' start values", "NUMBER", int)
+    known.add("idle", False, "leave the motors off until a host starts the robot")
+    known.add(
+        "set",
+        [],
+        "start with this value of a parameter; may be repeated",
+        "NAME=VALUE",
+        many=True,
     )
-    arguments.add_argument(
-        "--token",
-        default=token.default_path(),
-        help="token file; the program writes one if there is none (default %(default)s)",
-    )
-    arguments.add_argument("--seed", type=int, help="random seed of the neurons' start values")
-    arguments.add_argument(
-        "--idle", action="store_true", help="leave the motors off until a host starts the robot"
-    )
-    arguments.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="start with this value of a parameter; may be repeated",
-    )
-    arguments.add_argument("--tick", type=float, metavar="S", help="control period in s")
-    return arguments
+    known.add("tick", None, "control period in s", "S", float)
+    return known
 
 
 def choose_seed(options):
     """The random seed that the arguments give, or a random one.
 
     Args:
-        options: The parsed arguments of `parser`.
+        options: The parsed `arguments`.
 
     Returns:
         A whole number, 0 or more.
@@ -109,7 +78,7 @@ def run(options, motors, battery, clock, seed, panels=(), brick=False):
     """Serve hosts and run the loop until SIGINT or SIGTERM. Prints READY when it listens.
 
     Args:
-        options: The parsed arguments of `parser`.
+        options: The parsed `arguments`.
         motors: The left and the right robot.motors.Motor.
         battery: A robot.motors.Battery, or None.
         clock: A robot.motors.Clock.
@@ -256,4 +225,4 @@ def _run(loop, server, serve):
 
 def _give_up(message):
     _warn(message)
-    return 2
+    return WRONG_USE

@@ -5,6 +5,7 @@ The black box keeps records in the same form.
 
 import struct
 from collections import OrderedDict, namedtuple
+from types import SimpleNamespace
 
 from robot.kicks import MODES, WHEELS
 
@@ -12,24 +13,39 @@ STATES = ("idle", "running", "held", "stopped", "fault")
 # The values of the `kick` channel: 0 for no kick, or 1 + the index of the mode that acts.
 KICK_NAMES = ("",) + MODES
 
-Channel = namedtuple("Channel", "name code unit doc")
+
+def channel(name, code, unit, doc):
+    """A value of each record.
+
+    Args:
+        name: Its name.
+        code: Its type, as in Python's struct.
+        unit: Its unit.
+        doc: What it is.
+
+    Returns:
+        All that as attributes.
+    """
+    # Not a namedtuple, see robot/params.py.
+    return SimpleNamespace(name=name, code=code, unit=unit, doc=doc)
+
 
 _TICK = (
-    Channel("tick", "I", "1", "number of the tick, without gaps since the robot's program started"),
-    Channel("t_s", "d", "s", "the robot's clock when the tick began, since its program started"),
-    Channel(
+    channel("tick", "I", "1", "number of the tick, without gaps since the robot's program started"),
+    channel("t_s", "d", "s", "the robot's clock when the tick began, since its program started"),
+    channel(
         "dt_s", "d", "s", "delta t of the Euler step: measured since the tick before, within bounds"
     ),
-    Channel("late_s", "f", "s", "how long after its deadline the tick began"),
-    Channel("missed", "H", "1", "control periods without a tick since the tick before"),
-    Channel(
+    channel("late_s", "f", "s", "how long after its deadline the tick began"),
+    channel("missed", "H", "1", "control periods without a tick since the tick before"),
+    channel(
         "state",
         "B",
         "1",
         "state of the robot: "
         + ", ".join("{} {}".format(i, name) for i, name in enumerate(STATES)),
     ),
-    Channel(
+    channel(
         "kick",
         "B",
         "1",
@@ -38,19 +54,19 @@ _TICK = (
     ),
 )
 _WHEEL = (
-    Channel("phi_rad", "d", "rad", "wheel angle read in this tick, forward positive"),
-    Channel("x1", "d", "1", "membrane potential of the first neuron after the step"),
-    Channel("x2", "d", "1", "membrane potential of the second neuron after the step"),
-    Channel("force", "d", "1", "tangential force F_tan from the new potentials"),
-    Channel("torque", "d", "1", "relative torque M = tanh(F_tan)"),
-    Channel("duty_pct", "b", "%", "duty cycle written to the motor, forward positive"),
+    channel("phi_rad", "d", "rad", "wheel angle read in this tick, forward positive"),
+    channel("x1", "d", "1", "membrane potential of the first neuron after the step"),
+    channel("x2", "d", "1", "membrane potential of the second neuron after the step"),
+    channel("force", "d", "1", "tangential force F_tan from the new potentials"),
+    channel("torque", "d", "1", "relative torque M = tanh(F_tan)"),
+    channel("duty_pct", "b", "%", "duty cycle written to the motor, forward positive"),
 )
 
 CHANNELS = _TICK + tuple(
-    channel._replace(name=side + "_" + channel.name) for side in WHEELS for channel in _WHEEL
+    channel(side + "_" + row.name, row.code, row.unit, row.doc) for side in WHEELS for row in _WHEEL
 )
-NAMES = tuple(channel.name for channel in CHANNELS)
-STRUCT = struct.Struct("<" + "".join(channel.code for channel in CHANNELS))
+NAMES = tuple(row.name for row in CHANNELS)
+STRUCT = struct.Struct("<" + "".join(row.code for row in CHANNELS))
 Record = namedtuple("Record", NAMES)
 
 
@@ -60,7 +76,8 @@ def describe():
     Returns:
         A list of OrderedDicts with the keys name, code (as in Python's struct), unit and doc.
     """
-    return [OrderedDict(zip(Channel._fields, channel)) for channel in CHANNELS]
+    keys = ("name", "code", "unit", "doc")
+    return [OrderedDict((key, getattr(row, key)) for key in keys) for row in CHANNELS]
 
 
 def unpack(data):

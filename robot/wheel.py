@@ -1,7 +1,5 @@
 """One wheel's neurons from tick to tick: the controller's equations under a kick, if one acts."""
 
-from collections import namedtuple
-
 from robot.controller import actual_positions, lagging_angle, step_wheel
 from robot.kicks import WHEELS, apply_kick, direction, seen_positions
 
@@ -78,10 +76,15 @@ class Wheel(object):
         self.phi_before = None
 
 
-class Side(namedtuple("Side", "wheel motor travel")):
+class Side(object):
     """A wheel, its motor, and its latest angles (rad), which show where it goes."""
 
-    __slots__ = ()
+    __slots__ = ("wheel", "motor", "travel")
+
+    def __init__(self, wheel, motor, travel):
+        self.wheel = wheel
+        self.motor = motor
+        self.travel = travel
 
     def direction(self):
         """1 forward, -1 backward, 0 at rest."""

@@ -1,4 +1,4 @@
-"""How the robot writes names and times for people."""
+"""How the robot writes names and times for people, and prints its words."""
 
 
 def person(name):
@@ -28,3 +28,21 @@ def duration(seconds):
     if whole < 3600:
         return "{} min {} s".format(whole // 60, whole % 60)
     return "{} h {} min".format(whole // 3600, whole // 60 % 60)
+
+
+def say(text, stream):
+    """Print a line, if it can be printed.
+
+    A full card, a closed terminal or a letter that it does not know must not end the program.
+
+    Args:
+        text: The line.
+        stream: sys.stdout or sys.stderr; None if the program has none.
+    """
+    if stream is None:
+        return
+    encoding = stream.encoding or "ascii"
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
+    except (OSError, ValueError):
+        pass

@@ -15,7 +15,8 @@ import sys
 
 from robot.beacon import Announcer
 from robot.motors import MonotonicClock
-from robot.program import choose_seed, parser, run, say
+from robot.program import arguments, choose_seed, run
+from robot.words import say
 from sim_motor.brick import SimBrick
 from sim_motor.clock import VirtualClock
 from sim_motor.hand import SILENCE_S, Hand
@@ -25,41 +26,31 @@ from sim_motor.scene import Scene
 
 def main() -> int:
     """Run until interrupted. Returns the exit status."""
-    arguments = parser(
+    known = arguments(
         "A brick on the desk: the robot's program in real time, with simulated motors.",
         host="127.0.0.1",
     )
-    arguments.add_argument(
-        "--motor",
-        default="pybricks",
-        help="which set of constants of motors.toml (default %(default)s)",
-    )
-    arguments.add_argument(
-        "--battery", type=float, metavar="V", help="open-circuit voltage of the battery"
-    )
-    arguments.add_argument(
-        "--walls",
-        type=float,
-        metavar="M",
-        help="put the robot halfway between two walls, M metres apart",
-    )
-    arguments.add_argument(
-        "--hand",
-        action="store_true",
-        help="let lines on standard input pull at the wheels: 'left 1.25' pulls the left wheel"
-        " towards the angle 1.25 rad, 'left -' lets go, as does silence of"
+    known.add("motor", "pybricks", "which set of constants of motors.toml", "NAME")
+    known.add("battery", None, "open-circuit voltage of the battery", "V", float)
+    known.add("walls", None, "put the robot halfway between two walls, M metres apart", "M", float)
+    known.add(
+        "hand",
+        False,
+        "let lines on standard input pull at the wheels: 'left 1.25' pulls the left wheel towards"
+        " the angle 1.25 rad, 'left -' lets go, as does silence of"
         f" {SILENCE_S:g} s; the end of the input ends the program",
     )
-    arguments.add_argument(
-        "--sysfs",
-        metavar="MOUNTPOINT",
-        help="mount the motors' files there instead, without the robot's program",
+    known.add(
+        "sysfs",
+        None,
+        "mount the motors' files there instead, without the robot's program",
+        "MOUNTPOINT",
     )
-    options = arguments.parse_args()
+    options = known.parse(sys.argv[1:])
     if options.hand and options.sysfs:
-        arguments.error("--hand belongs to the robot's program, which --sysfs leaves out")
+        known.error("--hand belongs to the robot's program, which --sysfs leaves out")
     if options.hand and sys.stdin is None:
-        arguments.error("--hand reads standard input, and there is none: leave it open")
+        known.error("--hand reads standard input, and there is none: leave it open")
     seed = choose_seed(options)
     clock = VirtualClock(seed, jitter=False) if options.sysfs else MonotonicClock()
     try:
@@ -71,7 +62,7 @@ def main() -> int:
             scene=None if options.walls is None else Scene(walls=options.walls),
         )
     except ValueError as error:
-        arguments.error(str(error))
+        known.error(str(error))
     if options.sysfs:
         return serve(options.sysfs, brick)
 

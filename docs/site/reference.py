@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Sequence
-from types import MethodType, ModuleType
+from types import MethodType, ModuleType, SimpleNamespace
 
 import kickctl
 import kickctl.theory
 from docs.site.command_line import pages as command_line
 from docs.site.markdown import table, toctree
-from robot.params import TABLE, Param
+from robot.params import TABLE
 from robot.record import CHANNELS
 from tests.faults.rows import ROWS
 
@@ -76,7 +76,7 @@ runs, and `--set NAME=VALUE` gives one to the robot that is simulated without `-
 """
 
 
-def _parameter(row: Param) -> str:
+def _parameter(row: SimpleNamespace) -> str:
     unit = "" if row.unit in ("", "1") else " " + row.unit
     allowed = (
         " or ".join(f"`{choice}`" for choice in row.choices)

@@ -14,24 +14,28 @@ from robot.blackbox import Snapshot
 from robot.controller import actual_positions, target_position
 from robot.kicks import WHEELS, Kick, apply_kick, seen_positions
 from robot.params import Params
-from robot.record import Channel, Record
+from robot.record import Record, channel
 from sim_motor.constants import data
 
 _WHEEL = (
-    Channel("target1", "f", "1", "where the first neuron wants its rod"),
-    Channel("target2", "f", "1", "where the second neuron wants its rod"),
-    Channel("seen1", "f", "1", "the position that the first neuron sees"),
-    Channel("seen2", "f", "1", "the position that the second neuron sees"),
-    Channel("omega_rad_s", "f", "rad/s", "speed since the record before, forward positive"),
-    Channel("lag_rad", "f", "rad", "how far the angle atan2(x2, x1) lies behind phi_rad"),
+    channel("target1", "f", "1", "where the first neuron wants its rod"),
+    channel("target2", "f", "1", "where the second neuron wants its rod"),
+    channel("seen1", "f", "1", "the position that the first neuron sees"),
+    channel("seen2", "f", "1", "the position that the second neuron sees"),
+    channel("omega_rad_s", "f", "rad/s", "speed since the record before, forward positive"),
+    channel("lag_rad", "f", "rad", "how far the angle atan2(x2, x1) lies behind phi_rad"),
 )
 _PLACE = (
-    Channel("x_m", "f", "m", "place by odometry since the lab began, along its first heading"),
-    Channel("y_m", "f", "m", "place by odometry, to the left of the first heading"),
-    Channel("heading_rad", "f", "rad", "heading by odometry, to the left positive"),
+    channel("x_m", "f", "m", "place by odometry since the lab began, along its first heading"),
+    channel("y_m", "f", "m", "place by odometry, to the left of the first heading"),
+    channel("heading_rad", "f", "rad", "heading by odometry, to the left positive"),
 )
 CHANNELS = (
-    *(row._replace(name=f"{side}_{row.name}") for side in WHEELS for row in _WHEEL),
+    *(
+        channel(f"{side}_{row.name}", row.code, row.unit, row.doc)
+        for side in WHEELS
+        for row in _WHEEL
+    ),
     *_PLACE,
 )
 
@@ -52,7 +56,7 @@ def body() -> Body:
 
 def describe() -> list[dict[str, str]]:
     """The derived channels as plain data, in the order of `Follower.derive`."""
-    return [dict(row._asdict()) for row in CHANNELS]
+    return [dict(vars(row)) for row in CHANNELS]
 
 
 class Follower:

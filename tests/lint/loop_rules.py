@@ -11,13 +11,14 @@ from collections.abc import Iterator
 BEFORE_THE_LOOP = {
     ("robot/__main__.py", "_drive_brick"),
     ("robot/__main__.py", "_drive_own"),
+    ("robot/arguments.py", "_help"),
     ("robot/schedule.py", "lock_memory"),
     ("robot/serial_line.py", "__init__"),
 }
 STARTERS = {"platform", "subprocess", "multiprocessing"}  # `platform` runs uname on Python 3.5
 STARTING_CALLS = {"fork", "forkpty", "popen", "system"}
 MAY_FORK = "robot/watchdog.py"  # before the loop, and before anything is open
-MAY_PRINT = ("robot/program.py", "say")
+MAY_PRINT = ("robot/words.py", "say")
 
 
 def violations(path: str, source: str) -> list[tuple[int, str]]:
@@ -52,12 +53,12 @@ def _calls(path: str, function: str, node: ast.AST) -> Iterator[tuple[int, str]]
         if name in STARTING_CALLS and path != MAY_FORK:
             yield node.lineno, f"{name} starts a process, which takes longer than a tick"
         if name == "write" and ast.unparse(node.func.value) in ("sys.stdout", "sys.stderr"):
-            yield node.lineno, "a locale may not know a letter of it: use robot.program.say"
+            yield node.lineno, "a locale may not know a letter of it: use robot.words.say"
         if name == "isprintable":
             yield node.lineno, "Python 3.5 knows no letter that is younger than 2015"
     elif isinstance(node.func, ast.Name):
         if node.func.id == "print" and (path, function) != MAY_PRINT:
-            yield node.lineno, "a locale may not know a letter of it: use robot.program.say"
+            yield node.lineno, "a locale may not know a letter of it: use robot.words.say"
         if node.func.id == "open" and _reads_text(node):
             yield node.lineno, "the locale would decide what the bytes mean: name the encoding"
 

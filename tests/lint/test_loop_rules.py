@@ -43,7 +43,7 @@ def test_the_rules_let_pass(source: str) -> None:
     ("path", "source"),
     [
         ("robot/serial_line.py", "class A:\n    def __init__(self):\n        import serial"),
-        ("robot/program.py", "def say(text):\n    print(text)"),
+        ("robot/words.py", "def say(text):\n    print(text)"),
         ("robot/watchdog.py", "import os\nos.fork()"),
     ],
 )

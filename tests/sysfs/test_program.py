@@ -60,7 +60,7 @@ def test_a_second_program_leaves_the_first_alone(live):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--left", "outZ"), "invalid choice"),
+        (("--left", "outZ"), "--left cannot be 'outZ': it is one of outA, outB, outC, outD"),
         (("--left", "outC"), "both motors cannot be at outC"),
         (("--set", "speed=3"), "there is no parameter 'speed'"),
         (("--set", "polarity_left"), "--set NAME=VALUE"),

@@ -70,22 +70,3 @@ def test_a_programming_error_stops_the_motors_and_names_itself(where):
     assert "the dog ate it" in rig.loop.safety.reason
     assert rig.motors[1].done[-1] == "stop"
     assert server.served == {"read": 2, "stop": 2, "serve": 1}[where]
-
-
-def test_a_line_is_printed_if_it_can_be():
-    class Latin:
-        encoding = "ascii"
-
-        def __init__(self):
-            self.text = ""
-
-        def write(self, text):
-            self.text += text.encode("ascii").decode("ascii")
-
-        def flush(self):
-            raise OSError(28, "No space left on device")
-
-    stream = Latin()
-    program.say("stopped by Zo\u00eb", stream)
-    assert stream.text == "stopped by Zo\\xeb\n"
-    program.say("nobody hears it", None)
