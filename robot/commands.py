@@ -2,6 +2,7 @@
 
 from collections import OrderedDict
 from functools import lru_cache
+from operator import attrgetter
 from types import SimpleNamespace
 
 from robot import params, record, wire
@@ -9,40 +10,37 @@ from robot.errors import Refused
 from robot.loop import LATENESS_EDGES_S
 from robot.words import person
 
+# What the status says of the loop that seldom changes.
+_OF_LOOP = ("battery_v", "missed", "overruns", "clamped", "real_time", "memory_locked")
+_TAKE_OF_LOOP = attrgetter(*_OF_LOOP)
 # The part of the status that says how punctual ticks are, as JSON without the counts.
 _LATENESS = b'{"lateness":{"edges_s":%s,"counts":%%s}}' % wire.dump(LATENESS_EDGES_S)
 
 
 @lru_cache(maxsize=1)
-def _seldom_new(facts, values):
-    """The part of the status that seldom changes, as JSON: bytes.
-
-    `facts` are pairs of a name and a value, `values` those of the parameters.
-    """
+def _seldom_new(state, reason, controller, of_loop, values):
+    """The part of the status that seldom changes, as JSON: bytes."""
+    facts = dict(zip(_OF_LOOP, of_loop), state=state, reason=reason, controller=controller)
     return wire.dump(dict(facts, params=OrderedDict(zip(params.TABLE, values))))
 
 
 def _status(loop, session, message):
     safety, lease, now = loop.safety, loop.lease, loop.clock.now()
-    facts = (
-        ("state", record.STATES[safety.state]),
-        ("reason", safety.reason),
-        ("battery_v", loop.battery_v),
-        ("controller", None if lease.holder is None else lease.name),
-        ("missed", loop.missed),
-        ("overruns", loop.overruns),
-        ("clamped", loop.clamped),
-        ("real_time", loop.real_time),
-        ("memory_locked", loop.memory_locked),
-    )
     often_new = {
         "tick": loop.blackbox.next_tick,
         "clock_s": now - loop.epoch,
         "oldest_tick": loop.blackbox.oldest_tick,
         "controller_held_s": lease.held_s(now),
     }
+    seldom_new = _seldom_new(
+        record.STATES[safety.state],
+        safety.reason,
+        None if lease.holder is None else lease.name,
+        _TAKE_OF_LOOP(loop),
+        params.IN_FORCE(loop.params),
+    )
     status = wire.join(wire.dump(often_new), _LATENESS % wire.dump(loop.lateness))
-    return wire.join(status, _seldom_new(facts, params.IN_FORCE(loop.params)))
+    return wire.join(status, seldom_new)
 
 
 def _describe(loop, session, message):

@@ -123,7 +123,8 @@ class Rig:
             "safety": (loop.safety.state, loop.safety.reason),
             "lease": dict(vars(loop.lease)),
             "wheels": [
-                (wheel.x1, wheel.x2, wheel.force, wheel.torque) for wheel, _, _ in loop._sides
+                (wheel.x1, wheel.x2, wheel.force, wheel.torque)
+                for wheel in [side.wheel for side in loop._sides]
             ],
             "kick": loop._kick and loop._kick.as_dict(),
             "kicks": (dict(loop._kick_begins), list(loop._kick_ids)),
