@@ -18,10 +18,15 @@ _LATENESS = b'{"lateness":{"edges_s":%s,"counts":%%s}}' % wire.dump(LATENESS_EDG
 
 
 @lru_cache(maxsize=1)
+def _params(values):
+    return wire.dump({"params": OrderedDict(zip(params.TABLE, values))})
+
+
+@lru_cache(maxsize=1)
 def _seldom_new(state, reason, controller, of_loop, values):
     """The part of the status that seldom changes, as JSON: bytes."""
     facts = dict(zip(_OF_LOOP, of_loop), state=state, reason=reason, controller=controller)
-    return wire.dump(dict(facts, params=OrderedDict(zip(params.TABLE, values))))
+    return wire.join(wire.dump(facts), _params(values))
 
 
 def _status(loop, session, message):
