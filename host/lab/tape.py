@@ -261,7 +261,7 @@ def _robot(info: dict[str, Any]) -> dict[str, Any]:
     return {
         "name": printable(str(info.get("brick", ""))),
         "channels": describe(),
-        "derived": [*derived.describe(), *(dict(row._asdict()) for row in worked.CHANNELS)],
+        "derived": [*derived.describe(), *(dict(vars(row)) for row in worked.CHANNELS)],
         "tick_s": info.get("params", {}).get("tick_s", 0.03),
         "stall": None,
         "track_m": place.track_m,

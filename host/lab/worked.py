@@ -21,48 +21,52 @@ from robot.controller import (
     target_position,
 )
 from robot.kicks import WHEELS, Kick, apply_kick, seen_positions
-from robot.record import NAMES, Channel, Record
+from robot.record import NAMES, Record, channel
 from robot.safety import limit_duty
 from robot.wheel import Wheel
 
 # How a recomputed tick compares with the logged one.
 NOT_COMPARABLE, SAME, ROUNDED, OTHER = range(4)
 _WHEEL = (
-    Channel("was1", "d", "1", "first potential before this tick"),
-    Channel("was2", "d", "1", "second potential before this tick"),
-    Channel("from1", "d", "1", "first potential after a kick, from which the neuron steps"),
-    Channel("from2", "d", "1", "second potential after a kick, from which the neuron steps"),
-    Channel("beta", "d", "1", "how far a kick inverts the seen positions"),
-    Channel("shift_rad", "d", "rad", "by which angle a kick shifts the seen positions"),
-    Channel("a", "d", "1", "gain in force in this tick"),
-    Channel("tau_s", "d", "s", "time constant in force in this tick"),
-    Channel("k", "d", "1", "spring constant in force in this tick"),
-    Channel("actual1", "d", "1", "actual position of the first rod"),
-    Channel("actual2", "d", "1", "actual position of the second rod"),
-    Channel("rod1", "d", "1", "position of the first rod in its force"),
-    Channel("rod2", "d", "1", "position of the second rod in its force"),
-    Channel("seen1", "d", "1", "position that the first neuron sees"),
-    Channel("seen2", "d", "1", "position that the second neuron sees"),
-    Channel("rate1", "d", "1/s", "rate of the first potential"),
-    Channel("rate2", "d", "1/s", "rate of the second potential"),
-    Channel("x1", "d", "1", "first potential after the step, recomputed"),
-    Channel("x2", "d", "1", "second potential after the step, recomputed"),
-    Channel("target1", "d", "1", "target position of the first rod"),
-    Channel("target2", "d", "1", "target position of the second rod"),
-    Channel("force1", "d", "1", "force on the first rod"),
-    Channel("force2", "d", "1", "force on the second rod"),
-    Channel("force", "d", "1", "F_tan, recomputed"),
-    Channel("torque", "d", "1", "M, recomputed"),
-    Channel("duty_scale", "d", "1", "the parameter of this name in this tick"),
-    Channel("max_duty_pct", "d", "%", "the parameter of this name in this tick"),
-    Channel("duty_pct", "d", "%", "duty cycle, recomputed from the logged torque"),
-    Channel("jumped", "B", "1", "1 if a kick makes the potentials jump in this tick"),
-    Channel("shifted", "B", "1", "1 if a kick changes the seen positions in this tick"),
-    Channel("rods", "B", "1", "1 if both rods exist"),
+    channel("was1", "d", "1", "first potential before this tick"),
+    channel("was2", "d", "1", "second potential before this tick"),
+    channel("from1", "d", "1", "first potential after a kick, from which the neuron steps"),
+    channel("from2", "d", "1", "second potential after a kick, from which the neuron steps"),
+    channel("beta", "d", "1", "how far a kick inverts the seen positions"),
+    channel("shift_rad", "d", "rad", "by which angle a kick shifts the seen positions"),
+    channel("a", "d", "1", "gain in force in this tick"),
+    channel("tau_s", "d", "s", "time constant in force in this tick"),
+    channel("k", "d", "1", "spring constant in force in this tick"),
+    channel("actual1", "d", "1", "actual position of the first rod"),
+    channel("actual2", "d", "1", "actual position of the second rod"),
+    channel("rod1", "d", "1", "position of the first rod in its force"),
+    channel("rod2", "d", "1", "position of the second rod in its force"),
+    channel("seen1", "d", "1", "position that the first neuron sees"),
+    channel("seen2", "d", "1", "position that the second neuron sees"),
+    channel("rate1", "d", "1/s", "rate of the first potential"),
+    channel("rate2", "d", "1/s", "rate of the second potential"),
+    channel("x1", "d", "1", "first potential after the step, recomputed"),
+    channel("x2", "d", "1", "second potential after the step, recomputed"),
+    channel("target1", "d", "1", "target position of the first rod"),
+    channel("target2", "d", "1", "target position of the second rod"),
+    channel("force1", "d", "1", "force on the first rod"),
+    channel("force2", "d", "1", "force on the second rod"),
+    channel("force", "d", "1", "F_tan, recomputed"),
+    channel("torque", "d", "1", "M, recomputed"),
+    channel("duty_scale", "d", "1", "the parameter of this name in this tick"),
+    channel("max_duty_pct", "d", "%", "the parameter of this name in this tick"),
+    channel("duty_pct", "d", "%", "duty cycle, recomputed from the logged torque"),
+    channel("jumped", "B", "1", "1 if a kick makes the potentials jump in this tick"),
+    channel("shifted", "B", "1", "1 if a kick changes the seen positions in this tick"),
+    channel("rods", "B", "1", "1 if both rods exist"),
 )
 CHANNELS = (
-    Channel("compared", "B", "1", "0 not comparable, 1 the same bits, 2 rounded, 3 different"),
-    *(row._replace(name=f"{side}_eq_{row.name}") for side in WHEELS for row in _WHEEL),
+    channel("compared", "B", "1", "0 not comparable, 1 the same bits, 2 rounded, 3 different"),
+    *(
+        channel(f"{side}_eq_{row.name}", row.code, row.unit, row.doc)
+        for side in WHEELS
+        for row in _WHEEL
+    ),
 )
 STRUCT = struct.Struct("<" + "".join(row.code for row in CHANNELS))
 # A wheel's numbers in a tick in which no equation acts.
