@@ -26,8 +26,8 @@ HELP = (
     "open a page on which you watch running robots, kick them, and see their attractors and"
     " basins. Without --brick it is a simulated robot. ^C ends the lab, and the exit status is 0"
 )
-# Robots, pages and predictions come before basins.
-_BASINS_NICENESS = 10
+# Robots and pages come before predictions and checks, and these before basins.
+_BASINS_NICENESS, _CHECKS_NICENESS = 10, 5
 # How long a robot may take to answer before the command says that it is not there yet (s).
 _FIND_S = 3.0
 
@@ -83,10 +83,9 @@ def run(options: argparse.Namespace) -> int:
 
     with ExitStack() as stack:
         forecasts, basins = Forecasts(), Worker("computes basins", _BASINS_NICENESS)
-        stack.callback(forecasts.close)
-        stack.callback(basins.close)
-        replays = Replays()
-        stack.callback(replays.close)
+        replays, checks = Replays(), Worker("checks exercises", _CHECKS_NICENESS)
+        for worker in (forecasts, basins, replays, checks):
+            stack.callback(worker.close)
         stations = [_station(robot, options, stack) for robot in _robots(options)]
         lab = stack.enter_context(
             Lab(
@@ -96,6 +95,7 @@ def run(options: argparse.Namespace) -> int:
                 forecasts=forecasts,
                 basins=basins,
                 replays=replays,
+                checks=checks,
             )
         )
         with suppress(KeyboardInterrupt):

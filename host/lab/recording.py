@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from host.logs.log_folder import in_folder
 from host.logs.mcap_files import McapTap
@@ -74,3 +74,32 @@ class Recording:
                 f"the log {self.name} ends here, since it cannot be written: {error.strerror}",
                 "is the disk full? The robot goes on",
             )
+
+
+class Recorded(Protocol):
+    """A robot with the logs that the lab has recorded of it, by the names of their files."""
+
+    @property
+    def name(self) -> str:
+        """What people call the robot."""
+
+    @property
+    def logs(self) -> Mapping[str, Recording]:
+        """Its logs."""
+
+
+def describe_logs(robots: Iterable[Recorded]) -> list[dict[str, Any]]:
+    """The logs of robots as plain data, for pages."""
+    return [
+        {"name": name, "robot": robot.name} | recording.ending()
+        for robot in robots
+        for name, recording in robot.logs.items()
+    ]
+
+
+def find_log(robots: Iterable[Recorded], name: str) -> Path | None:
+    """The file of a log; None if there is none of this name."""
+    for robot in robots:
+        if name in robot.logs:
+            return robot.logs[name].path
+    return None

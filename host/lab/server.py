@@ -41,6 +41,7 @@ class Lab:
         forecasts: Where kicks are predicted; None if nowhere. It is the caller's, too.
         basins: Where basins are computed; None if nowhere. It is the caller's, too.
         replays: Where logs are read for pages; None if nowhere. It is the caller's, too.
+        checks: Where exercises are checked; None if nowhere. It is the caller's, too.
 
     Attributes:
         session: What pages and robots have to do with each other.
@@ -57,9 +58,11 @@ class Lab:
         forecasts: Forecasts | None = None,
         basins: Worker | None = None,
         replays: Replays | None = None,
+        checks: Worker | None = None,
     ) -> None:
         self.keys = Keys()
         self.session = Session(self.keys, stations)
+        self.session.marking.worker = checks
         self.drive_url = self.view_url = ""
         self._site = Site(self.session, folder, replays)
         self._stations = stations

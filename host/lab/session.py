@@ -19,9 +19,12 @@ from host.lab.baton import Baton
 from host.lab.guesses import Guesses
 from host.lab.invitation import invitation
 from host.lab.keys import DRIVE, Keys
+from host.lab.lessons.marking import Marking
+from host.lab.lessons.texts import lessons
 from host.lab.page_end import Departed, Page
 from host.lab.poll import Poll
 from host.lab.presets import describe_presets, describe_primitives
+from host.lab.recording import describe_logs, find_log
 from host.lab.station import HISTORY, STOP, Station
 
 # How many pages there may be; some of the places are kept for those that may drive.
@@ -42,6 +45,7 @@ class Session:
 
     Attributes:
         pages: The pages that have joined, by number.
+        marking: Checks guided exercises.
         view_url: The page's address for who watches; empty before the server listens.
     """
 
@@ -51,6 +55,7 @@ class Session:
         self.baton = Baton()
         self.view_url = ""
         self._poll = Poll(self.pages, self.baton)
+        self.marking = Marking(self.stations)
         self._keys = keys
         self._strangers: list[Page] = []
         self._departed: dict[int, Departed] = {}
@@ -189,14 +194,24 @@ class Session:
             self._do(page, message, request, now)
         elif kind == "hand":
             self._hand(page, message, now)
-        elif kind == "logs":
-            page.answer(request, {"logs": self.logs()})
-        elif kind == "invite":
-            page.answer(request, invitation(self.view_url))
         elif kind in ("poll", "answer"):
             robot = self._station(message).name if kind == "poll" else ""
             self._poll.take(page, message, robot, now)
             page.answer(request, {})
+        else:
+            self._inform(page, message, request)
+
+    def _inform(self, page: Page, message: Message, request: int | None) -> None:
+        """Tell a page what it asks for, now or later."""
+        kind = message["type"]
+        if kind == "logs":
+            page.answer(request, {"logs": describe_logs(self.stations.values())})
+        elif kind == "invite":
+            page.answer(request, invitation(self.view_url))
+        elif kind == "lessons":
+            page.answer(request, {"lessons": lessons()})
+        elif kind == "check":
+            self.marking.take(page, message, request)
         elif kind == "predict":
             self._predict(page, message, request)
         elif kind == "basins":
@@ -334,20 +349,9 @@ class Session:
         self.baton.beat(page.number, now)
         station.hand(wheel, angle_rad)
 
-    def logs(self) -> list[Message]:
-        """The logs that this lab has recorded, as pages get them."""
-        return [
-            {"name": name, "robot": station.name} | recording.ending()
-            for station in self.stations.values()
-            for name, recording in station.logs.items()
-        ]
-
     def log(self, name: str) -> Path | None:
         """The file of a log that this lab has recorded; None if there is none of this name."""
-        for station in self.stations.values():
-            if name in station.logs:
-                return station.logs[name].path
-        return None
+        return find_log(self.stations.values(), name)
 
     def may_read(self, key: str, *, local: bool) -> bool:
         """Whether a key opens the logs."""

@@ -81,3 +81,18 @@ def test_kicks_that_do_not_fit_the_simulation_are_found_out(logs):
     words = [finding.words for finding in CHECKS["longer"](log) if not finding.ok]
     assert len(words) == 1
     assert "but not here: 5 ticks should reverse" in words[0]
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"lesson": "\ud800"}, "there is no exercise"),
+        ({"logs": []}, "a check needs 1 to"),
+        ({"logs": ["x"] * 51}, "a check needs 1 to"),
+        ({"logs": [7]}, "no log of this name"),
+        ({"logs": ["../secret.mcap"]}, "no log of this name"),
+    ],
+)
+def test_a_check_that_cannot_be_is_refused(lab, fields, words):
+    asked = {"lesson": "jump", "logs": ["a.mcap"], **fields}
+    assert words in lab.viewer().ask("check", **asked)["error"]["message"]

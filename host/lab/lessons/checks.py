@@ -26,9 +26,9 @@ FORWARD, BACKWARD, STOPPED = HEADINGS[1], HEADINGS[-1], HEADINGS[0]
 STARTS = 10
 # Shorter runs do not tell where a robot goes (s).
 _RUN_S = 1.0
-# In one tick, this many times as far as in any of the ticks before is a jump; less than the other
+# In one tick, this many times as fast as in any of the ticks before is a jump; less than the other
 # factor is none.
-_JUMP, _SMOOTH = 2.5, 1.7
+_JUMP, _SMOOTH = 2.0, 1.7
 _BEFORE = 12
 KICKS, LENGTHS = 10, 4
 # Kicks that would fit the simulation less often than this by chance do not fit it.
@@ -95,29 +95,30 @@ def _jump(log: Log) -> list[Finding]:
         *findings,
         Finding(
             min(one for one, _ in steps[MEMBRANE]) >= _JUMP,
-            f"in a membrane kick the memory went {flip:.1f} times as far in one tick as before it",
+            f"in a membrane kick the memory went {flip:.1f} times as fast in one tick as before it",
         ),
         Finding(
             creep <= _SMOOTH,
-            f"in a phase kick it went at most {creep:.1f} times as far as before: no jump",
+            f"in a phase kick it went at most {creep:.1f} times as fast as before: no jump",
         ),
         Finding(
             max(turn, way) <= _SMOOTH,
-            f"the wheel itself went at most {max(turn, way):.1f} times as far: no jump either",
+            f"the wheel itself went at most {max(turn, way):.1f} times as fast: no jump either",
         ),
     ]
 
 
 def _steps(log: Log, mode: str) -> list[tuple[float, float]]:
-    """How far memory and angle went in the ticks of each kick, compared with those before it."""
+    """How fast memory and angle went in the ticks of each kick, compared with those before it."""
     found = []
+    seconds = np.diff(log.column("t_s"))
     for place, kick in log.kicks():
         if kick["mode"] != mode or place < _BEFORE:
             continue
         for side in kick["wheels"]:
             columns = [log.column(f"{side}_{name}") for name in ("x1", "x2", "phi_rad")]
-            memory = np.hypot(np.diff(columns[0]), np.diff(columns[1]))
-            angle = np.abs(np.diff(columns[2]))
+            memory = np.hypot(np.diff(columns[0]), np.diff(columns[1])) / seconds
+            angle = np.abs(np.diff(columns[2])) / seconds
             usual = slice(place - _BEFORE, place - 1)
             during = slice(place - 1, place - 1 + kick["ticks"])
             if heading_of(columns[2][place - _BEFORE : place].tolist()) == STOPPED:

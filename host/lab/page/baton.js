@@ -21,8 +21,8 @@ export function createBaton(root, lab) {
     const send = (message) => lab.request(message).catch((no) => lab.tell(no));
 
     return () => {
-        const { baton, role, pages, mayDrive } = lab.store;
-        const mine = baton.you ? texts.youDrive : mayDrive ? texts.youMay : "";
+        const { baton, role, pages, canDrive } = lab.store;
+        const mine = baton.you ? texts.youDrive : canDrive ? texts.youMay : "";
         const other = baton.driver === null ? texts.nobodyDrives : texts.pageDrives(baton.driver);
         setText(who, sentences(mine || other, baton.you ? "" : baton.why));
         const others = baton.you ? baton.asking : [];

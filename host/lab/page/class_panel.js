@@ -60,7 +60,7 @@ export function createClass(root, opener, lab, kicks) {
         const { poll: now, baton, mayDrive, robot } = store;
         const drives = baton.you || (mayDrive && open);
         const { state } = now;
-        show(opener, mayDrive || store.role === "drive");
+        show(opener, store.canDrive || store.role === "drive");
         opener.setAttribute("aria-pressed", String(open));
         show(root, open || state !== "none");
         show(invitation.root, open);

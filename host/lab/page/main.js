@@ -10,6 +10,7 @@ import { Hand } from "./hand.js";
 import { createKTrace } from "./k_trace_panel.js";
 import { createKicks } from "./kick_panel.js";
 import { Lab } from "./lab.js";
+import { createLessons } from "./lesson_panel.js";
 import { createMovements } from "./movements.js";
 import { createNotices } from "./notices.js";
 import { createNow } from "./now.js";
@@ -48,6 +49,7 @@ const panels = [
     createBasins(byId("basins"), byId("lag-plane"), lab),
     createRecording(byId("recording"), lab),
     kTrace.update,
+    createLessons(byId("lessons"), byId("lessons-switch"), lab),
     createClass(byId("class"), byId("class-switch"), lab, kicks),
     () => stop.update(),
 ];

@@ -33,7 +33,7 @@ export function createNotices(root, lab) {
         show(again, Boolean(store.refused));
         if (off) setText(link.words, linkWords(store));
         const { driver, you, asking } = store.baton;
-        const watching = store.link.up && !store.mayDrive;
+        const watching = store.link.up && !store.canDrive;
         show(role.root, watching);
         const waits = asking.includes(store.page);
         const who = driver === null ? texts.nobodyDrives : texts.pageDrives(driver);

@@ -183,6 +183,8 @@ export class Store {
         this.pages = { driving: 0, watching: 0 };
         this.score = { guesses: 0, right: 0, predicted: 0, simulation: 0 };
         this.note = null;
+        /** Whether an exercise waits for a prediction, before which nothing moves. */
+        this.held = false;
         /** The newest `poll` message. */
         this.poll = { state: "none", score: { kicks: 0 } };
     }
@@ -192,10 +194,15 @@ export class Store {
         return this.robots[this.selected];
     }
 
-    /** @returns {boolean} Whether this page may command now; its first command takes the baton. */
-    get mayDrive() {
+    /** @returns {boolean} Whether this page could command; its first command takes the baton. */
+    get canDrive() {
         const free = this.role === "drive" && this.baton.driver === null;
         return this.link.up && (this.baton.you || free);
+    }
+
+    /** @returns {boolean} Whether this page may command now. */
+    get mayDrive() {
+        return this.canDrive && !this.held;
     }
 
     /** @param {string} name @returns {RobotView | undefined} */

@@ -1,0 +1,117 @@
+/** A guided exercise as it goes on: the prediction, the logs of what was done, and the check. */
+
+import { keep, recall } from "./storage.js";
+
+const KEPT = "lab.exercise";
+const DONE = "lab.exercises-done";
+
+/** What this tab remembers of exercises, so that a reload changes nothing. */
+export class Lesson {
+    /** @param {import("./lab.js").Lab} lab */
+    constructor(lab) {
+        this.lab = lab;
+        /** @type {object[]} The texts of all exercises, once the lab has told them. */
+        this.all = [];
+        /** @type {?{name: string, guess: ?number, locked: boolean, logs: string[], hints: number,
+         *     findings: object[], done: boolean}} The exercise that goes on. */
+        this.state = JSON.parse(recall("sessionStorage", KEPT) ?? "null");
+        /** @type {string[]} The names of the exercises that are done. */
+        this.done = JSON.parse(recall("sessionStorage", DONE) ?? "[]");
+        this.busy = false;
+        /** Whether the last thing went wrong; then the next one is a person's. */
+        this.stuck = false;
+        this.#changed();
+    }
+
+    /** @returns {?object} The texts of the exercise that goes on. */
+    get texts() {
+        return this.all.find(({ name }) => name === this.state?.name) ?? null;
+    }
+
+    /** Get the texts. */
+    async load() {
+        if (this.all.length || this.busy || !this.lab.store.link.up) return;
+        await this.#alone(async () => {
+            this.all = (await this.lab.request({ type: "lessons" })).lessons;
+        });
+    }
+
+    /** Begin an exercise: the robot stands still until the prediction is locked. */
+    choose(name) {
+        this.lab.send({ type: "stop", robot: this.lab.store.robot.name });
+        const fresh = { guess: null, locked: false, logs: [], hints: 0, findings: [], done: false };
+        this.state = { name, ...fresh };
+        this.#changed();
+    }
+
+    guess(answer) {
+        this.state.guess = answer;
+        this.#changed();
+    }
+
+    /** From here on the prediction holds, and the robot may move. */
+    lock() {
+        return this.#alone(async () => {
+            if (this.lab.store.robot.status.recording) await this.lab.do("record", { on: false });
+            await this.lab.do("set", { set: this.texts.set });
+            this.state.locked = true;
+        });
+    }
+
+    /** Have a log recorded as long as the exercise goes on, also after a reload. */
+    follow() {
+        const { canDrive, robot } = this.lab.store;
+        if (!this.state?.locked || this.state.done || this.busy || this.stuck || !canDrive) return;
+        if (!robot.status.recording) this.#alone(() => this.lab.do("record", { on: true }));
+    }
+
+    hint() {
+        this.state.hints += 1;
+        this.#changed();
+    }
+
+    /** Have the lab check what was done since the prediction. */
+    check() {
+        return this.#alone(async () => {
+            const { name, logs } = this.state;
+            const { recording } = this.lab.store.robot.status;
+            if (recording && !logs.includes(recording)) logs.push(recording);
+            this.#changed();
+            await this.lab.do("record", { on: false });
+            const found = await this.lab.request({ type: "check", lesson: name, logs });
+            Object.assign(this.state, found);
+            if (!found.done) return;
+            this.done = [...new Set([...this.done, name])];
+            keep("sessionStorage", DONE, JSON.stringify(this.done));
+        });
+    }
+
+    /** End the exercise, done or not. */
+    leave() {
+        const { locked, done } = this.state;
+        this.state = null;
+        this.#changed();
+        if (locked && !done) this.#alone(() => this.lab.do("record", { on: false }));
+    }
+
+    /** Do one thing at a time, and say what went wrong. */
+    async #alone(work) {
+        if (this.busy) return;
+        this.busy = this.lab.changed = true;
+        this.stuck = false;
+        try {
+            await work();
+        } catch (error) {
+            this.stuck = true;
+            this.lab.tell(error.message ? error : { message: String(error), hint: "" });
+        }
+        this.busy = false;
+        this.#changed();
+    }
+
+    #changed() {
+        keep("sessionStorage", KEPT, JSON.stringify(this.state));
+        this.lab.store.held = Boolean(this.state && !this.state.locked);
+        this.lab.changed = true;
+    }
+}

@@ -1,0 +1,127 @@
+/** The guided exercises: a question, a locked prediction, free play, a check, an explanation. */
+
+import { button, choices, element, setText, show } from "./dom.js";
+import { Lesson } from "./lesson.js";
+import { lessonTexts } from "./lesson_texts.js";
+
+/**
+ * @param {HTMLElement} root
+ * @param {HTMLButtonElement} opener Opens and closes the panel.
+ * @param {import("./lab.js").Lab} lab
+ * @returns {() => void} Brings the panel up to date.
+ */
+export function createLessons(root, opener, lab) {
+    const lesson = new Lesson(lab);
+    let open = lesson.state !== null;
+    let shown = "";
+    setText(opener, lessonTexts.button);
+    opener.setAttribute("aria-label", lessonTexts.buttonLabel);
+    root.setAttribute("aria-label", lessonTexts.title);
+    opener.onclick = () => {
+        open = !open;
+        lab.changed = true;
+    };
+
+    return () => {
+        const { robot, canDrive, role } = lab.store;
+        show(opener, canDrive || role === "drive");
+        opener.setAttribute("aria-pressed", String(open));
+        show(root, open && Boolean(robot));
+        if (robot) lesson.follow();
+        if (root.hidden) return;
+        if (!lesson.all.length) lesson.load();
+        const { all, done, state, busy } = lesson;
+        const known = JSON.stringify([all.length, done, state, busy, canDrive, robot.name]);
+        if (known === shown) return;
+        shown = known;
+        const focused = root.contains(document.activeElement) ? document.activeElement.id : "";
+        root.replaceChildren(...(lesson.texts ? steps(lesson, robot) : list(lesson)));
+        for (const control of root.querySelectorAll("button, fieldset")) {
+            control.disabled ||= busy || !canDrive;
+        }
+        if (focused) document.getElementById(focused)?.focus();
+    };
+}
+
+/** All exercises. */
+function list(lesson) {
+    const buttons = lesson.all.map(({ name, title }, n) => {
+        const mark = lesson.done.includes(name) ? ` ${lessonTexts.ok}` : "";
+        return button(`${n + 1} ${title}${mark}`, () => lesson.choose(name));
+    });
+    return [
+        element("h2", {}, lessonTexts.title),
+        element("p", {}, lessonTexts.intro),
+        element("div", { className: "buttons" }, ...buttons),
+    ];
+}
+
+/** The exercise that goes on, as far as it has come. */
+function steps(lesson, robot) {
+    const { texts, state } = lesson;
+    const parts = [
+        element("h2", {}, texts.title),
+        element("p", { className: "question" }, texts.question),
+        ...(state.locked ? play(lesson) : predict(lesson, robot)),
+    ];
+    if (state.done) parts.push(...explain(lesson));
+    const last = button(lessonTexts.leave, () => lesson.leave(), "quiet");
+    return [...parts, element("div", { className: "buttons" }, ...forward(lesson), last)];
+}
+
+function predict(lesson, robot) {
+    const { texts, state } = lesson;
+    if (texts.walls && robot.info.walls === null) return [element("p", {}, lessonTexts.walls)];
+    const answers = texts.answers.map((label, value) => ({ value, label }));
+    const group = choices("prediction", lessonTexts.prediction, answers, state.guess, (answer) =>
+        lesson.guess(answer),
+    );
+    group.classList.add("long");
+    const lock = button(lessonTexts.lock, () => lesson.lock(), "go");
+    lock.disabled = state.guess === null;
+    return [group, lock];
+}
+
+function play(lesson) {
+    const { texts, state, busy } = lesson;
+    const { ok, missing } = lessonTexts;
+    const parts = [
+        element("p", { className: "locked" }, lessonTexts.locked(texts.answers[state.guess])),
+    ];
+    if (!state.done) {
+        const hints = texts.hints.slice(0, state.hints).map((words) => element("li", {}, words));
+        parts.push(element("p", {}, texts.task), element("ul", {}, ...hints));
+    }
+    const verdict = element("p", { role: "status" });
+    if (busy) verdict.append(lessonTexts.checking);
+    else if (state.findings.length) verdict.append(lessonTexts[state.done ? "done" : "notYet"]);
+    const findings = state.findings.map((one) =>
+        element("li", {}, element("b", {}, one.ok ? ok : missing), ` ${one.words}`),
+    );
+    return [...parts, verdict, element("ul", { className: "findings" }, ...findings)];
+}
+
+function explain({ texts, state }) {
+    const [guess, answer] = [texts.answers[state.guess], texts.answers[texts.right]];
+    const verdict =
+        state.guess === texts.right ? lessonTexts.right(answer) : lessonTexts.wrong(guess, answer);
+    return [
+        element("p", { className: "verdict-line" }, verdict),
+        element("p", {}, texts.explanation),
+        element("p", {}, lessonTexts.misconception(texts.misconception)),
+    ];
+}
+
+/** The buttons that lead on. */
+function forward(lesson) {
+    const { all, texts, state } = lesson;
+    if (!state.locked) return [];
+    if (state.done) {
+        const next = all[all.indexOf(texts) + 1];
+        return next ? [button(lessonTexts.next, () => lesson.choose(next.name), "go")] : [];
+    }
+    const check = button(lessonTexts.check, () => lesson.check(), "go");
+    const hint = button(lessonTexts.hint, () => lesson.hint());
+    hint.disabled = state.hints >= texts.hints.length;
+    return [check, hint];
+}

@@ -1,0 +1,24 @@
+/** The words around the guided exercises; their own texts come from the lab. */
+
+export const lessonTexts = {
+    button: "Exercises",
+    buttonLabel: "Guided exercises: predict, try, check",
+    title: "Guided exercises",
+    intro: "Each one asks for a prediction first. Nothing moves before it is locked.",
+    prediction: "I predict:",
+    lock: "Lock my prediction",
+    locked: (answer) => `Your prediction is locked: ${answer}.`,
+    walls: "This exercise needs walls. End the lab and start it by: kickctl lab --walls 2",
+    hint: "A hint",
+    check: "Check what I did",
+    checking: "The log is being checked. The first time this takes some seconds …",
+    notYet: "Not yet. Go on; what you have done counts.",
+    done: "Done.",
+    right: (answer) => `You were right: ${answer}.`,
+    wrong: (guess, answer) => `You predicted: ${guess}. It is: ${answer}.`,
+    misconception: (words) => `What many people think at first: ‘${words}’`,
+    ok: "✓",
+    missing: "✗",
+    next: "Next exercise",
+    leave: "Leave the exercise",
+};
