@@ -47,7 +47,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of a sweep's table."""
     numbers: Numbers = findings.numbers
     swept = sorted(numbers["swept"], key=lambda axis: -len(axis["values"]))
-    panels = _panels(rows, swept)
+    quantities = _panels(rows, swept)
+    panels = quantities[:MOST_PANELS]
     as_map = len(swept) > 1 and len(swept[1]["values"]) >= LEAST_MAP
     with styled():
         figure = Figure(**SIZE)
@@ -74,13 +75,19 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             )
         over = " and ".join(axis["name"] for axis in numbers["swept"])
         figure.suptitle(f"{numbers['of']} over {over}", fontsize=16)
+        notes = []
+        if len(quantities) > len(panels):
+            notes.append(
+                f"the first {len(panels)} of {len(quantities)} quantities; all are in sweep.csv"
+            )
         if any(row["failed"] for row in rows):
-            figure.supxlabel("crosses and white: points that failed", fontsize=10)
+            notes.append("crosses and white: points that failed")
+        figure.supxlabel("   ".join(notes), fontsize=10)
     return figure
 
 
 def _panels(rows: list[Row], swept: list[Axis]) -> list[Panel]:
-    """The first quantities that have a number or word at any point."""
+    """The quantities that have a number or word at any point."""
     names = dict.fromkeys(row["quantity"] for row in rows if row["quantity"] is not None)
     places = [{value: n for n, value in enumerate(axis["values"])} for axis in swept]
     shape = (len(places[0]), len(places[1]) if len(places) > 1 else 1)
@@ -98,7 +105,7 @@ def _panels(rows: list[Row], swept: list[Axis]) -> list[Panel]:
             errors[at] = np.nan if row["error"] is None else row["error"]
         if not np.isnan(values).all():
             found.append(Panel(name, own[0]["unit"], values, errors, words))
-    return found[:MOST_PANELS]
+    return found
 
 
 def _draw_lines(axes: Axes, panel: Panel, swept: list[Axis]) -> None:

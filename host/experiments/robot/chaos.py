@@ -146,9 +146,10 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         for rate in rates
     )
     rates_text = ", ".join(in_words(rate) for rate in rates)
+    until = "for more than" if own["median_is_censored"] else "until"
     switching = (
         f"the share of wheels that switch to the end: {own['to_the_end']} of {own['wheels']}; half"
-        f" of them switch until {own['median_until_s']:.1f} s"
+        f" of them switch {until} {own['median_until_s']:.1f} s"
     )
     exponents = f"Lyapunov exponent of the time series {rates_text}; of noise {of_noise():.2f}/s"
     notes = [switching, exponents]
@@ -179,7 +180,7 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         share("wheels that switch to the end", own["to_the_end"], own["wheels"]),
         share("wheels that roll in the end", own["roll"], own["wheels"]),
         share("wheels that rest in the end", own["rest"], own["wheels"]),
-        Answer("half of them switch until", own["median_until_s"], None, "s"),
+        Answer(f"half of them switch {until}", own["median_until_s"], None, "s"),
         *(
             _rate_answer(f"exponent of the series, {condition}, {side} wheel", found["exponent"])
             for (condition, side), found in series.items()

@@ -70,6 +70,8 @@ class SeriesNumbers(Ending):
 class Tally(TypedDict):
     """How many wheels switch to the end, roll or rest, and when they switched last (s).
 
+    median_until_s: half of the wheels have stopped then; at least half have not if it is censored.
+    median_is_censored: whether the median is only when the run ended: the true one is later.
     half_life_s: the time in which half of the switching wheels stop, if only chance decides when.
     """
 
@@ -78,6 +80,7 @@ class Tally(TypedDict):
     roll: int
     rest: int
     median_until_s: float
+    median_is_censored: bool
     longest_until_s: float
     half_life_s: float | None
 
@@ -176,6 +179,7 @@ def tally(ends: Sequence[Ending]) -> Tally:
         "roll": roll,
         "rest": rest,
         "median_until_s": float(np.median(until_s)),
+        "median_is_censored": 2 * switch >= len(ends),
         "longest_until_s": float(until_s.max()),
         "half_life_s": float(log(2) * until_s.sum() / stopped) if stopped else None,
     }

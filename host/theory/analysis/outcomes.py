@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from host.theory.analysis.deciding import APART, CLOSE
 from host.theory.analysis.stability_thresholds import leading
 from host.theory.engine.ensemble import Averages
 from host.theory.engine.kicked import Model, Sampled, inverted, memory_s, seen_in
@@ -35,6 +36,9 @@ QUARTER = pi / 2
 SETTLE, WINDOW = 60.0, 30.0
 # A slower wheel (rad/s) rests.
 STILL = 1e-3
+# Where some wheels do not settle, all are followed for as long as they settled, and twice and four
+# times as long.
+ROUNDS = 3
 
 
 def rest_is_stable(model: Model, wheel: Wheel) -> bool:
@@ -94,7 +98,46 @@ def settle_and_classify(
     first = model.averages(settled.states, parameters, WINDOW * memory)
     second = model.averages(first.states, parameters, WINDOW * memory)
     stable = rest_is_stable(model, wheel)
-    return classify(first, second, WINDOW * memory, stable=stable), second
+    names = classify(first, second, WINDOW * memory, stable=stable)
+    if (names == OTHER).any():
+        return _followed(model, names, second, wheel, stable=stable)
+    return names, second
+
+
+def _followed(
+    model: Model, names: NDArray[np.str_], last: Averages, wheel: Wheel, *, stable: bool
+) -> tuple[NDArray[np.str_], Averages]:
+    """What wheels do, where some do not settle: others may seem to, for a while.
+
+    They are followed on. One that parts from a close wheel is irregular; one that does the same
+    again has settled.
+    """
+    memory = memory_s(wheel)
+    names, (mean, std, states) = names.copy(), (values.copy() for values in last)
+    left = np.arange(len(names))
+    for seconds in (SETTLE * memory * 2**number for number in range(ROUNDS)):
+        own = states[:, left]
+        ended = model.averages(
+            np.hstack([own, own + CLOSE]), wheel.columns(2 * len(left)), seconds
+        ).states
+        own, others = np.hsplit(ended, 2)
+        parted = np.abs(own - others).max(axis=0) > APART
+        names[left[parted]] = OTHER
+        states[:, left] = own
+        left = left[~parted]
+        if not len(left):
+            break
+        parameters = wheel.columns(len(left))
+        first = model.averages(states[:, left], parameters, WINDOW * memory)
+        second = model.averages(first.states, parameters, WINDOW * memory)
+        again = classify(first, second, WINDOW * memory, stable=stable)
+        settled = (again == names[left]) & (again != OTHER)
+        names[left] = again
+        mean[left], std[left], states[:, left] = second
+        left = left[~settled]
+        if not len(left):
+            break
+    return names, Averages(mean, std, states)
 
 
 def starting_states(phi: Array, omega: Array) -> Array:

@@ -223,6 +223,13 @@ def test_r14_holds_for_a_robot_whose_wheels_switch_irregularly(delayed):
     assert panels == ["torque-1", "torque-2", "model", "return-map", "intervals"]
 
 
+def test_a_median_is_said_to_be_later_where_half_of_the_wheels_switch_to_the_end(delayed):
+    findings = chaos.report(series_rows(delayed), SETTING)
+    until = next(one for one in findings.answers if one.name.startswith("half of them"))
+    assert until.name == "half of them switch for more than"
+    assert f"for more than {until.value:.1f} s" in findings.claims[0].note
+
+
 def test_r14_does_not_hold_for_a_robot_that_rolls_nor_for_one_that_rolls_to_and_fro_evenly(delayed):
     for records in (runs(ORDINARY, 2, 150.0), np.stack([_even(delayed[0])] * 2)):
         (claim,) = chaos.report(series_rows(records), Setting(3, {"minutes": 10.0})).claims

@@ -32,6 +32,7 @@ from host.theory.engine import sampled
 from host.theory.engine.ensemble import Averages
 from host.theory.engine.kicked import KICKS, Continuous, Sampled, inverted, seen_in
 from host.theory.engine.sampled import PLAIN, Clock, Seen
+from host.theory.model.turning import rolling_states as turning_steadily
 from host.theory.model.wheel import OMEGA, PHI, Wheel, seen_rates
 from host.theory.studies import basins
 from host.theory.studies.registry import TABLE
@@ -39,6 +40,7 @@ from robot.controller import actual_positions, step_wheel
 from robot.kick_requests import parse
 from robot.kicks import MEMBRANE, PHASE, POSITION
 from robot.params import Params
+from tests.paper.theory import independent
 from tests.paper.theory.table import rows_of
 
 WHEEL = Wheel(k=8.0)
@@ -234,6 +236,25 @@ def test_outcomes_are_classified_by_two_windows(travel, std, expected):
     assert classify(*windows, 10.0, stable=True).tolist() == [expected]
     if expected == REST:
         assert classify(*windows, 10.0, stable=False).tolist() == [BACK]
+
+
+@NAMED
+def test_where_chaos_and_rolling_coexist_no_chaotic_wheel_is_taken_for_a_regular_one(model):
+    """By two windows alone, 1 of 15 chaotic wheels seems to roll, or to swing in one well.
+
+    scipy sees that wheels part from close ones; below k = 5.168 rolling is stable.
+    """
+    wheel = Wheel(k=5.0, tau=1.0)
+    rng = np.random.default_rng(1)
+    anywhere = starting_states(*(most * rng.uniform(-1, 1, 60) for most in (pi, 20.0)))
+    states = np.hstack([turning_steadily(wheel.columns(1)), anywhere])
+    names = settle_and_classify(model, model.states_of(states), wheel)[0]
+    assert names.tolist() == [FORWARD if isinstance(model, Continuous) else OTHER] + [OTHER] * 60
+    start = anywhere[:, 0]
+    last, other = (
+        independent.follow(y, wheel, 80.0, rtol=1e-8).y[:, -1] for y in (start, start + 1e-6)
+    )
+    assert np.abs(last - other).max() > 1.0
 
 
 @NAMED

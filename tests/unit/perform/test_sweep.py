@@ -212,6 +212,14 @@ def test_the_figure_has_lines_over_one_constant_and_a_line_for_each_value_of_ano
         assert speed.get_ylabel() == "Hz"
 
 
+def test_the_figure_says_how_many_quantities_it_leaves_to_the_table():
+    rows, found = findings([K])
+    many = [{**row, "quantity": f"{row['quantity']} {n}"} for n in range(20) for row in rows]
+    drawn = figure.draw(many, found)
+    assert drawn.get_supxlabel() == "the first 9 of 40 quantities; all are in sweep.csv"
+    assert figure.draw(rows, found).get_supxlabel() == ""
+
+
 def test_two_constants_with_many_values_each_are_a_map():
     taus = {**TAU, "values": [0.3, 0.1, 0.2, 0.4, 0.5]}
     drawn = figure.draw(*findings([K, taus]))

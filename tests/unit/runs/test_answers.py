@@ -13,6 +13,8 @@ from host.runs.answers import Answer, as_data, lines
         (Answer("a", 4832.1, 25.0), "4832 ± 25"),
         (Answer("a", 1.77731184665692), "1.77731185"),
         (Answer("a", 33.25, None, "%"), "33.25 %"),
+        (Answer("a", -3.3e-9, 2.4e-6, "/s"), "0 ± 0.0000024 /s"),
+        (Answer("a", -5.26315789473684159, 3.3e-16), "-5.26315789 ± 3e-16"),
         (Answer("a", "chaotic"), "chaotic"),
         (Answer("a", None), "none"),
     ],
