@@ -35,15 +35,17 @@ myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120
+nb_execution_timeout = 600
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}
 
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
-autodoc_type_aliases = dict.fromkeys(("Array", "Names", "Flags"), "numpy.ndarray")
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
+default_role = "code"
 napoleon_use_ivar = True
+# Docstrings say it shorter than an annotation of numpy.
+napoleon_attr_annotations = False
 highlight_language = "none"
 
 

@@ -44,7 +44,8 @@ def _python(module: ModuleType) -> str:
         thing = getattr(module, name)
         what = f"autofunction:: {module.__name__}.{name}\n"
         if isinstance(thing, type):
-            what = f"autoclass:: {module.__name__}.{name}\n{_MEMBERS}"
+            kind = "exception" if issubclass(thing, Exception) else "class"
+            what = f"auto{kind}:: {module.__name__}.{name}\n{_MEMBERS}"
         elif inspect.ismethod(thing):
             what = f"autofunction:: {module.__name__}.{name}{_arguments(thing)}\n"
         parts.append(f"## {name}\n\n```{{eval-rst}}\n.. {what}```\n")
@@ -52,7 +53,7 @@ def _python(module: ModuleType) -> str:
 
 
 # What Python's own classes give to all of theirs says nothing about these.
-_MEMBERS = "   :members:\n   :inherited-members: Exception, Mapping, tuple\n"
+_MEMBERS = "   :members:\n   :inherited-members: BaseException, Mapping, tuple\n"
 
 
 def _arguments(method: MethodType) -> inspect.Signature:

@@ -17,7 +17,6 @@ from host.theory.studies.registry import TABLE
 from host.util.arguments import wrong
 from kickctl.theory._values import Result, need_smooth, need_symmetric, need_wheel
 
-Flags = NDArray[np.bool_]
 _FAMILIES: dict[Part, str] = {"fixpoints": "rest", "merging": "saddles", "FB": "FB", "LLM": "LLM"}
 
 
@@ -45,7 +44,7 @@ class Branch(Result):
     family: str
     end: str
     value: Array
-    stable: Flags
+    stable: NDArray[np.bool_]
     period: Array
     omega_mean: Array
     omega_std: Array
