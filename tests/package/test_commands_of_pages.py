@@ -1,4 +1,4 @@
-"""Each kickctl command in a block of README and docs can be typed as it stands there."""
+"""Each kickctl command in README and docs can be typed as it stands there."""
 
 import re
 import shlex
@@ -7,11 +7,14 @@ import pytest
 
 from host.cli import VERBS, make_parser
 from host.commands._parser import join_negative
+from host.errors import WrongUse
 from tests.package.test_pages import PAGES, ROOT
 
 # What that page adds first, its own test runs: test_contributing.py.
 TYPED = [page for page in PAGES if page != "CONTRIBUTING.md"]
 BLOCK = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
+# What a reader puts something else for, as in `kickctl log export LOG`.
+PLACEHOLDER = re.compile(r"\b[A-Z]+\b|\.\.\.")
 
 
 def commands(page):
@@ -28,6 +31,21 @@ def test_its_commands_can_be_typed(page):
     for words in commands(page):
         verb = next(word for word in words if word in VERBS)
         assert make_parser((verb,)).parse_args(join_negative(words)).verb == verb
+
+
+@pytest.mark.parametrize("page", [page for page in TYPED if page != "CHANGELOG.md"])
+def test_what_its_sentences_name_exists(page):
+    """The verb and its options; what else it needs may stand elsewhere."""
+    prose = BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
+    for line in re.findall(r"`kickctl ([^`>|]*)`", prose):
+        words = shlex.split(line)
+        if PLACEHOLDER.search(line) or not set(words) & set(VERBS) or words[-1] == "--help":
+            continue
+        verb = next(word for word in words if word in VERBS)
+        try:
+            make_parser((verb,)).parse_args(join_negative(words))
+        except WrongUse as error:
+            assert "arguments are required" in error.message, line
 
 
 def test_the_first_kick_is_the_kick_of_the_lesson():
