@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         const="",
         metavar="MOTOR",
         help="show beside the robot a simulated one under the same kicks, with this entry of a"
-        " motors file, as `kickctl experiment calibrate` writes one (default: the EV3's motor)."
+        " motors file, as `kickctl experiment calibrate` writes one (default: the robot's own)."
         " It takes as long again",
     )
     add_force(group)
@@ -116,7 +116,6 @@ def _refuse_robots(options: argparse.Namespace) -> None:
 
 def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, Any]]:
     """The log and its tape. Says what is wrong with it."""
-    from host.kicking.robot_motor import EV3_ENTRY
     from host.lab.tape import Cut, make_tape
     from host.logs.mcap_reading import LogFile
 
@@ -127,8 +126,7 @@ def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, A
             "exchange them: both count from the start",
         )
     log = LogFile(path)
-    motor = None if options.twin is None else options.twin or EV3_ENTRY
-    tape = make_tape(log, path.name, Cut(from_s, to_s), motor)
+    tape = make_tape(log, path.name, Cut(from_s, to_s), options.twin)
     verdict = tape["verdict"]
     if not verdict["reproduced"]:
         say(

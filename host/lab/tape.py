@@ -13,7 +13,9 @@ from math import inf, isfinite, nan
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse, printable
+from host.kicking.robot_motor import EV3, known_entry
 from host.lab import derived, worked
+from host.lab.kicks import stall
 from host.lab.twin import Twin, compare_kicks
 from host.logs.log import Gaps, Log
 from host.logs.mcap_reading import LogFile
@@ -21,6 +23,7 @@ from host.logs.replay import Mismatch, Replayer, other_sources, too_large
 from host.logs.tap import Event
 from robot.record import STRUCT, Record, describe
 from robot.safety import RUNNING
+from sim_motor.constants import load
 
 # Ten minutes of 30 ms ticks: as many as the robot's black box holds, and about 10 MB.
 MOST_TICKS = 20_000
@@ -175,21 +178,23 @@ def make_tape(
         name: What to call it on the page, such as its file's name.
         cut: Which part of it; None for all. What came before a cut is followed, so that the cut's
             first tick is known in full.
-        motor: The entry of a motors file with which a simulated twin goes beside the robot; None
-            for no twin.
+        motor: The entry of a motors file with which a simulated twin goes beside the robot; empty
+            for that of the robot's own motors; None for no twin.
 
     Returns:
         Plain JSON data, see MESSAGES.md.
 
     Raises:
-        WrongUse: The part has no tick, or more than MOST_TICKS; or there is no such motor.
+        WrongUse: The part has no tick, or more than MOST_TICKS; or there is no such motor, or the
+            robot's own is not known.
         LogError: The file cannot be read any more, or its numbers are too large to compute with.
     """
     cut = cut or Cut()
     total = log.total if isinstance(log, LogFile) else len(log)
     if total is not None and total > MOST_TICKS and cut == Cut():
         raise too_long(name, cut)
-    writer = _Writer(name, log.info, cut, None if motor is None else _twin(motor, log.info))
+    entry, twin = (None, None) if motor is None else _twin(motor, log.info)
+    writer = _Writer(name, log.info, cut, twin)
     for item in log.stream():
         if isinstance(item, dict):
             writer.take_event(item)
@@ -225,7 +230,7 @@ def make_tape(
         "twin": None
         if writer.twin is None
         else {
-            "motor": motor,
+            "motor": entry,
             "derived": derived.describe(),
             "kicks": compare_kicks(*writer.pair, writer.events),
             "records": _written(writer.packed_twin),
@@ -237,11 +242,16 @@ def _written(packed: list[bytes]) -> str:
     return base64.b64encode(gzip.compress(b"".join(packed), _COMPRESSION, mtime=0)).decode("ascii")
 
 
-def _twin(motor: str, info: dict[str, Any]) -> Twin:
-    from sim_motor.constants import load
-
+def _twin(motor: str, info: dict[str, Any]) -> tuple[str, Twin]:
+    """The twin, and the entry of its motors."""
+    entry = motor or known_entry(str(info.get("motor", EV3)))
+    if entry is None:
+        raise WrongUse(
+            f"this computer does not know the motors of the log's robot, '{info['motor']}'",
+            "name an entry of a motors file: --twin NAME",
+        )
     try:
-        return Twin(load(motor), info.get("battery_v"))
+        return entry, Twin(load(entry), info.get("battery_v"))
     except ValueError as error:
         raise WrongUse(str(error), "name one of these: --twin NAME") from error
 
@@ -263,12 +273,20 @@ def _robot(info: dict[str, Any]) -> dict[str, Any]:
         "channels": describe(),
         "derived": [*derived.describe(), *(dict(vars(row)) for row in worked.CHANNELS)],
         "tick_s": info.get("params", {}).get("tick_s", 0.03),
-        "stall": None,
+        "stall": _stall(info),
         "track_m": place.track_m,
         "wheel_radius_m": place.wheel_radius_m,
         "walls": None,
         "hand": False,
     }
+
+
+def _stall(info: dict[str, Any]) -> float | None:
+    """The least |M| that moves a wheel from rest; None if the log does not say enough for it."""
+    try:
+        return stall({"motor": info["motor"]}, info["params"])
+    except (KeyError, TypeError):
+        return None
 
 
 def _facts(info: dict[str, Any]) -> dict[str, str]:
@@ -277,6 +295,7 @@ def _facts(info: dict[str, Any]) -> dict[str, str]:
         "brick": info.get("brick"),
         "started_utc": str(info.get("started_utc", ""))[:19].replace("T", " "),
         "robot_software": info.get("robot_software"),
+        "motor": info.get("motor"),
         "seed": info.get("seed"),
         "battery_v": info.get("battery_v"),
     }

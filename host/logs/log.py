@@ -72,10 +72,10 @@ class Log:
             `records[places[i]]` is the first record that this event concerns.
         info: What was run, in plain JSON data: host_software, robot_software, sources and
             robot_sources (fingerprints of their code), commit, brick (its address), host_machine,
-            robot_machine, seed, boot, params, polarity, battery_v, clock_zero_s (Unix time at which
-            the robot's clock showed 0), started_utc (ISO 8601), and truncated (True) if the log was
-            read from a file that breaks off or is damaged, so that ticks or events are missing.
-            What is unknown is left out.
+            robot_machine, motor (which the robot has), seed, boot, params, polarity, battery_v,
+            clock_zero_s (Unix time at which the robot's clock showed 0), started_utc (ISO 8601),
+            and truncated (True) if the log was read from a file that breaks off or is damaged, so
+            that ticks or events are missing. What is unknown is left out.
     """
 
     def __init__(self, info: dict[str, Any] | None = None) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import host as host_package
 import robot as robot_package
 import sim_motor
+from host.errors import printable
 from robot import __version__
 from robot.sources import fingerprint
 
@@ -33,7 +34,8 @@ def origin(
         started_utc: When this host connected.
 
     Returns:
-        Plain data. A robot of an older release does not say its sources: they are empty then.
+        Plain data. A robot of an older release does not say its sources: they are empty then; nor
+        its motors, which are left out.
     """
     return {
         "brick": uri,
@@ -42,6 +44,7 @@ def origin(
         "robot_software": hello["software"],
         "robot_sources": hello.get("sources", ""),
         "robot_machine": hello["machine"],
+        **({"motor": printable(str(hello["motor"]))} if "motor" in hello else {}),
         "host_software": __version__,
         "host_machine": (
             f"{platform.machine()} {platform.python_implementation()} {platform.python_version()}"

@@ -95,3 +95,12 @@ def test_a_part_of_a_log_has_a_twin_from_its_first_tick(log):
 def test_a_motor_that_nobody_knows_is_refused(log):
     with pytest.raises(WrongUse, match="none"):
         make_tape(log, "log", motor="none")
+    other = Log({**log.info, "motor": "none"})
+    with pytest.raises(WrongUse, match="does not know the motors of the log's robot, 'none'"):
+        make_tape(other, "log", motor="")
+
+
+def test_the_log_says_which_motors_its_robot_has(log):
+    tape = make_tape(log, "log", motor="")
+    assert tape["facts"]["motor"] == tape["twin"]["motor"] == log.info["motor"] == "pybricks"
+    assert tape["robot"]["stall"] == pytest.approx(0.1)

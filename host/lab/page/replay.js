@@ -118,8 +118,8 @@ function createAbout(root, tape) {
     const verdict = element("p", { className: "verdict" }, words.verdict(tape.verdict));
     verdict.classList.toggle("differs", !reproduced);
     const params = element("dd");
-    const motor = tape.twin?.motor;
-    const facts = { log: tape.name, part: tape.part, ...tape.facts, motor };
+    const twin = tape.twin?.motor;
+    const facts = { log: tape.name, part: tape.part, ...tape.facts, twin };
     const rows = Object.entries(facts)
         .filter(([, value]) => value)
         .flatMap(([name, value]) => [

@@ -18,7 +18,8 @@ const FACTS = {
     robot_software: "Release",
     seed: "Random seed",
     battery_v: "Battery (V)",
-    motor: "Motor of the twin",
+    motor: "Motors",
+    twin: "Motors of the twin",
 };
 
 export const words = {
