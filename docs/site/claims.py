@@ -1,7 +1,7 @@
 """The tables of docs/claims.md, from what `make reproduce` has measured.
 
-kickctl reproduce --json | python -m json.tool > docs/claims.json
-python -m docs.site.claims
+`kickctl reproduce --json | python -m json.tool > docs/claims.json` renews the data, and then
+`python -m docs.site.claims` the page.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from host.runs.claims import FAILS, Claim
 DATA = ROOT / "docs" / "claims.json"
 PAGE = ROOT / "docs" / "claims.md"
 _SHARE = "the share of "
-PRESET = "in the setting `paper`"
 # A table with the id of a claim in its first row.
 _TABLE = re.compile(r"^\|.*\n\|[-|]+\n\| ([A-Z])1 \|(?:.*\n\|)*.*\n", re.MULTILINE)
 
@@ -43,10 +42,10 @@ def rendered(page: str) -> str:
 
 def _table(claims: list[Claim], at_preset: dict[str, Claim], kind: str) -> str:
     chosen = [claim for claim in claims if claim.id.startswith(kind)]
-    head = ["", "claim", "the paper has", "measured", ""]
+    head = ["id", "claim", "the paper has", "measured", "verdict"]
     rows = [_row(claim) for claim in chosen]
     if chosen[0].id in at_preset:
-        head.append(PRESET)
+        head.append("in the setting `paper`")
         for row, claim in zip(rows, chosen, strict=True):
             other = at_preset[claim.id]
             row.append(f"{_in_percent(other).number()}: {_verdict(other)}")

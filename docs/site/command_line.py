@@ -76,7 +76,8 @@ def _run(name: str, parser: argparse.ArgumentParser) -> str:
         parts.append(f"[What the paper claims](/docs/claims.md) of it: {', '.join(claims)}.\n")
     if name in EFFORTS:
         defaults = {option.name: option.default for option in found.entry.options}
-        parts.append(f"On a real robot it takes {in_words(EFFORTS[name].seconds(defaults))}.\n")
+        takes = in_words(EFFORTS[name].seconds(defaults))
+        parts.append(f"On a real robot this takes {takes}; `--quick` or `--minutes` shorten it.\n")
     kinds = kinds_of(found.work)
     parts.append("## Its tables\n")
     parts += (_kind(f"{name}-{kind.name}" if len(kinds) > 1 else name, kind) for kind in kinds)

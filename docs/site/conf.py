@@ -33,7 +33,6 @@ html_sidebars: dict[str, list[str]] = {"index": []}
 
 myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 4
-myst_dmath_double_inline = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}

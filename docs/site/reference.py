@@ -15,6 +15,26 @@ from robot.record import CHANNELS
 from tests.faults.rows import ROWS
 
 FOLDER = "reference/"
+_INDEX = """\
+Each page here is made from the program's own tables, so that it says what this release does.
+`kickctl help WORD` searches them in a terminal. Each [experiment](experiment.md) and each [study of
+the model](theory.md) has a page, with the columns of its tables.
+"""
+_PARAMETERS = """\
+`kickctl params list` shows those of a robot, `kickctl params set NAME=VALUE` changes one while it
+runs, and `--set NAME=VALUE` gives one to the robot that is simulated without `--brick`.
+"""
+_CHANNELS = """\
+The robot records these in every tick. `kickctl log export` writes them as columns,
+`log.column(NAME)` in Python gives one as an array; [logs](../docs/logs.md) says more.
+"""
+_FAULTS = """\
+What can go wrong with a robot, how long its motors may run on then, and the words by which you know
+it. `make faults` causes each of them many times, and measures.
+[When it does not move](../robot/README.md#when-it-does-not-move) says what to do.
+"""
+# What Python's own classes give to all of theirs says nothing about these.
+_MEMBERS = "   :members:\n   :inherited-members: BaseException, Mapping, tuple\n"
 
 
 def pages() -> dict[str, str]:
@@ -31,13 +51,6 @@ def pages() -> dict[str, str]:
     return {FOLDER + "index.md": index, **made, **commands, **inner}
 
 
-_INDEX = """\
-Each page here is made from the program's own tables, so that it says what this release does.
-`kickctl help WORD` searches them in a terminal. Each [experiment](experiment.md) and each [study of
-the model](theory.md) has a page, with the columns of its tables.
-"""
-
-
 def _python(module: ModuleType) -> str:
     parts = [f"# {module.__name__} in Python\n\n{inspect.getdoc(module)}\n"]
     for name in module.__all__:
@@ -50,10 +63,6 @@ def _python(module: ModuleType) -> str:
             what = f"autofunction:: {module.__name__}.{name}{_arguments(thing)}\n"
         parts.append(f"## {name}\n\n```{{eval-rst}}\n.. {what}```\n")
     return "\n".join(parts)
-
-
-# What Python's own classes give to all of theirs says nothing about these.
-_MEMBERS = "   :members:\n   :inherited-members: BaseException, Mapping, tuple\n"
 
 
 def _arguments(method: MethodType) -> inspect.Signature:
@@ -69,12 +78,6 @@ def _arguments(method: MethodType) -> inspect.Signature:
 def _parameters() -> str:
     parts = "\n".join(f"## `{row.name}`\n\n{_parameter(row)}\n" for row in TABLE.values())
     return f"# The robot's parameters\n\n{_PARAMETERS}\n{parts}"
-
-
-_PARAMETERS = """\
-`kickctl params list` shows those of a robot, `kickctl params set NAME=VALUE` changes one while it
-runs, and `--set NAME=VALUE` gives one to the robot that is simulated without `--brick`.
-"""
 
 
 def _parameter(row: SimpleNamespace) -> str:
@@ -96,12 +99,6 @@ def _channels() -> str:
     return f"# The columns of a log\n\n{_CHANNELS}\n{table(('column', 'unit', 'meaning'), rows)}"
 
 
-_CHANNELS = """\
-The robot records these in every tick. `kickctl log export` writes them as columns,
-`log.column(NAME)` in Python gives one as an array; [logs](../docs/logs.md) says more.
-"""
-
-
 def _faults() -> str:
     rows: Sequence[Sequence[str]] = [
         (
@@ -112,13 +109,6 @@ def _faults() -> str:
         for row in ROWS
     ]
     return f"# Faults\n\n{_FAULTS}\n{table(('fault', 'motors stop within', 'it says'), rows)}"
-
-
-_FAULTS = """\
-What can go wrong with a robot, how long its motors may run on then, and the words by which you know
-it. `make faults` causes each of them many times, and measures.
-[When it does not move](../robot/README.md#when-it-does-not-move) says what to do.
-"""
 
 
 def _sentence(text: str) -> str:
