@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context, rcdefaults, rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -98,6 +99,18 @@ def _fix_layout(figure: Figure) -> None:
     for legend in figure.legends:
         if legend.get_bbox_to_anchor() is figure.bbox:
             legend.set_bbox_to_anchor((0.0, 0.0, 1.0, 1.0), figure.transFigure)
+
+
+# A legend above a panel, on the right: it covers no data.
+ABOVE: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.1}
+
+
+def say_if_empty(axes: Axes, words: str) -> None:
+    """Write into a panel without data why it has none."""
+    drawn = any(np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in axes.lines)
+    if not drawn and not axes.collections and not axes.images:
+        axes.text(0.5, 0.5, words, ha="center", va="center", transform=axes.transAxes)
+        axes.set(xticks=[], yticks=[])
 
 
 def share_legend(place: Axes | Figure, panels: Iterable[Axes], **style: Any) -> None:

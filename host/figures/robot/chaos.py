@@ -154,7 +154,7 @@ def _draw_intervals(shown: dict[str, list[SeriesRow]], axes: Axes) -> None:
         axes.hist(intervals_s(series), bins=bins, label=name, **style)
     axes.set(xlabel="time between switches (s)", ylabel="count")
     if len(shown) > 1:
-        axes.legend(fontsize=_SMALL)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=_SMALL)
 
 
 def _draw_lives(rows: list[ChaosRow], end_s: float, axes: Axes) -> None:

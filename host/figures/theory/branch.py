@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from host.figures.style import COLOURS, SIZE, share_legend, styled
+from host.figures.style import COLOURS, SIZE, say_if_empty, share_legend, styled
 from host.figures.theory.branch_panels import DASHED, draw_line, draw_turning
 from host.runs.contract import Findings
 from host.theory.studies import branch_tables as tables
@@ -95,6 +95,11 @@ def draw(rows: list[BranchRow], findings: Findings) -> Figure:
         _zoom(rows, near, swing, period)
         if along == "k":  # as the paper's figure of the robot
             near.set_xlim(left=0.0)
+        families: tuple[tuple[Axes, CyclePart], ...] = ((wide, "LLM"), (swing, "FB"))
+        for axes, family in families:
+            if not tables.cycles_of(rows, family):
+                axes.set_title(f"{axes.get_title()}: none was found", fontsize=12)
+        say_if_empty(period, "no cycle was found")
         draw_line(line, tables.merging_line(rows))
         draw_turning(turning, tables.turned_at(rows))
         for axes in (wide, near, swing, period, line, turning):

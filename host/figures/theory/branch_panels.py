@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from host.figures.style import COLOURS
+from host.figures.style import COLOURS, say_if_empty
 from host.theory.studies.branch_tables import LineRow, TurnedRow
 
 DASHED: Any = (0, (2.5, 1.2))
@@ -30,6 +30,7 @@ def draw_line(axes: Axes, line: list[LineRow]) -> None:
             label="unstable, folds" if positive else "stable",
         )
         last = points[-1:]
+    say_if_empty(axes, "no merging from a tenth of the\nwheel's tau to ten times it")
     axes.axhline(1.0, color="black", linewidth=1.0)
     axes.set_title(r"the merging over $\tau$", fontsize=12)
     axes.set(xscale="log")

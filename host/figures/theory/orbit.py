@@ -35,7 +35,9 @@ def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
             axes.set_ylabel(label)
             axes.set_title(f"{LETTERS[over]} {words}", fontsize=13, loc="left")
         panels[1].set_xlabel(LETTERS[over] + (f" ({UNITS[over].strip()})" if over in UNITS else ""))
-        panels[0].legend(handles=handles({row["kind"] for row in rows}), loc="upper left")
+        figure.legend(
+            handles=handles({row["kind"] for row in rows}), loc="outside lower center", ncols=5
+        )
         figure.suptitle(
             f"Orbit diagram on the Poincaré section {equation}, up to the symmetries", fontsize=16
         )

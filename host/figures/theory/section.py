@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.figures.style import SIZE, styled
+from host.figures.style import ABOVE, SIZE, say_if_empty, styled
 from host.figures.theory.motions import COLOUR, MARKER, handles
 from host.runs.contract import Findings
 from host.theory.engine.crossings import Surface
@@ -53,7 +53,8 @@ def draw(rows: list[SectionRow], findings: Findings) -> Figure:
             if numbers["rotation"]:
                 hertz = numbers["rotation"]["frequency_hz"]
                 axes.axvline(hertz, color="black", linestyle=":", linewidth=1.2, label="rotation")
-                axes.legend(loc="upper right")
+                axes.legend(**ABOVE)
+            say_if_empty(axes, "no wheel moves: no power")
         figure.suptitle(
             f"Poincaré section {SECTIONS[numbers['on']][2]}, up to the symmetries", fontsize=16
         )
@@ -76,15 +77,16 @@ def _draw_points(section: Axes, returns: Axes, rows: list[CrossingRow], numbers:
         words = f"{'' if rotation['stable'] else 'un'}stable rotation"
         section.plot(rotation["omega"], rotation["x2"], **_CROSS)
         returns.plot(rotation["omega"], rotation["omega"], label=words, **_CROSS)
-        returns.legend(loc="upper right")
-    if all(row["t"] is None for row in rows):
-        section.text(0.5, 0.5, "no wheel crosses it", ha="center", transform=section.transAxes)
+        returns.legend(**ABOVE)
+    for axes in (section, returns):
+        say_if_empty(axes, "no wheel crosses the section")
     for axes in (section, returns):
         _widen(axes)
     returns.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8, zorder=0)
     section.set(xlabel=label, ylabel="$x_2$")
     returns.set(xlabel=label, ylabel="the same at the next crossing")
-    section.legend(handles=handles({row["kind"] for row in rows}), loc="upper right")
+    kinds = handles({row["kind"] for row in rows})
+    section.legend(handles=kinds, ncols=len(kinds), **ABOVE)
 
 
 def _column(rows: list[CrossingRow], name: str) -> Array:
