@@ -19,6 +19,8 @@ import { createWorking } from "./working.js";
 
 // How many frames are drawn after the last change: what scrolls into view is drawn, too.
 const FRAMES_AFTER = 30;
+// While the log plays, nobody reads equations that change more often, ms.
+const READ_MS = 150;
 // Half of the width of the slider's thumb, CSS pixels.
 const THUMB = 8;
 
@@ -50,6 +52,7 @@ function begin(tape, robot, twinTape) {
     let labelled = null;
     let drawn = [];
     let left = 0;
+    let read = 0;
     const renew = () => (left = FRAMES_AFTER);
     for (const change of ["scroll", "resize", "click", "keydown"]) {
         addEventListener(change, renew, true);
@@ -62,11 +65,16 @@ function begin(tape, robot, twinTape) {
             const now = [cursor.time_s, screen.theme];
             if (now.some((one, n) => one !== drawn[n])) renew();
             drawn = now;
+            if (left <= 0) return;
             robot.setPlace(cursor.place);
             views.update();
             twin?.update();
             player();
-            working.update(cursor.place);
+            const time = performance.now();
+            if (!cursor.playing || time - read > READ_MS) {
+                read = time;
+                working.update(cursor.place);
+            }
             happened();
             about(robot);
             showState(STATES[columns.state[cursor.place]]);
@@ -101,7 +109,12 @@ function begin(tape, robot, twinTape) {
                 verdict: tape.verdict,
                 working: working.state(),
                 twin: twin?.state() ?? null,
-                drawing: { frames: frames.count, shown_s: views.time, wheels: views.wheels },
+                drawing: {
+                    frames: frames.count,
+                    p95_ms: frames.p95(),
+                    shown_s: views.time,
+                    wheels: views.wheels,
+                },
             }),
     };
 }

@@ -30,7 +30,9 @@ async function fetched() {
 }
 
 async function unpacked(base64) {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const text = atob(base64);
+    const bytes = new Uint8Array(text.length);
+    for (let n = 0; n < bytes.length; n += 1) bytes[n] = text.charCodeAt(n);
     const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new DataView(await new Response(plain).arrayBuffer());
 }
