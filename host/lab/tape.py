@@ -247,7 +247,7 @@ def _twin(motor: str, info: dict[str, Any]) -> tuple[str, Twin]:
     entry = motor or known_entry(str(info.get("motor", EV3)))
     if entry is None:
         raise WrongUse(
-            f"this computer does not know the motors of the log's robot, '{info['motor']}'",
+            f"this computer does not know the motors of the log's robot, '{info.get('motor')}'",
             "name an entry of a motors file: --twin NAME",
         )
     try:

@@ -47,7 +47,7 @@ export const words = {
     workingNote:
         "xᵃ: where a rod is. xˢ: where its neuron sees it, the same but for a kick. xᵗ: where the" +
         " neuron wants it. An older position stands for xᵃ in F if rod_lag_s is not 0. ✓: the" +
-        " robot has logged the same bits.",
+        " robot has logged the same bits. ≈: but for rounding.",
     digits: "All digits",
     digitsLabel: "All digits of each number, as exact as the log",
     quantity: "Quantity",
@@ -62,6 +62,7 @@ export const words = {
     ],
     off: "The motors are off in this tick: no equation acts, and the potentials stay.",
     asLogged: "✓",
+    nearlyLogged: "≈",
     notLogged: (value) => `✗ logged: ${value}`,
 
     play: "Play",

@@ -8,6 +8,9 @@ import { words } from "./replay_texts.js";
 import { STATES } from "./store.js";
 
 const SIDES = ["left", "right"];
+// How a tick compares, as its channel `compared` has it.
+const ROUNDED = 2;
+const DIFFERENT = 3;
 
 /**
  * @param {HTMLElement} root
@@ -47,9 +50,9 @@ export function createWorking(root, tape, robot) {
         const since_s = value("t_s") - tape.begin_s;
         setText(at, words.at({ tick: value("tick"), since_s, dt_s: value("dt_s") }));
         const runs = STATES[value("state")] === "running";
-        const said = words.compared[value("compared")];
-        setText(verdict, runs ? said : words.off);
-        verdict.dataset.compared = value("compared");
+        const compared = value("compared");
+        setText(verdict, runs || compared === DIFFERENT ? words.compared[compared] : words.off);
+        verdict.dataset.compared = compared;
         table.hidden = !runs;
         for (const { row, cells, lines } of runs ? rows : []) {
             lines.forEach((line, n) => fill(cells[n], line, value, exact()));
@@ -81,10 +84,13 @@ function fill({ root, numbers, result, logged }, line, value, exact) {
     setText(numbers, concerns ? `${typeset(line.numbers.replace(/\{(\w+)\}/g, inside))} = ` : "");
     const unit = line.unit === "1" ? "" : ` ${line.unit}`;
     setText(result, concerns ? typeset(text(line.result)) + unit : "");
-    const compares = concerns && line.logged && !Number.isNaN(value(line.result));
+    const compares = Boolean(concerns && line.logged && value("compared"));
     const same = compares && Object.is(value(line.result), value(line.logged));
-    root.classList.toggle("differs", Boolean(compares && !same));
-    const other = () => words.notLogged(typeset(written(value(line.logged), true)));
+    root.classList.toggle("differs", compares && !same && value("compared") === DIFFERENT);
+    const other = () =>
+        value("compared") === ROUNDED
+            ? words.nearlyLogged
+            : words.notLogged(typeset(written(value(line.logged), true)));
     setText(logged, compares ? ` ${same ? words.asLogged : other()}` : "");
 }
 
