@@ -12,6 +12,7 @@ FOLDER
 """
 
 import sys
+from typing import Any
 
 from robot.beacon import Announcer
 from robot.motors import MonotonicClock
@@ -33,6 +34,9 @@ def main() -> int:
     known.add("motor", "pybricks", "which set of constants of motors.toml", "NAME")
     known.add("battery", None, "open-circuit voltage of the battery", "V", float)
     known.add("walls", None, "put the robot halfway between two walls, M metres apart", "M", float)
+    known.add("grip", None, "friction of its tyres on the floor between the walls", "MU", float)
+    known.add("bumper", None, "how far its body reaches before the axle", "M", float)
+    known.add("axle", None, "stiffness of axles and tyres along the way", "N/M", float)
     known.add(
         "hand",
         False,
@@ -59,7 +63,7 @@ def main() -> int:
             clock=clock,
             motor=options.motor,
             battery_v=options.battery,
-            scene=None if options.walls is None else Scene(walls=options.walls),
+            scene=_scene(options),
         )
     except ValueError as error:
         known.error(str(error))
@@ -73,6 +77,16 @@ def main() -> int:
     if options.hand:
         panels.append(Hand(brick, sys.stdin.fileno(), warn))
     return int(run(options, brick.motors, brick.battery, brick.clock, seed, panels))
+
+
+def _scene(options: Any) -> Scene | None:
+    """What the robot has around it. Raises ValueError."""
+    given = {name: getattr(options, name) for name in ("walls", "grip", "bumper", "axle")}
+    if options.walls is None:
+        if any(value is not None for value in given.values()):
+            raise ValueError("--grip, --bumper and --axle need --walls")
+        return None
+    return Scene(**given)
 
 
 if __name__ == "__main__":

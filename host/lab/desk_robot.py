@@ -19,6 +19,8 @@ from host.link.addresses import make_link, sim_options
 from robot.params import TABLE
 
 READY = "READY "
+# The options of the child that an address has, too.
+_SAME = ("seed", "motor", "battery", "walls", "grip", "bumper", "axle")
 _ENDING_S = 5.0
 _LINES_KEPT = 20
 _ROOM = str(Path(__file__).resolve().parents[2])
@@ -40,7 +42,7 @@ def child_options(uri: str, seed: int | None = None) -> list[str]:
         options["seed"] = str(seed)
     words = []
     for name, value in options.items():
-        if name in ("seed", "motor", "battery", "walls"):
+        if name in _SAME:
             words += [f"--{name}", value]
         elif name in TABLE:
             words += ["--set", f"{name}={value}"]

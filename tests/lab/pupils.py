@@ -1,6 +1,10 @@
 """What a pupil does in each guided exercise, with a robot in virtual time."""
 
 from host.client.robot import connect
+from host.experiments.robot.wall_hits import bounces, motion_since
+from host.kicking.modes import MODES, WALL_TURNER
+
+WALLS = MODES[WALL_TURNER].address
 
 
 def start(robot):
@@ -36,7 +40,18 @@ def there_and_back(robot):
         robot.wait(2.0)
 
 
-DO = {"start": start, "jump": jump, "longer": longer, "there-and-back": there_and_back}
+def wall(robot):
+    robot.start()
+    robot.wait(16.0)
+
+
+DO = {
+    "start": start,
+    "jump": jump,
+    "longer": longer,
+    "there-and-back": there_and_back,
+    "wall": wall,
+}
 
 
 def log_of(lesson, seed=1, **params):
@@ -47,9 +62,12 @@ def log_of(lesson, seed=1, **params):
         seed: The robot's random seed.
         params: Its parameters besides those of the exercise.
     """
-    walls = "&walls=2" if lesson["walls"] else ""
-    with connect(f"sim://?seed={seed}&idle=1{walls}") as robot:
-        robot.set(**lesson["set"], **params)
-        with robot.recording() as log:
-            DO[lesson["name"]](robot)
-        return log
+    address = WALLS if lesson["walls"] else "sim://?"
+    while True:
+        with connect(f"{address}&seed={seed}&idle=1") as robot:
+            robot.set(**lesson["set"], **params)
+            with robot.recording() as log:
+                DO[lesson["name"]](robot)
+        if not lesson["walls"] or len(bounces(*motion_since(log))) >= 2:
+            return log
+        seed += 1000  # it turned on the spot: the pupil begins again with another robot

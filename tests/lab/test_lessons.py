@@ -2,10 +2,11 @@
 
 import pytest
 
+from host.lab.desk_robot import child_options
 from host.lab.lessons.checks import CHECKS, check
 from host.lab.lessons.texts import lessons
 from host.logs.log import Log
-from tests.lab.pupils import DO, log_of
+from tests.lab.pupils import DO, WALLS, log_of
 
 LESSONS = {lesson["name"]: lesson for lesson in lessons()}
 
@@ -14,6 +15,11 @@ LESSONS = {lesson["name"]: lesson for lesson in lessons()}
 def logs():
     """A log of each exercise, done as it should be."""
     return {name: log_of(lesson) for name, lesson in LESSONS.items()}
+
+
+def test_the_labs_own_robot_can_have_the_walls_of_the_exercise():
+    words = ["--walls", "2", "--axle", "400", "--grip", "1.83", "--bumper", "0.25"]
+    assert child_options(WALLS) == words
 
 
 def failed(name, log):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator
-from itertools import groupby, pairwise
+from collections.abc import Callable, Collection, Iterator
+from itertools import groupby, pairwise, product
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from host.experiments.robot.wall_hits import bounces
 from host.kicking.kick_watch import KickWatch
 from host.lab.lessons.expected import reversal_share
 from host.logs.log import Log
@@ -35,6 +37,11 @@ KICKS, LENGTHS = 10, 4
 _RARE = 1e-3
 # A k counts if it was held for this time (s); the speed is that of its last part (s).
 _HELD_S, _MEAN_S = 1.5, 1.0
+# What somebody does to a robot. Between these it turns by itself, at least this many times.
+_DISTURBING = ("start", "stop", "kick", "params", "snapshot")
+_TURNS = 2
+# How many ticks before a turn are compared: most of them are from before the wall.
+_APPROACH = 80
 # Slower wheels rest (rad/s).
 _REST_RAD_S = 0.5
 
@@ -76,11 +83,16 @@ def _start(log: Log) -> list[Finding]:
 
 def _runs(log: Log) -> Iterator[list[float]]:
     """The angles of the left wheel (rad) in each run that was long enough."""
-    ends = [place for event, place in _events(log) if event["event"] == "start"]
-    for first, end in pairwise([*ends, len(log.records)]):
+    for first, end in _spans(log, ("start",)):
         running = [one for one in log.records[first:end] if one.state == _RUNNING]
         if running and running[-1].t_s - running[0].t_s >= _RUN_S:
             yield [one.left_phi_rad for one in running]
+
+
+def _spans(log: Log, names: Collection[str]) -> Iterator[tuple[int, int]]:
+    """The places of records from each event of these names to the next one, or to the end."""
+    places = [place for event, place in _events(log) if event["event"] in names]
+    return pairwise([*places, len(log.records)])
 
 
 def _jump(log: Log) -> list[Finding]:
@@ -216,7 +228,7 @@ def _way(holds: list[tuple[float, float]]) -> list[float]:
 
 def _holds(log: Log) -> dict[str, list[tuple[float, float]]]:
     """Each k that was held while the robot ran, with the speed of each wheel (rad/s)."""
-    places = [place for event, place in _events(log) if event["event"] in ("params", "snapshot")]
+    ends = dict(_spans(log, ("params", "snapshot", "start")))
     speeds = {side: np.abs(log.omega(side)) for side in WHEELS}
     snapshot = Snapshot(Params().values())
     found: dict[str, list[tuple[float, float]]] = {side: [] for side in WHEELS}
@@ -224,8 +236,7 @@ def _holds(log: Log) -> dict[str, list[tuple[float, float]]]:
         snapshot = _after(snapshot, event)
         if event["event"] not in ("params", "snapshot", "start"):
             continue
-        end = next((other for other in places if other > place), len(log.records))
-        span = log.records[place:end]
+        span = log.records[place : ends[place]]
         if not span or span[-1].t_s - span[0].t_s < _HELD_S:
             continue
         late = [place + n for n, one in enumerate(span) if one.t_s >= span[-1].t_s - _MEAN_S]
@@ -233,6 +244,57 @@ def _holds(log: Log) -> dict[str, list[tuple[float, float]]]:
             for side, speed in speeds.items():
                 found[side].append((float(snapshot.params["k"]), float(speed[late].mean())))
     return found
+
+
+def _wall(log: Log) -> list[Finding]:
+    turns = [turn for first, end in _spans(log, _DISTURBING) for turn in _turns(log, first, end)]
+    findings = [
+        Finding(
+            len(turns) >= _TURNS,
+            f"{len(turns)} turns of {_TURNS} or more at a wall, while nobody touched anything",
+        )
+    ]
+    if turns:
+        slow, close, sign = (np.median([turn[n] for turn in turns]) for n in range(3))
+        words = (
+            f"the wheels had lost half their speed {sign - slow:.2f} s before M changed its sign,"
+            f" and the lag had shrunk to half {sign - close:.2f} s before it"
+        )
+        findings.append(Finding(all(one < two < three for one, two, three in turns), words))
+    return findings
+
+
+def _turns(log: Log, first: int, end: int) -> Iterator[tuple[float, float, float]]:
+    """Each lasting reversal of both wheels among records, for each wheel.
+
+    Yields:
+        When the wheel had lost half its speed, when its lag had shrunk to half, and when M had
+        changed its sign (s).
+    """
+    times = log.column("t_s")[first:end]
+    angles, torques = (
+        np.stack([log.column(f"{side}_{name}")[first:end] for side in WHEELS], axis=1)
+        for name in ("phi_rad", "torque")
+    )
+    for turned, wheel in product(bounces(times, angles, torques), range(len(WHEELS))):
+        x1, x2 = (log.column(f"{WHEELS[wheel]}_{name}")[first:end] for name in ("x1", "x2"))
+        phi, torque = angles[:, wheel], torques[:, wheel]
+        lag = np.abs(np.angle(np.exp(1j * phi) / (x1 + 1j * x2)))
+        speed = np.abs(np.convolve(np.gradient(phi, times), np.full(3, 1 / 3), "same"))
+        changed = _last(torque[:turned] * torque[turned] < 0.0) + 1
+        before = slice(max(0, changed - _APPROACH), changed)
+        slow, close = (
+            before.start + _last(one[before] >= np.percentile(one[before], 75) / 2) + 1
+            for one in (speed, lag)
+        )
+        if changed < len(times):
+            yield float(times[slow]), float(times[close]), float(times[changed])
+
+
+def _last(where: NDArray[np.bool_]) -> int:
+    """The last place at which something holds; -1 if nowhere."""
+    places = np.flatnonzero(where)
+    return int(places[-1]) if len(places) else -1
 
 
 def _params(log: Log) -> Params:
@@ -276,4 +338,5 @@ CHECKS: dict[str, Callable[[Log], list[Finding]]] = {
     "jump": _jump,
     "longer": _longer,
     "there-and-back": _there_and_back,
+    "wall": _wall,
 }

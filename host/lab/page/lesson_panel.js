@@ -71,7 +71,10 @@ function steps(lesson, robot) {
 
 function predict(lesson, robot) {
     const { texts, state } = lesson;
-    if (texts.walls && robot.info.walls === null) return [element("p", {}, lessonTexts.walls)];
+    const { label, walls } = robot.info;
+    if (texts.walls && walls === null && label !== "real") {
+        return [element("p", {}, lessonTexts.walls)];
+    }
     const answers = texts.answers.map((label, value) => ({ value, label }));
     const group = choices("prediction", lessonTexts.prediction, answers, state.guess, (answer) =>
         lesson.guess(answer),

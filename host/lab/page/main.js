@@ -19,6 +19,7 @@ import { DELAY_TICKS } from "./playout.js";
 import { createRecording } from "./recording.js";
 import { createSaid } from "./said.js";
 import { Screen } from "./screen.js";
+import { Sound } from "./sound.js";
 import { WebSocketSource } from "./source.js";
 import { createState } from "./state_panel.js";
 import { Stop } from "./stop.js";
@@ -35,6 +36,7 @@ const source = new WebSocketSource(address.href);
 const lab = new Lab(source);
 const stop = new Stop(lab);
 const screen = new Screen();
+const sound = new Sound(byId("sound"));
 createSaid(lab);
 const kicks = createKicks(byId("kicks"), lab);
 const kTrace = createKTrace(byId("k-trace"), byId("k-plane"), lab);
@@ -65,6 +67,7 @@ function update() {
     if (views) {
         views.linked = link.up;
         views.update(now / 1000);
+        sound.update(views);
     }
     // What counts the time since something happened is renewed now and then, too.
     if (!lab.changed && now - told < 250) return;
@@ -90,5 +93,5 @@ frames.add(kPlane, kTrace.draw, () => views && [kTrace.view(), screen.themeFor(k
 const { canvas: score, draw: drawScore, view: scoreView } = kicks.verdict;
 frames.add(score, drawScore, () => [scoreView(), screen.themeFor(score, 22, 6)]);
 
-window.lab = { state: () => snapshot(lab, stop, frames, views, kTrace) };
+window.lab = { state: () => snapshot(lab, stop, frames, views, kTrace, sound) };
 source.open();

@@ -6,9 +6,10 @@
  * @param {import("./frames.js").Frames} frames
  * @param {import("./views.js").Views | null} views
  * @param {{state: () => object[]}} kTrace
+ * @param {import("./sound.js").Sound} sound
  * @returns {object}
  */
-export function snapshot({ store }, stop, frames, views, kTrace) {
+export function snapshot({ store }, stop, frames, views, kTrace, sound) {
     const { link, role, page, baton, refused, note, score, poll, selected } = store;
     const robots = store.robots.map((robot) => ({
         name: robot.name,
@@ -24,5 +25,5 @@ export function snapshot({ store }, stop, frames, views, kTrace) {
     const drawing = { frames: frames.count, p95_ms: frames.p95(), shown_s: views?.time ?? null };
     const known = { link, role, page, baton, refused, note, score, poll, selected };
     const shown = { robots, drawing, stop: stop.progress(), k_trace: kTrace.state() };
-    return structuredClone({ ...known, ...shown });
+    return structuredClone({ ...known, ...shown, sound: sound.state() });
 }

@@ -24,6 +24,8 @@ export const texts = {
     stopLabel: "Stop all robots",
     projector: "Projector",
     projectorLabel: "Large text for a projector",
+    sound: "Sound",
+    soundLabel: "Sound: wheels tick as they turn, and the torque is a tone",
 
     wheels: "Wheels",
     key: {
