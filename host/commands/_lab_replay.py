@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import shlex
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -167,11 +167,9 @@ def _serve(options: argparse.Namespace, open_browser: Callable[[str], None]) -> 
     from host.lab.server import Lab
 
     log, tape = _read(options, options.replay)
-    with ExitStack() as stack:
-        replays = Replays()
-        stack.callback(replays.close)
-        replays.give(tape)
-        lab = stack.enter_context(Lab([], options.port, options.host, replays=replays))
+    replays = Replays()
+    replays.give(tape)
+    with Lab([], options.port, options.host, replays=replays) as lab:
         url = lab.view_url.replace("/#", f"/replay.html?log={quote(tape['name'])}#")
         with suppress(KeyboardInterrupt):
             if options.json:

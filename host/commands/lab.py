@@ -83,8 +83,8 @@ def run(options: argparse.Namespace) -> int:
 
     with ExitStack() as stack:
         forecasts, basins = Forecasts(), Worker("computes basins", _BASINS_NICENESS)
-        replays, checks = Replays(), Worker("checks exercises", _CHECKS_NICENESS)
-        for worker in (forecasts, basins, replays, checks):
+        checks = Worker("checks exercises", _CHECKS_NICENESS)
+        for worker in (forecasts, basins, checks):
             stack.callback(worker.close)
         stations = [_station(robot, options, stack) for robot in _robots(options)]
         lab = stack.enter_context(
@@ -94,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
                 options.host,
                 forecasts=forecasts,
                 basins=basins,
-                replays=replays,
+                replays=Replays(),
                 checks=checks,
             )
         )

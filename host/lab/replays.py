@@ -27,7 +27,7 @@ class Replays:
         self._reading = asyncio.Lock()
 
     def give(self, tape: dict[str, Any]) -> None:
-        """Have a tape shown under its name, whatever logs there are."""
+        """Have a tape shown under its name, before any log of this name."""
         self._given[tape["name"]] = json.dumps(tape, allow_nan=False)
 
     def given(self, name: str) -> str | None:
@@ -66,7 +66,7 @@ class Replays:
             with suppress(RuntimeError):  # the loop is closed, since the lab ends
                 loop.call_soon_threadsafe(settle, answer)
 
-        self._worker.ask(_read, path, done)
+        await asyncio.to_thread(self._worker.ask, _read, path, done)  # its process may begin
         answer = await future
         if isinstance(answer, KickctlError):
             raise answer

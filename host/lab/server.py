@@ -40,7 +40,7 @@ class Lab:
         folder: The page's files.
         forecasts: Where kicks are predicted; None if nowhere. It is the caller's, too.
         basins: Where basins are computed; None if nowhere. It is the caller's, too.
-        replays: Where logs are read for pages; None if nowhere. It is the caller's, too.
+        replays: Where logs are read for pages; None if nowhere. They end with the lab.
         checks: Where exercises are checked; None if nowhere. It is the caller's, too.
 
     Attributes:

@@ -185,8 +185,8 @@ def make_tape(
         Plain JSON data, see MESSAGES.md.
 
     Raises:
-        WrongUse: The part has no tick, or more than MOST_TICKS; or there is no such motor, or the
-            robot's own is not known.
+        WrongUse: The part has no tick, or more than MOST_TICKS; or nobody knows this motor, or the
+            robot's own.
         LogError: The file cannot be read any more, or its numbers are too large to compute with.
     """
     cut = cut or Cut()

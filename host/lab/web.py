@@ -88,6 +88,8 @@ class Site:
         ]
         if ends:
             await asyncio.wait(ends, timeout=GOODBYE_S)
+        if self._replays is not None:  # who waits for a log gets an answer
+            await asyncio.to_thread(self._replays.close)
 
     # Files.
 

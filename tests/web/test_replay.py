@@ -226,13 +226,11 @@ def test_a_lab_without_robots_serves_a_replay(browser, read, tape):
         stranger = Visitor(browser, lab, url.partition("#")[0])
         stranger.reads("#loading", "The log cannot be shown. Logs need the lab's key")
         stranger.context.close()
-    replays.close()
 
 
 def test_a_log_just_recorded_opens_in_a_replay(browser, station):
     station.step(1)
-    replays = Replays()
-    with Lab([station], port=0, replays=replays) as lab:
+    with Lab([station], port=0, replays=Replays()) as lab:
         visitor = Visitor(browser, lab, lab.drive_url)
         visitor.page.click(".record")
         visitor.until("r.status.recording")
@@ -244,7 +242,6 @@ def test_a_log_just_recorded_opens_in_a_replay(browser, station):
         popup.value.wait_for_function("() => window.lab?.state().log")
         state = popup.value.evaluate("lab.state()")
         visitor.context.close()
-    replays.close()
     assert json.dumps(state["verdict"]["exact"]) == "true"
     assert state["ticks"] >= 66
     assert visitor.complaints == []

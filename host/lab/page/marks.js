@@ -16,7 +16,7 @@ const MOST_DIFFERENCES = 50;
 
 /**
  * @param {object} tape
- * @param {import("./ring.js").Ring} ring The tape's records, of which the first is in place 0.
+ * @param {import("./ring.js").Ring} ring The tape's records; the first is in place 0.
  * @returns {Mark[]} In the order in which they happened.
  */
 export function marksOf(tape, ring) {
