@@ -168,7 +168,7 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--brick", "tcp://127.0.0.1:1", "--walls", "2"), 2, "--walls is for the simulated"),
         (("--brick", "tcp://127.0.0.1:1", "--seed", "2"), 2, "--seed fixes"),
         (("--brick", "sim://?dither=1"), 2, "has no option 'dither'"),
-        (("--host", "192.0.2.1"), 2, "cannot listen at 192.0.2.1"),
+        (("--host", "192.0.2.1", "--port", "0"), 2, "cannot listen at 192.0.2.1"),
         (("--class", "--host", "192.0.2.1"), 2, "not allowed with argument"),
         (("--host", "::"), 2, "give one IP address of this computer"),
         (("--host", "lab.example"), 2, "give one IP address of this computer"),
