@@ -3,6 +3,7 @@
 from host.client.robot import connect
 from host.experiments.robot.wall_hits import bounces, motion_since
 from host.kicking.modes import MODES, WALL_TURNER
+from sim_motor.hand import pull
 
 WALLS = MODES[WALL_TURNER].address
 
@@ -13,6 +14,17 @@ def start(robot):
         robot.wait(1.3)
         robot.stop()
         robot.wait(0.1)
+
+
+def trace(robot):
+    brick = robot.link.brick
+    motor = brick.motors[0]
+    for angle_rad in (0, 1, 2, 3, 3, 2, 1, 0):
+        for _ in range(10):
+            truth = motor.truth()
+            away_rad = motor.mount * angle_rad - truth.wheel_angle
+            brick.set_load(0, pull(away_rad, truth.wheel_speed))
+            robot.wait(0.03)
 
 
 def jump(robot):
@@ -47,6 +59,7 @@ def wall(robot):
 
 DO = {
     "start": start,
+    "trace": trace,
     "jump": jump,
     "longer": longer,
     "there-and-back": there_and_back,

@@ -60,4 +60,4 @@ def test_an_exercise_from_the_prediction_to_the_explanation(visit, lab, station,
     visitor.reads("#lessons", "Things go where they were pushed last.")
     assert not visitor.robot()["status"]["recording"]
     page.click("text=Leave the exercise")
-    visitor.reads("#lessons", "2 What jumps in a kick? ✓")
+    visitor.reads("#lessons", "3 What jumps in a kick? ✓")

@@ -28,6 +28,8 @@ FORWARD, BACKWARD, STOPPED = HEADINGS[1], HEADINGS[-1], HEADINGS[0]
 STARTS = 10
 # Shorter runs do not tell where a robot goes (s).
 _RUN_S = 1.0
+# How far a wheel has to be turned by hand, forward and back (rad); an arrow key pulls 1 rad.
+_BY_HAND_RAD = 0.7
 # In one tick, this many times as fast as in any of the ticks before is a jump; less than the other
 # factor is none.
 _JUMP, _SMOOTH = 2.0, 1.7
@@ -93,6 +95,24 @@ def _spans(log: Log, names: Collection[str]) -> Iterator[tuple[int, int]]:
     """The places of records from each event of these names to the next one, or to the end."""
     places = [place for event, place in _events(log) if event["event"] in names]
     return pairwise([*places, len(log.records)])
+
+
+def _trace(log: Log) -> list[Finding]:
+    still = log.column("state") != _RUNNING
+    far_rad, side = max(
+        (_there_and_back_rad(log.column(f"{side}_phi_rad")[still]), side) for side in WHEELS
+    )
+    words = f"with the motors off, the {side} wheel went {far_rad:.1f} rad forward and back"
+    return [Finding(far_rad >= _BY_HAND_RAD, f"{words}, of {_BY_HAND_RAD:g} rad or more")]
+
+
+def _there_and_back_rad(phi_rad: NDArray[np.float64]) -> float:
+    """How far a wheel went forward and then came back."""
+    if not len(phi_rad):
+        return 0.0
+    there = phi_rad - np.minimum.accumulate(phi_rad)
+    back = phi_rad - np.minimum.accumulate(phi_rad[::-1])[::-1]
+    return float(np.minimum(there, back).max())
 
 
 def _jump(log: Log) -> list[Finding]:
@@ -335,6 +355,7 @@ def _honest(log: Log) -> Finding:
 
 CHECKS: dict[str, Callable[[Log], list[Finding]]] = {
     "start": _start,
+    "trace": _trace,
     "jump": _jump,
     "longer": _longer,
     "there-and-back": _there_and_back,

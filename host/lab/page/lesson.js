@@ -17,7 +17,7 @@ export class Lesson {
         this.state = JSON.parse(recall("sessionStorage", KEPT) ?? "null");
         /** @type {string[]} The names of the exercises that are done. */
         this.done = JSON.parse(recall("sessionStorage", DONE) ?? "[]");
-        this.busy = false;
+        this.busy = this.checking = false;
         /** Whether the last thing went wrong; then the next one is a person's. */
         this.stuck = false;
         this.#changed();
@@ -72,6 +72,7 @@ export class Lesson {
 
     /** Have the lab check what was done since the prediction. */
     check() {
+        this.checking = true;
         return this.#alone(async () => {
             const { name, logs } = this.state;
             const { recording } = this.lab.store.robot.status;
@@ -105,7 +106,7 @@ export class Lesson {
             this.stuck = true;
             this.lab.tell(error.message ? error : { message: String(error), hint: "" });
         }
-        this.busy = false;
+        this.busy = this.checking = false;
         this.#changed();
     }
 

@@ -86,7 +86,7 @@ function predict(lesson, robot) {
 }
 
 function play(lesson) {
-    const { texts, state, busy } = lesson;
+    const { texts, state, checking } = lesson;
     const { ok, missing } = lessonTexts;
     const parts = [
         element("p", { className: "locked" }, lessonTexts.locked(texts.answers[state.guess])),
@@ -96,7 +96,7 @@ function play(lesson) {
         parts.push(element("p", {}, texts.task), element("ul", {}, ...hints));
     }
     const verdict = element("p", { role: "status" });
-    if (busy) verdict.append(lessonTexts.checking);
+    if (checking) verdict.append(lessonTexts.checking);
     else if (state.findings.length) verdict.append(lessonTexts[state.done ? "done" : "notYet"]);
     const findings = state.findings.map((one) =>
         element("li", {}, element("b", {}, one.ok ? ok : missing), ` ${one.words}`),
