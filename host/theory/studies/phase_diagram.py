@@ -96,7 +96,7 @@ def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Itera
     count = len(taus)
     both = np.concatenate([taus, taus])
     states = None if begun is None else np.array(begun.state)
-    found: list[Point] = []
+    measured: list[tuple[Averages, Array]] = []
     ways = list(zip(ks.tolist(), ks[::-1].tolist(), strict=True))
     done = 0 if begun is None else len(begun.rows) // (2 * count)
     for number, (up, down) in enumerate(ways[done:], done + 1):
@@ -105,13 +105,13 @@ def _sweep(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Itera
             at_rest = _at_rest(parameters[:, :count])
             states = np.hstack([at_rest, rolling_states(parameters[:, count:])])
         states[PHI] += PUSH
-        result = _averages(states, parameters, options)
-        states = result.states
-        swept: list[Way] = [way for way in ("up", "down") for _ in range(count)]
-        found += _points(swept, result, parameters)
+        measured.append((_averages(states, parameters, options), parameters))
+        states = measured[-1][0].states.copy()
         if number % KS_OF_A_PART == 0 or number == len(ways):
-            yield Part(as_rows(found), states.tolist(), number / len(ways))
-            found = []
+            swept: list[Way] = [way for way in ("up", "down") for _ in range(count)]
+            rows = as_rows(_points(swept * len(measured), *_together(measured)))
+            yield Part(rows, states.tolist(), number / len(ways))
+            measured = []
 
 
 def _one_start(cell: BandCell, options: dict[str, Any], begun: Part | None) -> Iterator[Part]:
@@ -128,6 +128,13 @@ def _one_start(cell: BandCell, options: dict[str, Any], begun: Part | None) -> I
         result = _averages(start, parameters, options)
         found = _points(len(own) * count * [way], result, parameters)
         yield Part(as_rows(found), None, min(1.0, (first + KS_OF_A_PART) / len(ks)))
+
+
+def _together(measured: list[tuple[Averages, Array]]) -> tuple[Averages, Array]:
+    """Averages and parameters of all wheels: phases of many take little longer than of few."""
+    found, parameters = zip(*measured, strict=True)
+    joined = (np.concatenate(values, axis=-1) for values in zip(*found, strict=True))
+    return Averages(*joined), np.hstack(parameters)
 
 
 def _points(ways: list[Way], found: Averages, parameters: Array) -> list[Point]:
