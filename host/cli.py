@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any
 
 from host.commands._options import EVERY, asks_for_json, common, join_places, refuse_unused
-from host.commands._parser import Parser, join_negative
+from host.commands._parser import Parser, RawHelp, join_negative
 from host.commands._signals import Interrupts, interruptible
 from host.commands._streams import OUTPUT, drop_output, prepare
 from host.errors import Interrupted
@@ -53,6 +53,8 @@ _OWN_WAYS = ("stop", "watch", "lab", "deploy")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.
+`kickctl VERB --help` ends with an example, how long it takes on two idle cores, and a page of the
+docs. The first run after an installation takes up to half a minute more.
 Exit status: 0 it worked; 1 tried, and not or not wholly done; 2 wrong use; 3 no link to the robot;
 4 refused (version, token, lease); 5 fault on the robot; 130 interrupted (but 0 for `watch`)."""
 
@@ -70,7 +72,7 @@ def make_parser(needed: tuple[str, ...] = VERBS) -> argparse.ArgumentParser:
         prog="kickctl",
         description="Kick a robot from one of its attractors into another.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=RawHelp,
         parents=parents,
     )
     parser.add_argument("--version", action="version", version=f"kickctl {__version__}")
@@ -94,10 +96,14 @@ def make_parser(needed: tuple[str, ...] = VERBS) -> argparse.ArgumentParser:
 
 
 def _needed(arguments: list[str]) -> tuple[str, ...]:
-    """The verbs that stand in a command line; all of them for help, and for what completes it."""
+    """The verbs that stand in a command line.
+
+    All of them for help that may be that of the program, and for what completes a line.
+    """
     named = tuple(name for name in VERBS if name in arguments)
     helps = any(argument.startswith(("-h", "--h")) for argument in arguments)
-    return VERBS if helps or "_ARGCOMPLETE" in os.environ else named or VERBS
+    all_ = "_ARGCOMPLETE" in os.environ or (helps and arguments[0] not in VERBS)
+    return VERBS if all_ else named or VERBS
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -10,7 +10,6 @@ from typing import Any
 from docs.site import ROOT
 from docs.site.markdown import table, toctree
 from host.cli import make_parser
-from host.experiments.efforts import EFFORTS, in_words
 from host.perform.catalogue import find
 from host.perform.reproduce import claim_ids
 from host.runs.columns import Kind, kinds_of
@@ -74,10 +73,6 @@ def _run(name: str, parser: argparse.ArgumentParser) -> str:
     claims = [claim for claim in claim_ids() if claim in found.entry.claims]
     if claims:
         parts.append(f"[What the paper claims](/docs/claims.md) of it: {', '.join(claims)}.\n")
-    if name in EFFORTS:
-        defaults = {option.name: option.default for option in found.entry.options}
-        takes = in_words(EFFORTS[name].seconds(defaults))
-        parts.append(f"On a real robot this takes {takes}; `--quick` or `--minutes` shorten it.\n")
     kinds = kinds_of(found.work)
     parts.append("## Its tables\n")
     parts += (_kind(f"{name}-{kind.name}" if len(kinds) > 1 else name, kind) for kind in kinds)

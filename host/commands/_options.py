@@ -63,7 +63,7 @@ def common(*, defaults: bool, used: Sequence[str] = EVERY) -> argparse.ArgumentP
     )
     add(
         "seed",
-        "fixes all chances of the simulation: a whole number, 0 or more",
+        "fixes all chances of the simulation: a whole number",
         type=Number(least=0, whole=True),
         metavar="N",
     )

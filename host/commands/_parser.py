@@ -8,16 +8,40 @@ from difflib import get_close_matches
 from typing import Any, NoReturn
 
 from host.errors import WrongUse
+from host.util.numbers import Number
 
 # Options whose values may begin with a minus sign and still be no plain numbers.
 _SIGNED = ("--shift", "--value", "--delta", "--window")
 
 
+class Help(argparse.HelpFormatter):
+    """Says of each number from where to where it may go."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        words = super()._get_help_string(action)
+        span = action.type.span() if isinstance(action.type, Number) else ""
+        return f"{words}; {span}" if span else words
+
+
+class RawHelp(Help, argparse.RawDescriptionHelpFormatter):
+    """The same, with descriptions as they are written."""
+
+
 class Parser(argparse.ArgumentParser):
     """Raises WrongUse for a wrong command line, so that it is answered like every other error.
 
-    The namespace that it returns has `command`: what was typed up to the last verb or name.
+    The namespace that it returns has `command`: what was typed up to the last verb or name. Its
+    help ends with the note of the command, see host.commands._help_notes.
     """
+
+    def __init__(self, *, formatter_class: Any = Help, **more: Any) -> None:
+        super().__init__(formatter_class=formatter_class, **more)
+
+    def format_help(self) -> str:
+        """The help, and the note."""
+        from host.commands._help_notes import note_of
+
+        return super().format_help() + note_of(self.prog)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse, and refuse what this parser does not know: only it can say what it does know."""

@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--cars",
         type=Number("cars", 1, MOST_CARS, whole=True),
         metavar="N",
-        help=f"length of the train, in cars, at most {MOST_CARS} (default 5)",
+        help="length of the train, in cars (default 5)",
     )
     parser.add_argument(
         "--scene",

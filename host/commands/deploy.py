@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 
+from host.commands._parser import RawHelp
 from host.errors import WrongUse
 from host.link import robots_file
 from host.link.logins import parse_login
@@ -48,7 +49,7 @@ the brick now."""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of deploy.sh, and the brick."""
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.formatter_class = RawHelp
     parser.epilog = _DETAILS
     parser.add_argument(
         "login", nargs="?", metavar="BRICK", help="the brick (default robot@ev3dev.local)"

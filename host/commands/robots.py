@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
+from host.commands._parser import RawHelp
 from host.commands._terminal import answer, say, show
 from host.errors import WrongUse, quotable
 from host.link import names, robots_file
@@ -28,7 +29,7 @@ _ACTIONS = {"list": "", "add": "NAME ADDRESS", "rename": "OLD NEW", "remove": "N
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the action and its names."""
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.formatter_class = RawHelp
     parser.epilog = _DETAILS
     parser.add_argument("action", choices=_ACTIONS, help="what to do with the names")
     takes = "; ".join(f"{action} {words}" for action, words in _ACTIONS.items() if words)

@@ -59,11 +59,13 @@ class Number:
         number = "a whole number" if self.whole else "a number"
         if self.unit:
             number += f" of {self.unit}" if self.whole else f" in {self.unit}"
+        return f"give {number}" + (f", {self.span()}" if self.span() else "")
+
+    def span(self) -> str:
+        """From where to where it may go; empty if it may be any number."""
         if self.least > -inf and self.most < inf:
-            number += f", from {self.least:.10g} to {self.most:.10g}"
-        elif self.least > -inf:
-            number += f", {self.least:.10g} or more"
-        return f"give {number}"
+            return f"from {self.least:.10g} to {self.most:.10g}"
+        return f"{self.least:.10g} or more" if self.least > -inf else ""
 
 
 class Values(Number):

@@ -3,6 +3,7 @@
 import argparse
 import json
 import re
+import shlex
 
 import pytest
 
@@ -11,19 +12,21 @@ from host.client.robot import Robot
 from host.commands import _hints, discover
 from host.errors import NoLink
 from host.util.numbers import Number
+from tests.lint.sources import ROOT
 
 
-def leaves(parser, words=()):
-    """(words, parser) of every command, such as ('log', 'list')."""
-    actions = [one for one in parser._actions if isinstance(one, argparse._SubParsersAction)]
-    if not actions:
-        yield words, parser
-    for action in actions:
-        for name, below in action.choices.items():
-            yield from leaves(below, (*words, name))
+def commands(parser, words=()):
+    """(words, parser) of every command, such as ('log',) and ('log', 'list')."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, below in action.choices.items():
+                yield (*words, name), below
+                yield from commands(below, (*words, name))
 
 
-LEAVES = dict(leaves(make_parser()))
+COMMANDS = dict(commands(make_parser()))
+# Those that can be run.
+LEAVES = {words: parser for words, parser in COMMANDS.items() if not dict(commands(parser))}
 # What a command needs to be parsed at all.
 NEEDS = {
     ("kick",): ("--mode", "phase"),
@@ -122,8 +125,19 @@ def test_the_unused_ones_are_those_that_are_meant():
     assert not {words for words, _ in UNUSED} & {("kick",), ("stop",), ("rods",), ("log", "pull")}
 
 
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_the_help_ends_with_an_example_how_long_it_takes_and_a_page(words):
+    (*_, ending) = COMMANDS[words].format_help().split("\n\n")
+    found = re.fullmatch(r"example:  kickctl (.+)\ntakes:    (.+)\npage:     (.+)\n", ending)
+    example, takes, page = found.groups()
+    assert example.startswith(" ".join(words))
+    make_parser().parse_args(shlex.split(example))
+    assert re.match(r"(\d+ (to \d+ )?|half a |a )(s|minutes?|hours?)\b|less than 1 s|until", takes)
+    assert (ROOT / page).is_file()
+
+
 @pytest.mark.parametrize("words", LEAVES, ids=" ".join)
-def test_every_number_has_its_unit_in_the_help(words):
+def test_every_number_has_its_unit_and_its_range_in_the_help(words):
     for action in LEAVES[words]._actions:
         if isinstance(action.type, Number) and action.help != argparse.SUPPRESS:
             assert action.help
@@ -131,6 +145,9 @@ def test_every_number_has_its_unit_in_the_help(words):
             unit = action.type.unit
             assert not unit or re.search(rf"\b{re.escape(unit)}\b", text), action.dest
             assert _says_what_it_counts(text), (action.dest, text)
+            shown = " ".join(LEAVES[words].format_help().split())
+            span = f"; {action.type.span()}" if action.type.span() else ""
+            assert " ".join((action.help % vars(action) + span).split()) in shown
         else:
             assert action.type not in (int, float), action.dest
 
