@@ -94,12 +94,12 @@ def test_a_mistyped_option_is_guessed(kickctl, words):
         (("kick", "--mode", "phse"), "phase"),
         (("kick", "--mode", "phase", "--wheel", "lefft"), "left"),
         (("experiment", "timeline", "--trails", "3"), "--trials"),
-        (("theory", "phase-diagram", "--point=3"), None),
+        (("theory", "phase-diagram", "--transi=3"), None),
     ],
 )
 def test_a_mistyped_name_is_guessed(kickctl, arguments, guess):
     if guess is None:  # argparse takes what can only mean one option
-        assert make_parser().parse_args(arguments).points == 3
+        assert make_parser().parse_args(arguments).transient == 3
     else:
         assert f"did you mean {guess}?" in refused(kickctl, *arguments)["hint"]
 
