@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
@@ -61,7 +62,10 @@ def _verb(folder: str, name: str, parser: argparse.ArgumentParser) -> str:
 def _help(parser: argparse.ArgumentParser) -> str:
     style: Any = parser.formatter_class
     parser.formatter_class = partial(style, width=COLUMNS)
-    return f"```text\n{parser.format_help()}```\n"
+    text = parser.format_help()
+    pages = re.findall(r"^page: +(\S+)$", text, re.MULTILINE)
+    links = "".join(f"\nMore: [](/{page})\n" for page in pages)
+    return f"```text\n{text}```\n{links}"
 
 
 def _run(name: str, parser: argparse.ArgumentParser) -> str:
