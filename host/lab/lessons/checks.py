@@ -267,29 +267,30 @@ def _holds(log: Log) -> dict[str, list[tuple[float, float]]]:
 
 
 def _wall(log: Log) -> list[Finding]:
-    turns = [turn for first, end in _spans(log, _DISTURBING) for turn in _turns(log, first, end)]
+    leads = [lead for first, end in _spans(log, _DISTURBING) for lead in _leads(log, first, end)]
+    turns = len(leads) // len(WHEELS)
     findings = [
         Finding(
-            len(turns) >= _TURNS,
-            f"{len(turns)} turns of {_TURNS} or more at a wall, while nobody touched anything",
+            turns >= _TURNS,
+            f"{turns} turns of {_TURNS} or more at a wall, while nobody touched anything",
         )
     ]
-    if turns:
-        slow, close, sign = (np.median([turn[n] for turn in turns]) for n in range(3))
+    if leads:
+        slow_s, close_s = np.median(leads, axis=0)
         words = (
-            f"the wheels had lost half their speed {sign - slow:.2f} s before M changed its sign,"
-            f" and the lag had shrunk to half {sign - close:.2f} s before it"
+            f"the wheels had lost half their speed {slow_s:.2f} s before M changed its sign, and"
+            f" the lag had shrunk to half {close_s:.2f} s before it"
         )
-        findings.append(Finding(all(one < two < three for one, two, three in turns), words))
+        findings.append(Finding(all(slow > close > 0.0 for slow, close in leads), words))
     return findings
 
 
-def _turns(log: Log, first: int, end: int) -> Iterator[tuple[float, float, float]]:
-    """Each lasting reversal of both wheels among records, for each wheel.
+def _leads(log: Log, first: int, end: int) -> Iterator[tuple[float, float]]:
+    """What came before M changed its sign, in each lasting reversal of both wheels among records.
 
     Yields:
-        When the wheel had lost half its speed, when its lag had shrunk to half, and when M had
-        changed its sign (s).
+        For each wheel, how long before that it had lost half its speed, and how long before that
+        its lag had shrunk to half (s).
     """
     times = log.column("t_s")[first:end]
     angles, torques = (
@@ -308,7 +309,7 @@ def _turns(log: Log, first: int, end: int) -> Iterator[tuple[float, float, float
             for one in (speed, lag)
         )
         if changed < len(times):
-            yield float(times[slow]), float(times[close]), float(times[changed])
+            yield float(times[changed] - times[slow]), float(times[changed] - times[close])
 
 
 def _last(where: NDArray[np.bool_]) -> int:

@@ -36,14 +36,14 @@ class Marking:
         self._stations = stations
         self.worker: Worker | None = None
 
-    def take(self, page: Page, message: Mapping[str, Any], request: int | None) -> None:
+    def take(self, page: Page, message: dict[str, Any], request: int | None) -> None:
         """Check what a page asks for with a `check` message, and answer it later.
 
         Raises:
             WrongUse: There is no exercise or log of this name.
             NotDone: This lab checks nothing.
         """
-        name, names = text_of(dict(message), "lesson"), message.get("logs")
+        name, names = text_of(message, "lesson"), message.get("logs")
         if name not in [lesson["name"] for lesson in lessons()]:
             raise WrongUse(f"there is no exercise '{quotable(name)}'", RELOAD)
         if not isinstance(names, list) or not 0 < len(names) <= _MOST_LOGS:
