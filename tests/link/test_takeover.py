@@ -1,6 +1,7 @@
 """A host that takes over, and the one that had control before: it hears so and does not fight."""
 
 import logging
+from types import SimpleNamespace
 
 import pytest
 
@@ -149,10 +150,12 @@ class Older(RigLink):
     def __init__(self, monkeypatch):
         super().__init__()
         rows = {name: row for name, row in commands.TABLE.items() if name != "identify"}
-        rows["lease"] = rows["lease"]._replace(arguments=())
-        rows["heartbeat"] = rows["heartbeat"]._replace(
-            run=lambda loop, session, message: {"tick": loop.blackbox.next_tick}
-        )
+        changes = {
+            "lease": {"arguments": ()},
+            "heartbeat": {"run": lambda loop, session, message: {"tick": loop.blackbox.next_tick}},
+        }
+        for name, changed in changes.items():
+            rows[name] = SimpleNamespace(**vars(rows[name]) | changed)
         monkeypatch.setattr(commands, "TABLE", rows)
         self._monkeypatch = monkeypatch
 
