@@ -26,7 +26,7 @@ MOST_STEPS = 100_000
 # Steps where a kind is enough (see host.theory.engine.ensemble).
 _FINENESS = 0.6
 # A slower wheel (rad/s) that gets slower comes to rest.
-_SLOW = 0.02
+STILL = 0.02
 
 
 def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
@@ -40,7 +40,7 @@ def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
         Indices of host.theory.analysis.attractors.KINDS, or UNDECIDED, (wheels,).
     """
     kinds = np.full(states.shape[1], UNDECIDED)
-    left, sizes = np.arange(states.shape[1]), np.full(states.shape[1], _SLOW)
+    left, sizes = np.arange(states.shape[1]), np.full(states.shape[1], STILL)
     for number in range(ROUNDS):
         seconds = FIRST_S * 2**number
         quick = rate_per_s(parameters[:, left]) * seconds <= MOST_STEPS
@@ -58,7 +58,7 @@ def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
         seen = watch(states, parameters[:, left], seconds, _FINENESS)
         regular, now = seen.apart < AGREE, np.hypot(seen.omega_mean, seen.omega_std)
         # One that gets slower rests, unless a later round sees otherwise.
-        so_far = np.where((now < sizes) & (now < _SLOW), REST, UNDECIDED)
+        so_far = np.where((now < sizes) & (now < STILL), REST, UNDECIDED)
         kinds[left] = np.where(regular, seen.kinds(), so_far)
         states, left, sizes = seen.states[:, ~regular], left[~regular], now[~regular]
     return kinds

@@ -137,6 +137,7 @@ def _followed(
         left = left[~settled]
         if not len(left):
             break
+    names[left] = OTHER
     return names, Averages(mean, std, states)
 
 

@@ -1,4 +1,4 @@
-"""The four phases of the paper's phase diagram, by mean and standard deviation of omega."""
+"""The four phases of the paper's phase diagram."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from host.theory.model.wheel import Array
 Phase = Literal["S", "FB", "LLM", "C", "undecided"]
 PHASES: tuple[Phase, ...] = ("S", "FB", "LLM", "C", "undecided")
 
-# A wheel rests if mean and deviation of omega (rad/s) are below STILL. It rolls one way if the mean
-# is above ROLLING_MEAN (rad/s) and the deviation below ROLLING_SPREAD of it.
-STILL, ROLLING_MEAN, ROLLING_SPREAD = 0.02, 0.1, 0.6
-# A wheel that is slower still (rad/s) is not about to begin to swing.
+# A wheel rolls one way if the mean of omega is above ROLLING_MEAN (rad/s) and its deviation below
+# ROLLING_SPREAD of the mean.
+ROLLING_MEAN, ROLLING_SPREAD = 0.1, 0.6
+# A slower wheel (rad/s) rests, and is not about to begin to swing.
 _DEAD = 1e-6
 _OF_KIND: dict[int, Phase] = {
     REST: "S",

@@ -10,8 +10,9 @@ import numpy as np
 from host.runs.answers import Answer
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
+from host.theory.analysis.deciding import STILL
 from host.theory.analysis.hopf import critical_k, estimate
-from host.theory.analysis.phases import PHASES, STILL
+from host.theory.analysis.phases import PHASES
 from host.theory.model.wheel import Wheel, wheel_of
 from host.theory.studies.phase_diagram_rows import (
     PANELS,

@@ -10,9 +10,10 @@ import pytest
 from host.runs.contract import Part, Setting
 from host.runs.registry import complete_options
 from host.theory.analysis import deciding
+from host.theory.analysis.deciding import STILL
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.merging import merging
-from host.theory.analysis.phases import STILL, phases
+from host.theory.analysis.phases import phases
 from host.theory.engine.ensemble import averages
 from host.theory.model.turning import constant_velocity, rolling_states, turning
 from host.theory.model.wheel import OMEGA, Wheel, resting
