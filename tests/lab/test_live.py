@@ -48,7 +48,7 @@ class Answers:
         self._one.release()
 
     def next(self):
-        assert self._one.acquire(timeout=20.0), "no answer has come"
+        assert self._one.acquire(timeout=100.0), "no answer has come"
         return self._come.pop(0)
 
 
