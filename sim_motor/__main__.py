@@ -34,9 +34,9 @@ def main() -> int:
     known.add("motor", "pybricks", "which set of constants of motors.toml", "NAME")
     known.add("battery", None, "open-circuit voltage of the battery", "V", float)
     known.add("walls", None, "put the robot halfway between two walls, M metres apart", "M", float)
-    known.add("grip", None, "friction of its tyres on the floor between the walls", "MU", float)
-    known.add("bumper", None, "how far its body reaches before the axle", "M", float)
-    known.add("axle", None, "stiffness of axles and tyres along the way", "N/M", float)
+    known.add("grip", None, "friction coefficient of its tyres between the walls", "MU", float)
+    known.add("bumper", None, "width of its body's front and rear", "M", float)
+    known.add("axle", None, "stiffness of the axle from a motor to its wheel", "N/M", float)
     known.add(
         "hand",
         False,
