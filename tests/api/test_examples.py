@@ -19,7 +19,7 @@ SHOWN_AS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 )
 def test_every_public_name_has_an_example_that_runs(names):
     runner = doctest.DocTestRunner(verbose=False, optionflags=SHOWN_AS)
-    finder = doctest.DocTestFinder(recurse=False)
+    finder = doctest.DocTestFinder(recurse=False, exclude_empty=False)
     without = []
     for name in names:
         (found,) = finder.find(PUBLIC[name], name, module=False, globs=NAMES)
