@@ -7,6 +7,7 @@ import numpy as np
 from host.errors import NotDone, WrongUse
 from host.theory.analysis.attractors import (
     AGREE,
+    CHAOS,
     KINDS,
     REST,
     kinds_by_exponents,
@@ -125,11 +126,13 @@ def spectrum_in_blocks(wheel: Wheel, seconds: float, rng: np.random.Generator) -
 
 
 def series(wheel: Wheel, rng: np.random.Generator) -> list[SeriesSample]:
-    """One wheel, sampled every SAMPLE_S; a chaotic one if any is."""
+    """One wheel, sampled every SAMPLE_S; a chaotic one if any is, else one of most wheels' kind."""
     parameters = wheel.columns(WHEELS)
     settled = settle(random_starts(WHEELS, rng), parameters, _settle_s(wheel.tau))
     seen = watch(settled, parameters, WATCH_S)
-    start = seen.states[:, int(seen.kinds().argmax())]
+    kinds = seen.kinds()
+    kind = CHAOS if CHAOS in kinds else np.bincount(kinds).argmax()
+    start = seen.states[:, int(np.argmax(kinds == kind))]
     stretches = [start[None]]
     for _ in range(STRETCHES):
         stretches.append(trajectory(stretches[-1][-1], wheel, SERIES_S / STRETCHES)[1:])

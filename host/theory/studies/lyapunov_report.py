@@ -76,8 +76,8 @@ def _answers(numbers: Numbers) -> list[Answer]:
         *(Answer(f"exponent {n}", value, error, "/s") for n, (value, error) in enumerate(pairs, 1)),
         Answer("exponent 1, by pairs of wheels", point["by_pairs"], point["by_pairs_error"], "/s"),
         Answer("Lyapunov dimension", numbers["dimension"]),
-        Answer("|mean of omega|", point["omega_mean_abs"], None, "rad/s"),
-        Answer("standard deviation of omega", point["omega_std"], None, "rad/s"),
+        Answer("|mean of omega|", round(point["omega_mean_abs"], 9), None, "rad/s"),
+        Answer("standard deviation of omega", round(point["omega_std"], 9), None, "rad/s"),
         *_starts(point),
     ]
 
