@@ -90,7 +90,10 @@ def make_parser(needed: tuple[str, ...] = VERBS) -> argparse.ArgumentParser:
         )
         module.add_arguments(verb)
         verb.set_defaults(
-            module=module, verb=name, in_one_line=getattr(module, "in_one_line", None)
+            module=module,
+            verb=name,
+            in_one_line=getattr(module, "in_one_line", None),
+            whole_parser=make_parser,
         )
     return parser
 

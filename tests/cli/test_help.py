@@ -1,6 +1,8 @@
 """`kickctl help WORD` finds what people look for by its name or by what it is."""
 
+import errno
 import json
+import sys
 
 import pytest
 
@@ -9,6 +11,7 @@ from host.experiments.registry import TABLE as EXPERIMENTS
 from host.theory.studies.registry import TABLE as STUDIES
 from robot.params import TABLE as PARAMS
 from robot.record import CHANNELS
+from tests.cli.test_lost_answers import Unwritable
 
 
 @pytest.fixture
@@ -32,6 +35,12 @@ def names(kickctl):
         (("rod_lag_s",), "kickctl params set rod_lag_s=VALUE"),
         (("left", "torque"), "column of logs: left_torque"),
         (("R5",), "claim R5"),
+        (("k",), "kickctl params set k=VALUE"),
+        (("seed",), "kickctl --seed"),
+        (("walls", "simulated", "distance"), "kickctl lab --walls"),
+        (("recover", "damaged"), "kickctl log recover"),
+        (("cable", "off"), "what you see: fault: its cable came off"),
+        (("motor", "blocked"), "what you see: it hums and does not start"),
     ],
 )
 def test_the_first_place_is_what_is_meant(names, words, first):
@@ -60,6 +69,29 @@ def test_all_words_must_be_found_and_a_beginning_is_enough(names):
     assert both
     assert set(both) < set(names("tau"))
     assert set(names("bifurcation")) <= set(names("bifurc"))
+
+
+def test_many_places_are_named_below_the_first_ones(kickctl):
+    status, out, _ = kickctl("help", "k")
+    first, what, *_ = lines = out.splitlines()
+    assert (status, first) == (0, "kickctl params set k=VALUE")
+    assert "docs/model.md" in what
+    assert len(lines) < 30
+    assert any(line.endswith("more; one more word finds fewer:") for line in lines)
+
+
+def test_a_claim_is_said_in_its_sentence(kickctl):
+    assert "rest and locomotion coexist" in kickctl("help", "R6")[1]
+
+
+def test_without_a_word_it_is_the_help_of_the_program(kickctl):
+    assert kickctl("help") == kickctl("--help")
+
+
+def test_a_reader_who_has_seen_enough_hears_nothing(kickctl, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", Unwritable(errno.EPIPE))
+        assert kickctl("help", "k")[2] == ""
 
 
 @pytest.mark.parametrize(

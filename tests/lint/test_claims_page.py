@@ -1,6 +1,7 @@
 """docs/claims.md and README.md say what `kickctl reproduce` has answered."""
 
 from docs.site.claims import PAGE, load, rendered
+from host.commands._claim_words import SENTENCES
 from host.perform.reproduce import claim_ids
 from host.runs.claims import FAILS, HOLDS
 from tests.lint.sources import ROOT
@@ -18,6 +19,10 @@ def test_the_data_has_every_claim_and_where_it_comes_from():
     assert answer["skipped"] == {}
     assert answer["commit"]
     assert answer["seed"] == 1
+
+
+def test_help_has_the_same_sentences():
+    assert {claim["id"]: claim["claim"] for claim in load()["claims"]} == SENTENCES
 
 
 def test_the_readme_counts_them():
