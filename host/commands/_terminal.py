@@ -210,7 +210,9 @@ def _lines(summary: dict[str, Any]) -> Iterator[str]:
 
     for claim in summary["claims"]:
         yield Claim.from_dict(claim).sentence()
-    if summary["answers"]:
+    if "as_table" in summary["numbers"]:
+        yield summary["numbers"]["as_table"]
+    elif summary["answers"]:
         yield from lines(summary["answers"])
     elif "in_words" in summary["numbers"]:
         yield summary["numbers"]["in_words"]

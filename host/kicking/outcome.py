@@ -229,7 +229,10 @@ def advice(outcome: Outcome) -> str:
             " reverse; `kickctl drive forward` makes it roll"
         )
     if outcome.mode in (PHASE, POSITION) and not 3 <= outcome.ticks <= 5:
-        return f"{outcome.mode} kicks work best at 3 to 5 ticks"
+        return (
+            f"a {outcome.mode} kick can be too short or too long: try another --ticks;"
+            " `kickctl experiment reliability --quick` tries 1 to 10"
+        )
     return ""
 
 
@@ -249,7 +252,7 @@ def describe(outcome: Outcome) -> str:
         "The kick reversed the robot" if outcome.reversed else "The kick did NOT reverse the robot"
     )
     length = f"{outcome.ticks} tick{'s' if outcome.ticks > 1 else ''}"
-    settling = "" if outcome.settling_s is None else f", settled after {outcome.settling_s:.2f} s"
+    settling = f", settled after {outcome.settling_s:.2f} s" if outcome.settling_s else ""
     return (
         f"{verdict}: a {outcome.mode} kick of {length} at tick {outcome.applied_tick};"
         f" {motion}{settling}."

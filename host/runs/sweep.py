@@ -157,7 +157,7 @@ def _single(numbers: Any, name: str = "") -> Iterator[Answer]:
     """The numbers and words in dictionaries, with the keys that lead to them."""
     if isinstance(numbers, dict):
         for key, value in numbers.items():
-            if key == "in_words":
+            if key in ("in_words", "as_table"):
                 continue  # sentences for people, of the same numbers
             yield from _single(value, f"{name}: {key}" if name else str(key))
     elif isinstance(numbers, int | float | str):

@@ -66,10 +66,17 @@ class Row(Cell, Trial):
 
 
 class Numbers(TypedDict):
-    """Lengths of the kicks (ticks), and [reversals, trials] at each, by the kind of kick."""
+    """The counts of each kick.
+
+    Attributes:
+        lengths: lengths of the kicks (ticks).
+        reversals_of_trials: [reversals, trials] at each length, by the kind of kick.
+        as_table: the same in lines for people.
+    """
 
     lengths: list[int]
     reversals_of_trials: dict[str, list[list[int]]]
+    as_table: str
 
 
 def cells(options: Options, *, batch: bool) -> list[Cell]:
@@ -186,15 +193,34 @@ def report(rows: list[Row], setting: Setting) -> Findings:
         ("phase", PHASE, True),
         ("phase, other sign", PHASE, False),
     )
+    counts = {
+        name: [list(rate(points(rows, mode, ticks, named))) for ticks in LENGTHS]
+        for name, mode, named in kinds
+    }
     numbers: Numbers = {
         "lengths": list(LENGTHS),
-        "reversals_of_trials": {
-            name: [list(rate(points(rows, mode, ticks, named))) for ticks in LENGTHS]
-            for name, mode, named in kinds
-        },
+        "reversals_of_trials": counts,
+        "as_table": _as_table(rate(points(rows, MEMBRANE, 1)), counts),
     }
     claims = [claim.doubted(setting.elsewhere(**claimed("reliability"))) for claim in claims]
     return Findings(claims, numbers, answers=_answers(rows))
+
+
+def _as_table(inverted: tuple[int, int], counts: dict[str, list[list[int]]]) -> str:
+    """The wheels that reversed, of those that were kicked: a line for each length."""
+    columns = [["ticks", *map(str, LENGTHS)]]
+    columns += [
+        [kind, *(f"{done} of {tried}" for done, tried in row)] for kind, row in counts.items()
+    ]
+    widths = [max(map(len, column)) for column in columns]
+    lines = [
+        "Wheels that reversed, of those that were kicked:",
+        f"  membrane, of 1 tick: {inverted[0]} of {inverted[1]}",
+    ]
+    for row in zip(*columns, strict=True):
+        cells = (f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True))
+        lines.append("  " + "   ".join(cells))
+    return "\n".join(lines)
 
 
 def _answers(rows: list[Row]) -> list[Answer]:
