@@ -18,9 +18,10 @@ html_theme = "pydata_sphinx_theme"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
-html_title = "Kick control"
+html_title = f"Kick control {release}"
 html_copy_source = False
 html_show_sphinx = False
+html_context = {"default_mode": "light"}
 html_theme_options = {
     "header_links_before_dropdown": 8,
     "navigation_with_keys": False,

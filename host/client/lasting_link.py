@@ -41,7 +41,7 @@ class LastingLink:
         link: The way to the robot, not opened yet.
         token: The robot's token; None observes.
         name: Who this is, for the robot and for other people, in at most 40 letters; by default
-            the user and the machine, as in 'anna@lab-3'.
+            the user and the machine, as in `anna@lab-3`.
 
     Attributes:
         link: The way to the robot.

@@ -55,9 +55,8 @@ class Robot(Watcher):
         """Connect to a robot, real or simulated; to be used as a `with` block.
 
         >>> with connect("sim://", seed=1) as robot:
-        ...     robot.wait(3)
+        ...     rolls = robot.wait(3)  # s
         ...     robot.status()["state"]
-        False
         'running'
 
         Args:
@@ -66,7 +65,7 @@ class Robot(Watcher):
             seed: Fixes all chances of the simulated robot.
             token: The path of the token file, by default the robot's own, or the usual place.
             name: Who this is, for the robot and for other people, in at most 40 letters; by
-                default the user and the machine, as in 'anna@lab-3'.
+                default the user and the machine, as in `anna@lab-3`.
             observe: Only look on, and stop the robot if need be, which takes no token.
             take_over: Take control at once, also from another host, which hears of it.
 

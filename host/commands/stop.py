@@ -17,8 +17,8 @@ from host.link.addresses import make_link, sim_options
 from host.link.names import ALL, Chosen, chosen, every, is_several, named
 
 HELP = (
-    "stop the motors; needs no token, and no robot that understands anything else. Without --brick:"
-    " of every robot that has a name"
+    "stop the motors. It needs no token, and works with a robot of another version. Without"
+    " --brick it stops every robot that has a name"
 )
 _NAME_ONE = (
     "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back button on the"

@@ -140,7 +140,7 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
             "1",
             None,
             ripple < 0.1 and min(hertz) > MOVING_HZ,
-            f"std(M) / mean(|M|) of that of {len(wheels)} wheels which varies most; the slowest"
+            f"the largest std(M) / mean(|M|) of {len(wheels)} wheels; the slowest"
             f" wheel makes {min(hertz):.2f} turns per second",
         ),
     ]

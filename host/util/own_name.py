@@ -27,7 +27,7 @@ def choose(name: str | None) -> None:
 
 
 def own_name() -> str:
-    """The name that was chosen; by default user@machine, as in 'anna@lab-3'."""
+    """The name that was chosen; by default user@machine, as in `anna@lab-3`."""
     if _chosen:
         return _chosen[0]
     try:

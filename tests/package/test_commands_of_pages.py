@@ -35,7 +35,7 @@ def test_its_commands_can_be_typed(page):
 
 @pytest.mark.parametrize("page", [page for page in TYPED if page != "CHANGELOG.md"])
 def test_what_its_sentences_name_exists(page):
-    """The verb and its options; what else it needs may stand elsewhere."""
+    """The verb and its options. Without options it may be a name: what it needs is elsewhere."""
     prose = BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
     for line in re.findall(r"`kickctl ([^`>|]*)`", prose):
         words = shlex.split(line)
@@ -46,6 +46,7 @@ def test_what_its_sentences_name_exists(page):
             make_parser((verb,)).parse_args(join_negative(words))
         except WrongUse as error:
             assert "arguments are required" in error.message, line
+            assert not any(word.startswith("--") for word in words), line
 
 
 def test_the_first_kick_is_the_kick_of_the_lesson():

@@ -82,7 +82,7 @@ class SettledMotion(WheelMotion):
     """One wheel that had time to become steady.
 
     Attributes:
-        steady: whether it did.
+        steady: whether the wheel became steady in that time.
     """
 
     steady: bool
