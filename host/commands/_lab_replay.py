@@ -9,7 +9,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.commands._log_damage import damage_facts, damage_status
+from host.commands._log_damage import damage_facts, damage_status, reads_on
 from host.commands._options import refuse_unused
 from host.commands._outputs import add_force, path_argument, require_place
 from host.commands._terminal import answer, print_result, say, show_next
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from host.logs.mcap_reading import LogFile
 
 _SECONDS = Number("s", 0.0, 1e7)
+_PAGES = (".html", ".htm")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -93,11 +94,12 @@ def run(options: argparse.Namespace, open_browser: Callable[[str], None]) -> int
     if options.export is None:
         return _serve(options, open_browser)
     path, source = options.export
-    if path.suffix.lower() not in (".html", ".htm"):
+    if path.suffix.lower() not in _PAGES:
+        swapped = source.suffix.lower() in _PAGES
+        page, log = (source, path) if swapped else (path.with_suffix(".html"), source)
         raise WrongUse(
             f"the file {path} has another ending than .html, so that no browser would open it",
-            f"kickctl lab --export {shlex.quote(str(path.with_suffix('.html')))}"
-            f" {shlex.quote(str(source))}",
+            f"kickctl lab --export {shlex.quote(str(page))} {shlex.quote(str(log))}",
         )
     return _export(options, require_place(options, path), source)
 
@@ -111,7 +113,9 @@ def _refuse_robots(options: argparse.Namespace) -> None:
     if way == "--replay" and options.force:
         raise WrongUse("--force replaces a file, and --replay writes none", "leave it out")
     if way == "--export" and options.host:
-        raise WrongUse("--host is for a page, and --export writes a file", "leave it out")
+        raise WrongUse(
+            "--host and --class open a page to others, and --export writes a file", "leave it out"
+        )
 
 
 def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, Any]]:
@@ -177,7 +181,7 @@ def _serve(options: argparse.Namespace, open_browser: Callable[[str], None]) -> 
             else:
                 print_result(f"replay {url}")
             if not log.whole:
-                say(log.damage())
+                say(f"{log.damage()}; {reads_on(log)}")
             if not options.no_open:
                 open_browser(url)
             lab.wait()

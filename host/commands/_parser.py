@@ -63,6 +63,18 @@ class Parser(argparse.ArgumentParser):
             self.error(f"{'/'.join(action.option_strings)} cannot be '--'")
         return super()._get_values(action, arg_strings)
 
+    def _match_argument(self, action: argparse.Action, arg_strings_pattern: str) -> int:
+        """Name the values of an option that takes several, where argparse only counts them."""
+        try:
+            return super()._match_argument(action, arg_strings_pattern)
+        except argparse.ArgumentError:
+            if not isinstance(action.metavar, tuple) or not action.option_strings:
+                raise
+            option, names = action.option_strings[0], action.metavar
+            self.error(
+                f"{option} needs {' and '.join(names)} right behind it: {option} {' '.join(names)}"
+            )
+
     def _refuse(self, word: str) -> NoReturn:
         known = [option for option in self._option_string_actions if option.startswith("--")]
         name = word.partition("=")[0]

@@ -212,6 +212,7 @@ def _replay(options: argparse.Namespace) -> int:
         "exact": result.exact,
         "compared": result.compared,
         "not_comparable": result.not_comparable,
+        "why_not_comparable": result.why_behind_gaps,
         "missing": result.missing,
         **damage_facts(log),
         "other_sources": others,
@@ -223,6 +224,8 @@ def _replay(options: argparse.Namespace) -> int:
         f" comparable, {result.missing} missing)"
     )
     answer(options, facts, sentence)
+    if result.why_behind_gaps:
+        say(result.why_behind_gaps)
     damage_status(log)
     if not result.reproduced:
         raise NotDone(f"the controller does not compute what {log.path} says", _verdict(result))

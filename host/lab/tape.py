@@ -106,6 +106,8 @@ class _Writer:
         if since_s > self._cut.to_s:
             self.past = True
             return
+        if not self.packed and since_s >= self._cut.from_s:
+            self.replayer.begin_part()
         known_gaps = len(self._gaps.found)
         self._gaps.take(record)
         numbers = self._work_out(record)
@@ -303,7 +305,7 @@ def _facts(info: dict[str, Any]) -> dict[str, str]:
 
 
 def _verdict(replayer: Replayer, log: Log | LogFile) -> dict[str, Any]:
-    """What the replay found, up to the end of the cut."""
+    """What the replay found in the cut."""
     result = replayer.result
     return {
         "exact": result.exact,
@@ -314,5 +316,6 @@ def _verdict(replayer: Replayer, log: Log | LogFile) -> dict[str, Any]:
         "worst": result.worst if isfinite(result.worst) else None,
         "first_mismatch": None if result.first is None else str(result.first),
         "other_sources": other_sources(log.info),
+        "why_not_comparable": result.why_behind_gaps,
         "damage": log.damage() if isinstance(log, LogFile) else "",
     }

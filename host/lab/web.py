@@ -140,7 +140,9 @@ class Site:
         scheme, _, key = request.headers.get("Authorization", "").partition(" ")
         if scheme.lower() != "bearer" or not self._session.may_read(key, local=_is_local(request)):
             raise web.HTTPUnauthorized(
-                text="logs need the lab's key\n", headers={"WWW-Authenticate": "Bearer"}
+                text="logs need the lab's key: open the whole address that kickctl lab prints, with"
+                " what follows the #\n",
+                headers={"WWW-Authenticate": "Bearer"},
             )
 
     # Messages.

@@ -56,7 +56,8 @@ _WHEEL = (
     channel("duty_scale", "d", "1", "the parameter of this name in this tick"),
     channel("max_duty_pct", "d", "%", "the parameter of this name in this tick"),
     channel("duty_pct", "d", "%", "duty cycle, recomputed from the logged torque"),
-    channel("jumped", "B", "1", "1 if a kick makes the potentials jump in this tick"),
+    channel("jumped1", "B", "1", "1 if a kick makes the first potential jump in this tick"),
+    channel("jumped2", "B", "1", "1 if a kick makes the second potential jump in this tick"),
     channel("shifted", "B", "1", "1 if a kick changes the seen positions in this tick"),
     channel("rods", "B", "1", "1 if both rods exist"),
 )
@@ -73,13 +74,18 @@ STRUCT = struct.Struct("<" + "".join(row.code for row in CHANNELS))
 OFF: tuple[float, ...] = tuple(nan if row.code == "d" else 0 for row in _WHEEL)
 
 
+# The sign of a line that computes a new value of a quantity from its old one.
+NEW = "←"
+
+
 class Line(NamedTuple):
     """One line of the working, for one wheel.
 
     symbol: what is computed. formula: how, in symbols. numbers: the same, with the names of the
     channels in braces. result: the channel with its value. logged: the robot's own channel that
     must hold the same value, or empty. when: the channel that is 1 in ticks with this line, or
-    empty for all. unit: of the value; '1' for none.
+    empty for all. unit: of the value; '1' for none. sign: what stands between symbol and formula.
+    joint: what stands between numbers and result.
     """
 
     symbol: str
@@ -89,6 +95,8 @@ class Line(NamedTuple):
     logged: str = ""
     when: str = ""
     unit: str = "1"
+    sign: str = "="
+    joint: str = "="
 
 
 _LINES = (
@@ -102,12 +110,12 @@ _LINES = (
         "x₂ˢ", "(1 - 2β) sin(φ + δ)",
         "(1 - 2 · {beta}) · sin({phi_rad} + {shift_rad})", "seen2", when="shifted",
     ),
-    Line("x₁", "the kick makes it jump", "from {was1} to", "from1", when="jumped"),
-    Line("x₂", "the kick makes it jump", "from {was2} to", "from2", when="jumped"),
+    Line("x₁", "jump by the kick", "from {was1}", "from1", when="jumped1", sign=NEW, joint="to"),
+    Line("x₂", "jump by the kick", "from {was2}", "from2", when="jumped2", sign=NEW, joint="to"),
     Line("dx₁/dt", "(x₁ˢ - x₁) / τ", "({seen1} - {from1}) / {tau_s}", "rate1"),
     Line("dx₂/dt", "(x₂ˢ - x₂) / τ", "({seen2} - {from2}) / {tau_s}", "rate2"),
-    Line("x₁", "x₁ + Δt dx₁/dt", "{from1} + {dt_s} · {rate1}", "x1", "x1"),
-    Line("x₂", "x₂ + Δt dx₂/dt", "{from2} + {dt_s} · {rate2}", "x2", "x2"),
+    Line("x₁", "x₁ + Δt dx₁/dt", "{from1} + {dt_s} · {rate1}", "x1", "x1", sign=NEW),
+    Line("x₂", "x₂ + Δt dx₂/dt", "{from2} + {dt_s} · {rate2}", "x2", "x2", sign=NEW),
     Line("x₁ᵗ", "2 / (1 + exp(-a x₁)) - 1", "2 / (1 + exp(-{a} · {x1})) - 1", "target1"),
     Line(
         "x₂ᵗ", "2 / (1 + exp(-a x₂)) - 1",
@@ -206,7 +214,8 @@ def work_out(
         *(wheel.x1, wheel.x2, *targets, force1, force2, force, motor_torque(force)),
         *(params.duty_scale, params.max_duty_pct),
         limit_duty(params.duty_scale * torque, params.max_duty_pct),
-        (x1, x2) != (was1, was2) and before is not None,
+        x1 != was1 and before is not None,
+        x2 != was2 and before is not None,
         bool(beta or shift_rad),
         params.rods == 2,
     )

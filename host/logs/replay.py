@@ -54,6 +54,8 @@ class ReplayResult:
             say what these were before: the first tick of the log, the first after a gap or a
             restart, and ticks in which a motor failed; or because parameters and kicks may have
             changed in a gap, and no snapshot follows it that says so.
+        behind_gaps: How many of the latter follow a gap in which parameters or kicks may have
+            changed.
         missing: How many ticks are not in the log.
         first: The first channel that differs in any bit.
         beyond: The first channel that differs by more than the tolerance.
@@ -63,6 +65,7 @@ class ReplayResult:
     tolerance: float
     compared: int = 0
     not_comparable: int = 0
+    behind_gaps: int = 0
     missing: int = 0
     first: Mismatch | None = None
     beyond: Mismatch | None = None
@@ -72,6 +75,16 @@ class ReplayResult:
     def exact(self) -> bool:
         """Whether every compared bit is the same."""
         return self.first is None
+
+    @property
+    def why_behind_gaps(self) -> str:
+        """Why ticks behind a gap are not comparable, in words; empty if there are none."""
+        if not self.behind_gaps:
+            return ""
+        return (
+            f"{self.behind_gaps} ticks cannot be compared, since they follow a gap: a kick or a"
+            " change of a parameter may be lost in it"
+        )
 
     @property
     def reproduced(self) -> bool:
@@ -204,6 +217,11 @@ class Replayer:
         """What was found so far."""
         return replace(self._result, missing=sum(end - first for first, end in self._gaps.found))
 
+    def begin_part(self) -> None:
+        """Count from the next item on."""
+        self._result = ReplayResult(self._result.tolerance)
+        self._gaps.found.clear()
+
     def take(self, item: Event | Record) -> tuple[bool, list[Mismatch]]:
         """Replay the next item.
 
@@ -238,6 +256,7 @@ class Replayer:
             self._result.note(mismatch)
         self._result.compared += known
         self._result.not_comparable += not known
+        self._result.behind_gaps += not self._followed
         self._known_before = item.tick + 1
         self._failed = False
         return known, mismatches

@@ -181,6 +181,8 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--replay", "x.mcap", "--from", "2", "--to", "1"), 2, "--from 2 lies behind --to 1"),
         (("--twin",), 2, "--twin goes beside a log, and there is none"),
         (("--export", "x.txt", "x.mcap"), 2, "has another ending than .html"),
+        (("--export", "x.mcap", "x.html"), 2, "kickctl lab --export x.html x.mcap"),
+        (("--export", "x.html", "--force", "x.mcap"), 2, "needs FILE.html and LOG right behind it"),
         (("--export", "no/x.html", "x.mcap"), 2, "there is no folder no"),
         (("--export", "x.html", "x.mcap", "--host", "::1"), 2, "--export writes a file"),
     ],

@@ -45,7 +45,7 @@ def test_the_text_of_each_line_computes_its_number_in_every_bit(tape, rows):
             for line in tape["equations"][side]:
                 if row["compared"] == NOT_COMPARABLE or (line["when"] and not row[line["when"]]):
                     continue
-                if not line["numbers"].startswith("from") and line["symbol"] != "duty":
+                if line["joint"] == "=" and line["symbol"] != "duty":
                     text = line["numbers"].format_map(written)
                     text = text.replace("·", "*")
                     assert eval(text, vars(math)) == row[line["result"]], line  # noqa: S307
@@ -74,6 +74,8 @@ def test_a_cut_knows_what_came_before_it(log, rows):
     assert all(0 <= event["place"] <= 21 for event in cut["events"])
     assert cut["begin_s"] == begin
     assert cut["part"].startswith("from 3")
+    verdict = cut["verdict"]
+    assert (verdict["compared"], verdict["not_comparable"], verdict["missing"]) == (21, 0, 0)
 
 
 @pytest.mark.parametrize("cut", [None, Cut(0.0, 5.0)])
@@ -126,6 +128,7 @@ def test_missing_ticks_and_a_second_start_of_the_program_have_their_places(log):
     pieces.take_records(log.records[:5])
     tape = make_tape(pieces, "log")
     assert tape["gaps"] == [{"place": 10, "ticks": 4}]
+    assert tape["verdict"]["missing"] == 4
     assert {"place": 16, "event": {"event": "restart", "tick": 0}} in tape["events"]
     rows = rows_of(tape)
     times = [row["t_s"] for row in rows]

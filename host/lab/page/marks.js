@@ -28,6 +28,8 @@ export function marksOf(tape, ring) {
 
     for (const { place, event } of tape.events) {
         if (event.event === "snapshot") continue;
+        // The gap itself says how many are missing.
+        if (event.event === "lost" && tape.gaps.some((gap) => gap.place === place)) continue;
         const said = (words.events[event.event] ?? words.otherEvent)(event);
         if (event.event !== "kick") {
             add(place, KINDS[event.event] ?? "other", said);

@@ -3,8 +3,8 @@
 import { button, byId, choices, element, setText } from "./dom.js";
 import { words } from "./replay_texts.js";
 
-// How far Page up and Page down go, s.
-const PAGE_S = 1;
+// How far an arrow goes with Shift, s.
+const LEAP_S = 1;
 
 /**
  * @param {HTMLElement} root
@@ -30,11 +30,9 @@ export function createPlayer(root, cursor, { marks, ticks, begin_s }) {
     const byTime = (seconds) => cursor.seek(cursor.time_s + seconds);
     const acts = {
         ArrowLeft: () => cursor.go(cursor.place - 1),
-        ArrowDown: () => cursor.go(cursor.place - 1),
         ArrowRight: () => cursor.go(cursor.place + 1),
-        ArrowUp: () => cursor.go(cursor.place + 1),
-        PageUp: () => byTime(-PAGE_S),
-        PageDown: () => byTime(PAGE_S),
+        "Shift ArrowLeft": () => byTime(-LEAP_S),
+        "Shift ArrowRight": () => byTime(LEAP_S),
         Home: () => cursor.go(0),
         End: () => cursor.go(times.length - 1),
         ",": beside(-1),
@@ -80,7 +78,10 @@ export function createPlayer(root, cursor, { marks, ticks, begin_s }) {
 
 /** A key moves the cursor, unless it belongs to the control that has the focus. */
 function press(event, acts, slider) {
-    const { key, target } = event;
+    const { target } = event;
+    // Some keyboards need Shift for the dot.
+    const shifted = event.shiftKey && `Shift ${event.key}`;
+    const key = shifted in acts ? shifted : event.key;
     if (!(key in acts) || event.ctrlKey || event.altKey || event.metaKey) return;
     const own = target !== slider && target.closest?.("input, [tabindex='0']");
     const pressed = key === " " && target.closest?.("button, summary, a");

@@ -15,6 +15,7 @@ import { STATES } from "./store.js";
 import { loadTape } from "./tape.js";
 import { createTwin } from "./twin.js";
 import { Views } from "./views.js";
+import { sentences } from "./words.js";
 import { createWorking } from "./working.js";
 
 // How many frames are drawn after the last change: what scrolls into view is drawn, too.
@@ -127,7 +128,9 @@ function showState(name) {
 /** What is known of the log: where it comes from, whether it is true, and the parameters. */
 function createAbout(root, tape) {
     const { reproduced, first_mismatch, other_sources, damage } = tape.verdict;
-    const notes = [damage, ...(reproduced ? [] : [first_mismatch, ...other_sources])];
+    const why = sentences(tape.verdict.why_not_comparable);
+    const differences = reproduced ? [] : [first_mismatch, ...other_sources];
+    const notes = [damage && words.damage(damage), why, ...differences];
     const verdict = element("p", { className: "verdict" }, words.verdict(tape.verdict));
     verdict.classList.toggle("differs", !reproduced);
     const params = element("dd");

@@ -45,9 +45,12 @@ export const words = {
 
     working: "The equations in this tick",
     workingNote:
-        "xᵃ: where a rod is. xˢ: where its neuron sees it, the same but for a kick. xᵗ: where the" +
-        " neuron wants it. An older position stands for xᵃ in F if rod_lag_s is not 0. ✓: the" +
-        " robot has logged the same bits. ≈: but for rounding.",
+        "xᵃ: where a rod is. xˢ: where its neuron sees it, the same but for a kick. xᵗ: where" +
+        " the neuron wants it. A position kick inverts what the neuron sees: β = 1. A phase" +
+        " kick turns it by the angle δ. ←: the new value, from the old one. If rod_lag_s is" +
+        " above 0, F uses an earlier position than xᵃ. ✓: the robot has logged the same bits." +
+        " ≈: the same but for rounding.",
+    fromTheLog: "from the log: ",
     digits: "All digits",
     digitsLabel: "All digits of each number, as exact as the log",
     quantity: "Quantity",
@@ -78,10 +81,10 @@ export const words = {
         `tick ${tick}, ${number(since_s, 2)} s of ${number(total_s, 2)} s`,
     time: (since_s, total_s) => `${number(since_s, 2)} / ${number(total_s, 2)} s`,
     keys:
-        "← and → go a tick, Page up and Page down a second, Home and End to the ends; Space plays" +
-        " and pauses; , and . go to what happened before and next.",
+        "← and → go a tick, with Shift a second, Home and End to the ends; Space plays and" +
+        " pauses; , and . go to what happened before and next.",
     happened: "What happened",
-    nothingHappened: "Nothing but rolling on.",
+    nothingHappened: "No kick, no stop, no fault.",
     happenedAt: (since_s, said) => `${number(since_s, 2)} s  ${capital(said)}`,
     marks: {
         kick: "kick",
@@ -108,6 +111,8 @@ export const words = {
             missing && `${counted(missing, "tick is", "ticks are")} missing`,
         );
     },
+    damage: (damage) =>
+        sentences(damage, "kickctl log recover also reads what is whole behind the damage"),
     events: {
         kick: ({ kick }) => `${texts.kickLine(kick)}, ${wheelsOf(kick)}`,
         start: () => "start",
@@ -121,10 +126,10 @@ export const words = {
         battery: why("battery"),
         restart: () => "the robot's program began again: its ticks count from 0",
         lost: () => "ticks are missing here",
-        params: ({ set }) =>
-            Object.entries(set)
-                .map(([name, value]) => `${name} = ${value}`)
-                .join(", "),
+        params: ({ set }) => {
+            const values = Object.entries(set).map(([name, value]) => `${name} = ${value}`);
+            return `${values.length === 1 ? "parameter" : "parameters"} ${values.join(", ")}`;
+        },
     },
     otherEvent: ({ event }) => event,
     missing: (ticks) => counted(ticks, "tick is missing here", "ticks are missing here"),

@@ -25,7 +25,7 @@ async function fetched() {
     const headers = { Authorization: `Bearer ${readKey()}` };
     const answer = await fetch(`replays/${encodeURIComponent(name)}`, { headers });
     const text = await answer.text();
-    if (!answer.ok) throw new Error(text);
+    if (!answer.ok) throw new Error(text.trim());
     return text;
 }
 

@@ -11,6 +11,8 @@ const SIDES = ["left", "right"];
 // How a tick compares, as its channel `compared` has it.
 const ROUNDED = 2;
 const DIFFERENT = 3;
+// A name of a channel in the numbers of a line.
+const NAMED = /\{(\w+)\}/g;
 
 /**
  * @param {HTMLElement} root
@@ -26,8 +28,8 @@ export function createWorking(root, tape, robot) {
     const body = element("tbody");
     const rows = tape.equations.left.map((line, n) => {
         const [formula, cells] = [element("th", { scope: "row" }), SIDES.map(newCell)];
-        const symbol = element("i", {}, line.symbol);
-        formula.append(symbol, ` = ${typeset(line.formula)}`);
+        const symbol = element("i", {}, ...lowered(line.symbol));
+        formula.append(symbol, ` ${line.sign} `, ...lowered(typeset(line.formula)));
         const row = element("tr", {}, formula, ...cells.map(({ root }) => root));
         body.append(row);
         return { row, cells, lines: SIDES.map((side) => tape.equations[side][n]) };
@@ -78,10 +80,14 @@ function newCell() {
 
 /** Put a tick's numbers into a cell. A line that does not concern this tick leaves it empty. */
 function fill({ root, numbers, result, logged }, line, value, exact) {
-    const concerns = !line.when || value(line.when);
+    const concerns = (!line.when || value(line.when)) && !Number.isNaN(value(line.result));
     const text = (name) => written(value(name), exact);
     const inside = (_, name, at) => bracketed(text(name), line.numbers.slice(0, at));
-    setText(numbers, concerns ? `${typeset(line.numbers.replace(/\{(\w+)\}/g, inside))} = ` : "");
+    const terms = [...line.numbers.matchAll(NAMED)].map(([, name]) => value(name));
+    const inserted = terms.some(Number.isNaN)
+        ? words.fromTheLog
+        : `${typeset(line.numbers.replace(NAMED, inside))} ${line.joint} `;
+    setText(numbers, concerns ? inserted : "");
     const unit = line.unit === "1" ? "" : ` ${line.unit}`;
     setText(result, concerns ? typeset(text(line.result)) + unit : "");
     const compares = Boolean(concerns && line.logged && value("compared"));
@@ -101,7 +107,6 @@ function fill({ root, numbers, result, logged }, line, value, exact) {
  * @returns {string} With a hyphen as its minus.
  */
 function written(value, exact) {
-    if (Number.isNaN(value)) return "–";
     const all = Object.is(value, -0) ? "-0" : String(value);
     if (exact || all.length <= 6) return all;
     return Math.abs(value) < 1e-3 ? value.toExponential(2) : value.toFixed(4);
@@ -110,4 +115,7 @@ function written(value, exact) {
 /** A negative number has brackets behind an operator. */
 const bracketed = (text, before) =>
     text.startsWith("-") && /[-+·/] ?$/.test(before) ? `(${text})` : text;
+/** The parts of a text; what stands behind an underscore stands lower. */
+const lowered = (text) =>
+    text.split(/_(\w+)/).map((part, n) => (n % 2 ? element("sub", {}, part) : part));
 const typeset = (text) => text.replaceAll("-", "−");

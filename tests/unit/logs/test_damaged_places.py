@@ -157,7 +157,8 @@ def test_replay_compares_nothing_behind_a_gap_whose_events_are_unknown(tmp_path,
     assert result.exact
     behind = sum(record.tick >= first for record in back.records)
     assert result.compared <= first
-    assert result.not_comparable >= behind
+    assert result.not_comparable >= result.behind_gaps == behind
+    assert f"{behind} ticks cannot be compared, since they follow a gap" in result.why_behind_gaps
     assert result.compared + result.not_comparable == len(back)
 
 
