@@ -97,7 +97,9 @@ class Parser(argparse.ArgumentParser):
 
 
 def _guess(word: str, known: Iterable[str]) -> str:
-    close = get_close_matches(word, list(known), 1)
+    words = list(known)
+    begun = [one for one in words if one.startswith(word)]
+    close = begun if len(begun) == 1 else get_close_matches(word, words, 1)
     return f"did you mean {close[0]}? " if close else ""
 
 
