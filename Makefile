@@ -33,7 +33,7 @@ reproduce: $(STAMP) ## measure all of the paper's claims, and write a report
 # Tests in real time mostly wait, so two processes share each core. Byte code is kept even where the
 # environment forbids it: without it, half of what pytest does before the first test is compiling.
 test: export PYTHONDONTWRITEBYTECODE :=
-test: $(STAMP) ## run the tests
+test: $(STAMP) ## run the tests (10 minutes)
 	$(BIN)/python -m pytest tests --ignore=tests/lint -n $$((2 * $$(nproc))) --dist worksteal
 
 # Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
@@ -58,7 +58,7 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 	cat robot/service/change.sh robot/service/brick.sh | shellcheck -
 	$(BIN)/python -m pytest tests/lint
 
-docs: $(STAMP) ## make the site of the docs, in build/docs/html, with what the notebooks draw
+docs: $(STAMP) ## make the site of the docs, with all notebooks, in build/docs/html (5 minutes)
 	$(BIN)/python -m docs.site
 
 bench: $(STAMP) ## measure the speed of what has to be fast

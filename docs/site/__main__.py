@@ -26,7 +26,8 @@ def build(folder: Path, notebooks: str) -> int:
     status = build_main(
         [
             *("-b", "html", "-c", str(ROOT / "docs" / "site"), "-d", str(read)),
-            *("-D", f"nb_execution_mode={notebooks}", "--fail-on-warning", "--quiet"),
+            *("-D", f"nb_execution_mode={notebooks}", "--fail-on-warning"),
+            *(["--quiet"] if notebooks == "off" else []),
             *(str(pages), str(folder / "html")),
         ]
     )

@@ -73,13 +73,14 @@ def _run(name: str, parser: argparse.ArgumentParser) -> str:
     parts = [f"# {name}\n"]
     if (PICTURES / f"{name}.png").is_file():
         parts.append(f"![What {name} draws](/{PICTURES.relative_to(ROOT)}/{name}.png)\n")
-    parts.append(_help(parser))
+    parts.append(f"{found.entry.help[0].upper()}{found.entry.help[1:]}.\n")
     claims = [claim for claim in claim_ids() if claim in found.entry.claims]
     if claims:
         parts.append(f"[What the paper claims](/docs/claims.md) of it: {', '.join(claims)}.\n")
     kinds = kinds_of(found.work)
     parts.append("## Its tables\n")
     parts += (_kind(f"{name}-{kind.name}" if len(kinds) > 1 else name, kind) for kind in kinds)
+    parts.append(f"## Its options\n\n{_help(parser)}")
     return "\n".join(parts)
 
 

@@ -1,5 +1,7 @@
 """How Sphinx builds the site; `python -m docs.site` lays out its pages and calls it."""
 
+from pathlib import Path
+
 from sphinx.application import Sphinx
 
 from docs.site import mathml
@@ -18,6 +20,7 @@ html_theme = "pydata_sphinx_theme"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_title = f"Kick control {release}"
 html_copy_source = False
 html_show_sphinx = False

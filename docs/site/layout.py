@@ -10,9 +10,21 @@ from pathlib import Path
 from docs.site import ROOT
 from docs.site.markdown import toctree
 from docs.site.reference import pages as reference
+from host.experiments.registry import TABLE as EXPERIMENTS
+from host.theory.studies.registry import TABLE as STUDIES
+from robot import __version__
 
 INDEX = "docs/README.md"
 _LINK = re.compile(r"(?<=\]\()(?!\w+:|#)[^)#\s]+(?=[)#])|(?<=src=\")(?!\w+:)[^\"]+")
+_RUN = re.compile(r"(?<=^\| )`([-\w]+)`(?= \|)", re.MULTILINE)
+# What stands above the first picture of the first page.
+_BEGIN = f"""\
+**Begin with [the first kick in ten minutes](docs/first-kick.md).** These pages are those of release
+{__version__}.
+
+![The rods of a wheel, and a kick that reverses it](docs/rods.gif)
+
+"""
 _SECTION = re.compile(r"^## (.+)\n", re.MULTILINE)
 
 
@@ -43,7 +55,7 @@ def _written() -> dict[str, str]:
     index = (ROOT / INDEX).read_text(encoding="utf-8")
     sections = dict(_sections(index))
     listed = [path for rows in sections.values() for path in _targets(INDEX, rows)]
-    pages = {path: (ROOT / path).read_text(encoding="utf-8") for path in listed}
+    pages = {path: _with_runs((ROOT / path).read_text(encoding="utf-8")) for path in listed}
     folders = {
         _slug(title): _section(title, _moved(INDEX, rows)) for title, rows in sections.items()
     }
@@ -52,8 +64,21 @@ def _written() -> dict[str, str]:
         **pages,
         **folders,
         INDEX: "---\norphan: true\n---\n" + index,
-        "index.md": front + toctree([*folders, "reference/index.md"]),
+        "index.md": front.replace("![", _BEGIN + "![", 1)
+        + toctree([*folders, "reference/index.md"]),
     }
+
+
+def _with_runs(page: str) -> str:
+    """A page whose tables lead from the name of an experiment or a study to its own page."""
+
+    def link(found: re.Match[str]) -> str:
+        for folder, table in (("experiment", EXPERIMENTS), ("theory", STUDIES)):
+            if found[1] in table:
+                return f"[{found[0]}](/reference/{folder}/{found[1]}.md)"
+        return found[0]
+
+    return _RUN.sub(link, page)
 
 
 def _sections(index: str) -> Iterator[tuple[str, str]]:

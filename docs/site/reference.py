@@ -31,8 +31,34 @@ The robot records these in every tick. `kickctl log export` writes them as colum
 _FAULTS = """\
 What can go wrong with a robot, how long its motors may run on then, and the words by which you know
 it. `make faults` causes each of them many times, and measures.
-[When it does not move](../robot/README.md#when-it-does-not-move) says what to do.
+[When it does not move](../robot/README.md#when-it-does-not-move) has more of them.
 """
+_RESTART = "`kickctl deploy`, which starts the program again"
+_CLEAR = "`kickctl clear`, `kickctl start`"
+_BACK = "bring the link back: the host finds the robot again"
+# What to do about each row of the table.
+_REMEDIES = {
+    "SIGKILL of the loop": _RESTART,
+    "SIGSEGV of the loop": f"{_RESTART}; please report it",
+    "SIGSTOP of the loop": f"end what holds the program up, then {_CLEAR}",
+    "hang in the loop": f"{_RESTART}; please report it",
+    "crash in Python": f"{_RESTART}; please report it",
+    "watchdog killed": _RESTART,
+    "watchdog frozen": _RESTART,
+    "link cut, policy stop": f"{_BACK}, then `kickctl start`",
+    "link cut, policy hold": _BACK,
+    "link cut, policy continue": _BACK,
+    "host killed": "start a host; if the robot has stopped, `kickctl start`",
+    "stop frame of a stranger": "ask who has stopped it, then `kickctl start`",
+    "cable out": f"plug it in, wait a second, {_CLEAR}",
+    "cable back, then clear": "nothing: this is the way back",
+    "permission race after replug": "wait a second, and clear again",
+    "EIO once": _CLEAR,
+    "EIO six times": f"check the motor's cable, then {_CLEAR}",
+    "battery empty": f"charge or change it, then {_CLEAR}",
+    "disk of the host full": "make room on this computer's disk, and record again",
+    "clock jump": "nothing",
+}
 # What Python's own classes give to all of theirs says nothing about these.
 _MEMBERS = "   :members:\n   :inherited-members: BaseException, Mapping, tuple\n"
 
@@ -105,10 +131,12 @@ def _faults() -> str:
             row.name,
             "they go on" if row.limit_s is None else f"{row.limit_s:g} s",
             f"... {row.words} ..." if row.words else "",
+            _REMEDIES[row.name],
         )
         for row in ROWS
     ]
-    return f"# Faults\n\n{_FAULTS}\n{table(('fault', 'motors stop within', 'it says'), rows)}"
+    head = ("fault", "motors stop within", "it says", "what to do")
+    return f"# Faults\n\n{_FAULTS}\n{table(head, rows)}"
 
 
 def _sentence(text: str) -> str:

@@ -78,6 +78,13 @@ def test_the_search_finds_all_that_has_a_name(found, names):
     assert not found("xylophone")
 
 
+def test_tables_lead_to_the_pages_of_experiments(site):
+    page = (site / "docs" / "experiments.html").read_text(encoding="utf-8")
+    assert [name for name in EXPERIMENTS if f"experiment/{name}.html" not in page] == [
+        name for name in EXPERIMENTS if name.startswith(("train-", "car-"))
+    ]
+
+
 def test_it_shows_itself_without_a_network(site):
     pages = sorted(site.rglob("*.html"))
     assert len(pages) > 50
