@@ -24,7 +24,7 @@ html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_title = f"Kick control {release}"
 html_copy_source = False
 html_show_sphinx = False
-html_context = {"default_mode": "light"}
+html_context = {"default_mode": "auto"}
 html_theme_options = {
     "header_links_before_dropdown": 8,
     "navigation_with_keys": False,
