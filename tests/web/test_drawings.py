@@ -148,6 +148,12 @@ def test_no_word_is_cut_at_an_edge(page, width):
     columns = {x for x, _ in words}
     assert min(columns) >= 1
     assert max(columns) < width - 1
+    beside = []
+    for kick in ("", "a"):
+        _draw(page, "wheel", {**WHEEL, "kick": kick}, width=width, height=width)
+        faint = _places(page, "faint")
+        beside.append([at for at in faint if at[0] < 0.2 * width or at[1] < 0.45 * width])
+    assert beside[0] == beside[1]  # the frame of a kick covers no word
 
 
 def test_a_kick_is_named_and_framed(page):

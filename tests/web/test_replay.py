@@ -197,11 +197,22 @@ def test_everybody_can_read_it(read_file):
     reader.reads("#working", "from the log: 0.4952")
     reader.go(77)
     assert reader.page.evaluate("document.documentElement.scrollWidth") <= 320
+    height = "(name) => document.querySelector(name).offsetHeight"
+    assert reader.page.evaluate(height, ".player") < 180
     reader.page.emulate_media(color_scheme="dark")
     assert_no_findings(reader.page)
     reader.page.emulate_media(color_scheme="light")
     reader.page.set_viewport_size({"width": 1280, "height": 720})
     assert_no_findings(reader.page)
+    strips = reader.page.evaluate(height, "#strips")
+    reader.page.click("#digits")
+    assert reader.page.evaluate(height, "#strips") == strips
+    reader.page.click("#projector")
+    reader.page.mouse.move(900, 400)
+    reader.page.mouse.wheel(0, 400)
+    reader.page.wait_for_function("() => scrollY === 400")
+    at = reader.page.locator("#left-wheel").bounding_box()["y"]
+    assert 0 < at < 150  # in view beside the later equations
 
 
 def test_a_twin_stands_beside_the_robot(read_file, log):

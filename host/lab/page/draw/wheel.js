@@ -5,8 +5,7 @@
  * each rail, a spring lies between the target position (green square) and the actual position
  * (orange circle). The arrow at the rim is the paper's tangential force, and its length is |M|; the
  * paper's sign is opposite to the pull of springs that lie like this. The diamond inside is what
- * the neurons remember, (x1, x2). Hollow dashed circles are the positions that a quenched kick
- * shows to the neurons.
+ * the neurons remember, (x1, x2). Hollow dashed circles are what a quenched kick shows to them.
  */
 
 // In radii of the wheel: from the axle to the middle of a rail, from a rail aside to its spring and
@@ -14,8 +13,7 @@
 export const RAIL = 2.55;
 export const SPRING = 0.36;
 const SCALE = 0.68;
-const BEFORE = 1.45;
-const BEHIND = 4;
+const [BEFORE, BEHIND] = [1.45, 4];
 const COILS = 6;
 // The arc that shows the speed: its length in rad for each rad/s, and at most, rad.
 const ARC_S = 0.09;
@@ -82,8 +80,9 @@ export function angleAt(canvas, theme, x, y) {
 export function draw(canvas, state, theme) {
     const { ctx, width, height, colours } = theme.start(canvas, state.stale);
     const sheet = { ctx, colours, theme, line: theme.line, ...layout(canvas, theme) };
-    // Half the size of a mark, in radii.
+    // Half the size of a mark, in radii; and what a kick's frame leaves free, CSS pixels.
     sheet.mark = Math.max(0.12, (0.36 * theme.text) / sheet.radius);
+    sheet.edge = 3 * theme.line;
     sheet.quiet = { colour: colours.faint, halo: colours.paper };
     const pin = [Math.cos(state.phi_rad), Math.sin(state.phi_rad)];
     dot(sheet, [0, 0], 1.1, colours.ink, colours.ink);
@@ -143,8 +142,9 @@ function scale(sheet, rod) {
     }
     const [right, up] = place(rod, 1.12, SCALE);
     const how = { ...quiet, symbol: true, align: rod ? "center" : "left" };
-    const above = rod ? 0.5 * theme.text : 0;
-    theme.write(ctx, rod ? "x₂" : "x₁", x + right * radius, y - up * radius - above, how);
+    const [left, top] = [x + right * radius, y - up * radius - 0.5 * rod * theme.text];
+    const last = ctx.canvas.width / theme.scale - sheet.edge - theme.measure(ctx, "x₁", how);
+    theme.write(ctx, rod ? "x₂" : "x₁", rod ? left : Math.min(left, last), top, how);
 }
 
 /** The spoke to the pin, and the neurons' memory beside it. */
@@ -227,10 +227,10 @@ function force(sheet, torque, pin) {
 
 /** Outside the rim: which way is forward, and how the wheel turns now. */
 function directions(sheet, { omega_rad_s: omega, labels }) {
-    const { ctx, colours, theme, x, y, radius, quiet } = sheet;
+    const { ctx, colours, theme, x, y, radius, quiet, edge } = sheet;
     arc(sheet, 3.4, 4.0, colours.faint, 0.8 * theme.line);
     const left = x - 0.65 * radius - theme.measure(ctx, labels?.forward ?? "", quiet);
-    theme.write(ctx, labels?.forward ?? "", Math.max(2, left), y + 1.42 * radius, quiet);
+    theme.write(ctx, labels?.forward ?? "", Math.max(edge, left), y + 1.42 * radius, quiet);
     const half = Math.max(-LONGEST_ARC, Math.min(LONGEST_ARC, omega * ARC_S)) / 2;
     if (!(Math.abs(half) > 0.02)) return;
     arc(sheet, Math.PI / 2 - half, Math.PI / 2 + half, colours.ink, 1.8 * theme.line);
