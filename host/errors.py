@@ -4,7 +4,7 @@ from typing import Any
 
 
 class KickctlError(Exception):
-    """An error in words.
+    """An error in words. As text it is the message alone; the hint says what to do.
 
     >>> try:
     ...     connect("sim://?k=-1")

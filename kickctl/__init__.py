@@ -10,7 +10,9 @@
 The names in `__all__` are the public API, with those of `kickctl.theory`, the paper's model of a
 wheel. Each is loaded when it is first used.
 
-What goes wrong is a KickctlError with `message`, `hint` and `status`, of one of these kinds:
+What goes wrong is a KickctlError with `message`, `hint` and `status`. A notebook shows both texts;
+after `except KickctlError as error`, print `error.message` and `error.hint`. It is of one of these
+kinds:
 
     WrongUse: The request makes no sense; nothing has changed. LogError is one about a log's file.
     NotDone: The robot has not done it.

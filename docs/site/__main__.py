@@ -44,6 +44,9 @@ def main() -> int:
         "--quick", action="store_true", help="show notebooks without running them"
     )
     quick = arguments.parse_args().quick
+    if not quick:
+        print("Notebooks that have changed are run first: up to 5 minutes for all.", flush=True)
+        print("Warnings of IPKernelApp, about encryption within this computer, mean nothing here.")
     folder = ROOT / "build" / ("docs-quick" if quick else "docs")
     status = build(folder, "off" if quick else "cache")
     if not status:
