@@ -230,5 +230,6 @@ def test_a_stop_imports_next_to_nothing():
 
 def test_a_wrong_verb_and_help_still_know_all_verbs(kickctl):
     assert "did you mean stop?" in kickctl("stpo")[2]
+    assert "did you mean status?" in kickctl("stat")[2]
     assert "blink its lights" in " ".join(kickctl("--help", "stop")[1].split())
     assert kickctl("--name", "kick")[0] == 2

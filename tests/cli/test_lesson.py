@@ -114,6 +114,7 @@ def test_6_a_kick(step):
     (table,) = re.findall(r"^table (\S+)$", output, re.MULTILINE)
     rows = list(csv.DictReader(Path(table).read_text(encoding="utf-8").splitlines()))
     for length in range(4, 8):
+        assert re.search(rf"^ +{length}( +6 of 6){{3}}$", output, re.MULTILINE)
         assert {row["reversed"] for row in rows if row["ticks"] == str(length)} == {"True"}
     for length in (1, 2, 9, 10):
         kicks = [row for row in rows if row["ticks"] == str(length) and row["mode"] != "membrane"]
