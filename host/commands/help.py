@@ -27,6 +27,8 @@ HELP = (
     " verbs"
 )
 USES = ()
+# The verbs whose parts are runs, and those.
+RUNS = {"experiment": EXPERIMENTS, "theory": STUDIES}
 # More places than these are named without what they are.
 MOST = 12
 _WIDTH = 100
@@ -150,15 +152,17 @@ def _places(parser: argparse.ArgumentParser) -> Iterator[Place]:
     for verb, own in _inner(parser):
         yield Place("kickctl ", verb, str(own.description))
         yield from _of_options(own, common)
-        for part, inner in () if verb in ("experiment", "theory") else _inner(own):
+        if verb in RUNS:
+            yield from _shared_options(verb, own, common)
+            continue
+        for part, inner in _inner(own):
             yield Place(f"kickctl {verb} ", part, str(inner.description))
             yield from _of_options(inner, common)
-    for verb, entries in (("experiment", EXPERIMENTS), ("theory", STUDIES)):
+    for verb, entries in RUNS.items():
         for name, entry in entries.items():
             yield Place(f"kickctl {verb} ", name, entry.help)
             for option in entry.options:
-                flag = "--" + option.name.replace("_", "-")
-                yield Place(f"kickctl {verb} {name} ", flag, _of_option(option))
+                yield Place(f"kickctl {verb} {name} ", _flag(option), _of_option(option))
             for claim in entry.claims:
                 text = f"{SENTENCES[claim]}; measured by kickctl {verb} {name}"
                 yield Place("claim ", claim, text)
@@ -195,6 +199,23 @@ def _of_options(parser: argparse.ArgumentParser, known: frozenset[str]) -> Itera
                 text += f"; {', '.join(map(str, action.choices))}"
             for flag in action.option_strings[-1:]:
                 yield Place(f"{parser.prog} ", flag, text)
+
+
+def _shared_options(
+    verb: str, parser: argparse.ArgumentParser, known: frozenset[str]
+) -> Iterator[Place]:
+    """The options that experiments, or studies, have beside their own, once each."""
+    seen: set[str] = set()
+    for name, run in _inner(parser):
+        own = {_flag(option) for option in RUNS[verb][name].options}
+        for place in _of_options(run, known | own):
+            if place.name not in seen:
+                seen.add(place.name)
+                yield place._replace(before=f"kickctl {verb} NAME ")
+
+
+def _flag(option: Option) -> str:
+    return "--" + option.name.replace("_", "-")
 
 
 def _of_option(option: Option) -> str:

@@ -37,6 +37,7 @@ def names(kickctl):
         (("R5",), "claim R5"),
         (("k",), "kickctl params set k=VALUE"),
         (("seed",), "kickctl --seed"),
+        (("minutes",), "kickctl experiment NAME --minutes"),
         (("walls", "simulated", "distance"), "kickctl lab --walls"),
         (("recover", "damaged"), "kickctl log recover"),
         (("cable", "off"), "what you see: fault: its cable came off"),
