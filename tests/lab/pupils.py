@@ -39,7 +39,7 @@ def jump(robot):
 def longer(robot):
     robot.start()
     robot.wait(2.0)
-    for ticks in (1, 2, 3, 4, 6, 10, 10):
+    for ticks in (1, 2, 3, 3, 4, 4, 6, 6, 10, 10):
         robot.kick("phase", ticks=ticks)
         robot.wait(3.0)
 

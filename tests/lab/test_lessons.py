@@ -69,16 +69,16 @@ def test_a_robot_whose_kicks_are_swapped_is_found_out(logs):
     for field in ("mode", "ticks", "pulse", "values"):
         one[field], other[field] = other[field], one[field]
     words = failed("jump", log)
-    assert any("in a membrane kick the memory went" in line for line in words)
+    assert any("of a membrane kick the memory moved" in line for line in words)
     assert any("did not do what its parameters and kicks" in line for line in words)
 
 
 def test_each_exercise_says_what_is_missing(logs):
     jump, start = logs["jump"], logs["start"]
     assert any("with the motors off" in words for words in failed("trace", jump))
-    assert any("starts of 10" in words for words in failed("start", jump))
+    assert any("rolled: 1, needed: 10" in words for words in failed("start", jump))
     assert any("a membrane kick while" in words for words in failed("jump", start))
-    assert any("kicked by phase kicks" in words for words in failed("longer", jump))
+    assert any("an outcome: 1, needed: 10" in words for words in failed("longer", jump))
     assert any("you lowered k" in words for words in failed("there-and-back", jump))
     assert any("0 turns of 2" in words for words in failed("wall", start))
 

@@ -37,7 +37,9 @@ def test_a_page_that_watches_says_why_and_gets_the_baton_when_it_asks(visit, lab
     driver.page.wait_for_selector("#kick-phase:disabled")
     driver.until("s.note && s.note.message.includes('given')")
     driver.page.click("#notices >> text=Drive from here")
-    pupil.until("!s.baton.you")
+    pupil.until("!s.baton.you && s.note")
+    driver.page.close()
+    pupil.until("s.baton.driver === null && s.note === null")  # what it said is over
 
 
 def test_a_driver_may_leave(visit):

@@ -36,10 +36,17 @@ def test_an_exercise_from_the_prediction_to_the_explanation(visit, lab, station,
     station.step(0.1)
     visitor.until("r.state === 'stopped'")
     page.wait_for_selector("#param-k:disabled")  # nothing moves before the prediction
+    visitor.reads("#now", "It stands until you lock your prediction.")
+    assert page.is_hidden(".remedy")
+    assert page.is_disabled("text=What does the simulation expect?")
     assert page.is_disabled("text=Lock my prediction")
     page.click(f"#prediction-{guess}")
     page.click("text=Lock my prediction")
     visitor.reads("#lessons", "Your prediction is locked")
+    visitor.until("r.status.recording")
+    page.click("text=Leave the exercise")
+    page.click("text=What jumps in a kick?")
+    visitor.reads("#lessons", "Your prediction is locked")  # it cannot be changed by coming back
     visitor.until("r.status.recording")
     assert page.is_hidden("#prediction-0")
     page.click("text=A hint")
@@ -61,3 +68,11 @@ def test_an_exercise_from_the_prediction_to_the_explanation(visit, lab, station,
     assert not visitor.robot()["status"]["recording"]
     page.click("text=Leave the exercise")
     visitor.reads("#lessons", "3 What jumps in a kick? ✓")
+
+    page.click("text=Where am I in the plane?")
+    page.click("#prediction-1")
+    page.click("text=Lock my prediction")
+    station.step(0.1)
+    visitor.until("r.state === 'stopped'")
+    visitor.reads("#now", "its motors stay off")
+    assert page.is_hidden(".remedy")

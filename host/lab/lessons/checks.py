@@ -73,12 +73,12 @@ def _start(log: Log) -> list[Finding]:
     moved = ways[FORWARD] + ways[BACKWARD]
     low, high = wilson(ways[FORWARD], moved)
     return [
-        Finding(moved >= STARTS, f"{moved} starts of {STARTS} or more after which it rolled"),
+        Finding(moved >= STARTS, f"starts after which it rolled: {moved}, needed: {STARTS}"),
         Finding(
             min(ways[FORWARD], ways[BACKWARD]) > 0,
             f"the left wheel went forward {ways[FORWARD]} times and backward {ways[BACKWARD]}"
-            f" times: of all starts, {100 * low:.0f} to {100 * high:.0f} % go forward (with 95 %"
-            " confidence)",
+            f" times. So few starts tell only this: of 100 starts, probably {100 * low:.0f} to"
+            f" {100 * high:.0f} go forward",
         ),
     ]
 
@@ -127,15 +127,16 @@ def _jump(log: Log) -> list[Finding]:
         *findings,
         Finding(
             min(one for one, _ in steps[MEMBRANE]) >= _JUMP,
-            f"in a membrane kick the memory went {flip:.1f} times as fast in one tick as before it",
+            f"in one tick of a membrane kick the memory moved {flip:.1f} times as far as in a tick"
+            " before the kick",
         ),
         Finding(
             creep <= _SMOOTH,
-            f"in a phase kick it went at most {creep:.1f} times as fast as before: no jump",
+            f"in a phase kick it moved at most {creep:.1f} times as far in a tick",
         ),
         Finding(
             max(turn, way) <= _SMOOTH,
-            f"the wheel itself went at most {max(turn, way):.1f} times as fast: no jump either",
+            f"the wheel itself moved at most {max(turn, way):.1f} times as far in a tick",
         ),
     ]
 
@@ -163,23 +164,25 @@ def _steps(log: Log, mode: str) -> list[tuple[float, float]]:
 
 
 def _longer(log: Log) -> list[Finding]:
+    phase = [(kick, results) for kick, results in _outcomes(log) if kick["mode"] == PHASE]
     tried: dict[int, list[bool]] = defaultdict(list)
-    for kick, results in _outcomes(log):
-        if kick["mode"] == PHASE:
-            tried[kick["ticks"]] += [result == "reverses" for result in results]
-    kicks = sum(map(len, tried.values()))
+    for kick, results in phase:
+        tried[kick["ticks"]] += [result == "reverses" for result in results]
     shares = ", ".join(
         f"{ticks}: {sum(done)} of {len(done)}" for ticks, done in sorted(tried.items())
     )
     findings = [
-        Finding(kicks >= KICKS, f"{kicks} wheels of {KICKS} or more kicked by phase kicks"),
+        Finding(
+            len(phase) >= KICKS,
+            f"phase kicks with an outcome: {len(phase)}, needed: {KICKS}",
+        ),
         Finding(
             len(tried) >= LENGTHS
             and min(tried) <= 2
             and any(3 <= ticks <= 6 for ticks in tried)
             and max(tried) >= 10,
-            f"{len(tried)} lengths of {LENGTHS} or more, with 1 or 2, 3 to 6, and 10 ticks among"
-            f" them. Reversed, by length: {shares or 'none'}",
+            f"different lengths: {len(tried)}, needed: {LENGTHS}, and among them 1 or 2 ticks, 3 to"
+            f" 6 ticks, and 10 ticks. Wheels reversed, by length: {shares or 'none'}",
         ),
     ]
     if all(one.ok for one in findings):
@@ -348,10 +351,10 @@ def _honest(log: Log) -> Finding:
             f"the robot did not do what its parameters and kicks say: in tick {result.beyond.tick},"
             f" {result.beyond.channel} should be {result.beyond.replayed:.3g}",
         )
-    return Finding(
-        result.compared > 0,
-        f"in {result.compared} ticks the robot did what its parameters and kicks say",
-    )
+    if not result.compared:
+        return Finding(False, "the log has no tick yet that could be checked")
+    words = f"the log is sound: {result.compared} ticks compared, all follow the robot's equations"
+    return Finding(True, words)
 
 
 CHECKS: dict[str, Callable[[Log], list[Finding]]] = {

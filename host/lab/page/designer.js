@@ -63,10 +63,8 @@ export function createDesigner(lab, kick, predict) {
     );
     const form = element("div", { className: "own-form" });
     form.append(mode, ticks.root, param, value.root, sign, shift.root, variable, delta.root, shape);
-    form.append(
-        commands,
-        button(texts.askSimulation, () => sound() && predict(fields()), "quiet"),
-    );
+    const ask = button(texts.askSimulation, () => sound() && predict(fields()), "quiet");
+    form.append(commands, ask);
     const root = element(
         "details",
         { className: "own" },
@@ -106,7 +104,12 @@ export function createDesigner(lab, kick, predict) {
 
     ticks.input.oninput = shift.input.oninput = tell;
     arrange();
-    return { root, commands, update: tell };
+    const update = () => {
+        // Who asks the simulation first predicts nothing.
+        ask.disabled = lab.store.held;
+        tell();
+    };
+    return { root, commands, update };
 }
 
 /** A labelled number with a place for what it means. */

@@ -4,6 +4,7 @@ import { keep, recall } from "./storage.js";
 
 const KEPT = "lab.exercise";
 const DONE = "lab.exercises-done";
+const LEFT = "lab.exercises-left";
 
 /** What this tab remembers of exercises, so that a reload changes nothing. */
 export class Lesson {
@@ -17,6 +18,8 @@ export class Lesson {
         this.state = JSON.parse(recall("sessionStorage", KEPT) ?? "null");
         /** @type {string[]} The names of the exercises that are done. */
         this.done = JSON.parse(recall("sessionStorage", DONE) ?? "[]");
+        /** @type {object} Exercises that were left after the prediction was locked, by name. */
+        this.left = JSON.parse(recall("sessionStorage", LEFT) ?? "{}");
         this.busy = this.checking = false;
         /** Whether the last thing went wrong; then the next one is a person's. */
         this.stuck = false;
@@ -36,12 +39,17 @@ export class Lesson {
         });
     }
 
-    /** Begin an exercise: the robot stands still until the prediction is locked. */
+    /**
+     * Begin an exercise: the robot stands still until the prediction is locked. One that was left
+     * goes on with its prediction.
+     */
     choose(name) {
         this.lab.send({ type: "stop", robot: this.lab.store.robot.name });
         const fresh = { guess: null, locked: false, logs: [], hints: 0, findings: [], done: false };
-        this.state = { name, ...fresh };
+        this.state = this.left[name] ?? { name, ...fresh };
+        delete this.left[name];
         this.#changed();
+        if (this.state.locked) this.#alone(() => this.#prepare());
     }
 
     guess(answer) {
@@ -52,8 +60,7 @@ export class Lesson {
     /** From here on the prediction holds, and the robot may move. */
     lock() {
         return this.#alone(async () => {
-            if (this.lab.store.robot.status.recording) await this.lab.do("record", { on: false });
-            await this.lab.do("set", { set: this.texts.set });
+            await this.#prepare();
             this.state.locked = true;
         });
     }
@@ -75,8 +82,7 @@ export class Lesson {
         this.checking = true;
         return this.#alone(async () => {
             const { name, logs } = this.state;
-            const { recording } = this.lab.store.robot.status;
-            if (recording && !logs.includes(recording)) logs.push(recording);
+            this.#noteLog();
             this.#changed();
             await this.lab.do("record", { on: false });
             const found = await this.lab.request({ type: "check", lesson: name, logs });
@@ -87,12 +93,30 @@ export class Lesson {
         });
     }
 
-    /** End the exercise, done or not. */
+    /** Go back to the list, done or not. A locked prediction stays. */
     leave() {
-        const { locked, done } = this.state;
+        const { name, locked, done } = this.state;
+        const goesOn = locked && !done;
+        if (goesOn) {
+            this.#noteLog();
+            this.left[name] = this.state;
+        }
         this.state = null;
         this.#changed();
-        if (locked && !done) this.#alone(() => this.lab.do("record", { on: false }));
+        if (goesOn) this.#alone(() => this.lab.do("record", { on: false }));
+    }
+
+    /** Set the robot as the exercise needs it, and end a recording of something else. */
+    async #prepare() {
+        if (this.lab.store.robot.status.recording) await this.lab.do("record", { on: false });
+        await this.lab.do("set", { set: this.texts.set });
+    }
+
+    /** The log that is being recorded belongs to the exercise. */
+    #noteLog() {
+        const { logs } = this.state;
+        const { recording } = this.lab.store.robot.status;
+        if (recording && !logs.includes(recording)) logs.push(recording);
     }
 
     /** Do one thing at a time, and say what went wrong. */
@@ -112,7 +136,9 @@ export class Lesson {
 
     #changed() {
         keep("sessionStorage", KEPT, JSON.stringify(this.state));
+        keep("sessionStorage", LEFT, JSON.stringify(this.left));
         this.lab.store.held = Boolean(this.state && !this.state.locked);
+        this.lab.store.still = Boolean(this.state?.locked && !this.state.done && this.texts?.still);
         this.lab.changed = true;
     }
 }

@@ -23,7 +23,7 @@ export function createNow(lab) {
     };
 
     return () => {
-        const { robots, robot, mayDrive, page } = lab.store;
+        const { robots, robot, mayDrive, page, held, still } = lab.store;
         if (filled !== robots) {
             filled = robots;
             buttons = robots.map(({ name }, index) => button(name, () => select(index)));
@@ -39,9 +39,12 @@ export function createNow(lab) {
         const is = shown(robot);
         root.dataset.state = is;
         setText(state, texts.states[is]);
-        const why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status, page);
+        let help = is === "lost" ? null : robot.status.remedy;
+        let why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status, page);
+        if (help === "start" && (held || still)) {
+            [help, why] = [null, held ? texts.startsAfterPrediction : texts.staysStill];
+        }
         setText(reason, why);
-        const help = is === "lost" ? null : robot.status.remedy;
         show(remedy, Boolean(help));
         remedy.value = help ?? "";
         setText(remedy, texts.remedies[help] ?? "");

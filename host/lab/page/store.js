@@ -185,6 +185,8 @@ export class Store {
         this.note = null;
         /** Whether an exercise waits for a prediction, before which nothing moves. */
         this.held = false;
+        /** Whether an exercise goes on in which the motors stay off. */
+        this.still = false;
         /** The newest `poll` message. */
         this.poll = { state: "none", score: { kicks: 0 } };
     }
@@ -274,6 +276,7 @@ export class Store {
 
     _baton({ driver, you, asking, why }) {
         if (this.baton.you && !you && why) this.note = { message: why, hint: "" };
+        else if (why !== this.baton.why && this.note?.message === this.baton.why) this.note = null;
         this.baton = { driver, you, asking, why };
     }
 
