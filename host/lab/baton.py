@@ -113,7 +113,8 @@ class Baton:
         if self.driver is None or now - self._heard_at <= SILENT_S:
             return False
         self._free(
-            f"page {self.driver} was silent for {SILENT_S:g} s: a hidden tab, or a computer asleep"
+            f"page {self.driver} was silent for {SILENT_S:g} s: it was closed, reloaded or hidden,"
+            " or its computer sleeps"
         )
         return True
 

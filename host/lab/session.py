@@ -225,8 +225,8 @@ class Session:
         role = self._keys.role(requests.text_of(message, "key"))
         if role is None:
             page.refuse(
-                "this key does not fit: the lab may have been started again since",
-                "use the address that the lab has printed last",
+                "the key is missing or does not fit: the lab may have been started again since",
+                "scan the code again, ask your teacher, or use the lab's newest address",
             )
         elif role == DRIVE and not page.local:
             page.refuse(

@@ -30,7 +30,7 @@ def test_the_welcome_has_all_that_a_page_needs(lab):
 @pytest.mark.parametrize("key", ["", "wrong", "\ud800", "drive"])
 def test_a_wrong_key_lets_nobody_in(lab, key):
     visit = lab.stranger(key)
-    assert "key does not fit" in visit.latest("refused")["message"]
+    assert "missing or does not fit" in visit.latest("refused")["message"]
     assert visit.page.closed
     visit.send("stop", robot=None)
     assert lab.anna.take() == []

@@ -57,13 +57,13 @@ export function createClass(root, opener, lab, kicks) {
 
     return () => {
         const { store } = lab;
-        const { poll: now, baton, mayDrive, robot } = store;
-        const drives = baton.you || (mayDrive && open);
+        const { poll: now, baton, robot } = store;
+        const drives = baton.you || store.canDrive;
         const { state } = now;
         show(opener, store.canDrive || store.role === "drive");
         opener.setAttribute("aria-pressed", String(open));
         show(root, open || state !== "none");
-        show(invitation.root, open);
+        show(invitation.root, open || drives);
         show(asks, drives && (state === "none" || state === "done"));
         asks.disabled = robot?.state !== "running";
         show(asked, state !== "none");
@@ -76,7 +76,7 @@ export function createClass(root, opener, lab, kicks) {
             return;
         }
         setText(question, classTexts.question(now, store.robots.length > 1));
-        show(answers, state === "open" && !baton.you);
+        show(answers, state === "open" && !drives);
         const about = JSON.stringify([now.robot, now.kick, state]);
         if (about !== known) answers.choose(now.yours);
         known = about;
