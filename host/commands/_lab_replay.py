@@ -9,7 +9,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.commands._log_damage import damage_facts, damage_status, reads_on
+from host.commands._log_damage import damage_facts, damage_status
 from host.commands._options import refuse_unused
 from host.commands._outputs import add_force, path_argument, require_place
 from host.commands._terminal import answer, print_result, say, show_next
@@ -181,7 +181,7 @@ def _serve(options: argparse.Namespace, open_browser: Callable[[str], None]) -> 
             else:
                 print_result(f"replay {url}")
             if not log.whole:
-                say(f"{log.damage()}; {reads_on(log)}")
+                say(f"{log.damage()}; {log.remedy()}")
             if not options.no_open:
                 open_browser(url)
             lab.wait()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import TYPE_CHECKING, Any
 
 from host.errors import NotDone
@@ -16,14 +15,6 @@ def damage_facts(log: LogFile) -> dict[str, Any]:
     return {"truncated": not log.whole, "damage": log.damage(), "lost": log.lost}
 
 
-def reads_on(log: LogFile) -> str:
-    """The command that reads more of a damaged log than was read."""
-    return (
-        f"kickctl log recover {shlex.quote(str(log.path))} also reads what is whole behind the"
-        " damage, and writes it to a new log"
-    )
-
-
 def damage_status(log: LogFile) -> int:
     """The exit status of what was done with a log: 0 if it is whole.
 
@@ -33,6 +24,6 @@ def damage_status(log: LogFile) -> int:
     if not log.whole:
         raise NotDone(
             log.damage(),
-            reads_on(log),
+            log.remedy(),
         )
     return 0

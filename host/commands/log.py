@@ -227,6 +227,11 @@ def _replay(options: argparse.Namespace) -> int:
     if result.why_behind_gaps:
         say(result.why_behind_gaps)
     damage_status(log)
+    if not result.compared:
+        raise NotDone(
+            f"no tick of {log.path} can be compared with the robot's program",
+            "give a longer log, or one without gaps: `kickctl record 10` writes one",
+        )
     if not result.reproduced:
         raise NotDone(f"the controller does not compute what {log.path} says", _verdict(result))
     return 0

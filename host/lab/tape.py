@@ -18,6 +18,7 @@ from host.lab import derived, worked
 from host.lab.kicks import stall
 from host.lab.twin import Twin, compare_kicks
 from host.logs.log import Gaps, Log
+from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import LogFile
 from host.logs.replay import Mismatch, Replayer, other_sources, too_large
 from host.logs.tap import Event
@@ -210,6 +211,8 @@ def make_tape(
     else:
         writer.flush()
     if not writer.packed:
+        if isinstance(log, LogFile) and not log.whole and not writer.past:
+            raise LogError(log.damage(), log.remedy())
         if cut == Cut():
             raise WrongUse(f"{name} has no tick", "`kickctl log list` shows logs and their ticks")
         raise WrongUse(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Iterator
 from functools import cached_property
 from math import isfinite
@@ -105,6 +106,13 @@ class LogFile:
             more = f", and {self.left_out - 1} more" if self.left_out > 1 else ""
             found.append(f"{self.first_left_out} is left out{more}")
         return f"{self.path}: " + "; ".join(found) if found else ""
+
+    def remedy(self) -> str:
+        """The command that reads more of a damaged log than `stream` does."""
+        return (
+            f"kickctl log recover {shlex.quote(str(self.path))} also reads what is whole behind the"
+            " damage, and writes it to a new log"
+        )
 
     def stream(self, *, past_damage: bool = False) -> Iterator[Event | Record]:
         """Events and records in the order in which they came, as far as they can be read.

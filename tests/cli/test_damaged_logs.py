@@ -110,6 +110,10 @@ def test_recover_goes_on_behind_a_damaged_place_and_says_how_much_is_lost(kickct
     assert replayed["missing"] == facts["lost"]
     assert replayed["compared"] + replayed["not_comparable"] == len(back)
     assert replayed["not_comparable"] > len(back) // 4
+    assert "since they follow a gap" in replayed["why_not_comparable"]
+    behind = kickctl("lab", "--export", "page.html", path.name, "--from", "2.9")
+    assert behind[0] == 2
+    assert f"kickctl log recover {path.name} also reads what is whole behind" in behind[2]
 
 
 @pytest.mark.parametrize("reader", READERS)
