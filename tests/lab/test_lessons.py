@@ -80,7 +80,7 @@ def test_each_exercise_says_what_is_missing(logs):
     assert any("a membrane kick while" in words for words in failed("jump", start))
     assert any("an outcome: 1, needed: 10" in words for words in failed("longer", jump))
     assert any("you lowered k" in words for words in failed("there-and-back", jump))
-    assert any("0 turns of 2" in words for words in failed("wall", start))
+    assert any("anything: 0, needed: 2" in words for words in failed("wall", start))
 
 
 def test_kicks_that_do_not_fit_the_simulation_are_found_out(logs):

@@ -76,3 +76,4 @@ def test_an_exercise_from_the_prediction_to_the_explanation(visit, lab, station,
     visitor.until("r.state === 'stopped'")
     visitor.reads("#now", "its motors stay off")
     assert page.is_hidden(".remedy")
+    assert page.is_hidden("text=Start it to kick it.")

@@ -102,8 +102,8 @@ def _trace(log: Log) -> list[Finding]:
     far_rad, side = max(
         (_there_and_back_rad(log.column(f"{side}_phi_rad")[still]), side) for side in WHEELS
     )
-    words = f"with the motors off, the {side} wheel went {far_rad:.1f} rad forward and back"
-    return [Finding(far_rad >= _BY_HAND_RAD, f"{words}, of {_BY_HAND_RAD:g} rad or more")]
+    words = f"with the motors off, the {side} wheel went forward and back by {far_rad:.1f} rad"
+    return [Finding(far_rad >= _BY_HAND_RAD, f"{words}, needed: {_BY_HAND_RAD:g} rad")]
 
 
 def _there_and_back_rad(phi_rad: NDArray[np.float64]) -> float:
@@ -275,7 +275,7 @@ def _wall(log: Log) -> list[Finding]:
     findings = [
         Finding(
             turns >= _TURNS,
-            f"{turns} turns of {_TURNS} or more at a wall, while nobody touched anything",
+            f"turns at a wall while nobody touched anything: {turns}, needed: {_TURNS}",
         )
     ]
     if leads:

@@ -76,7 +76,7 @@ export function createKicks(root, lab) {
     root.append(controls);
 
     const update = () => {
-        const { robot, mayDrive } = lab.store;
+        const { robot, mayDrive, still } = lab.store;
         const runs = robot?.state === "running";
         for (const field of [...three, designer.commands]) field.disabled = !(mayDrive && runs);
         guess.disabled = wheel.disabled = !mayDrive;
@@ -88,7 +88,7 @@ export function createKicks(root, lab) {
             setText(beside, expected ? texts.expected(expected, wheel.value) : length);
             setText(below, expected ? texts.asExpected : what);
         });
-        show(resting, Boolean(robot) && mayDrive && !runs);
+        show(resting, Boolean(robot) && mayDrive && !runs && !still);
         if (robot) {
             designer.update(robot);
             verdict.update(robot);

@@ -9,8 +9,9 @@ export const lessonTexts = {
     lock: "Lock my prediction",
     locked: (answer) => `Your prediction is locked: ${answer}.`,
     walls:
-        "This exercise needs walls, and a floor on which the tyres do not spin. End the lab and" +
-        " start it by: kickctl --brick 'sim://?walls=2&axle=400&grip=1.83&bumper=0.25' lab",
+        "This exercise needs walls, and a floor on which the tyres do not spin. Ask your" +
+        " teacher to end the lab, and to start it by:" +
+        " kickctl --brick 'sim://?walls=2&axle=400&grip=1.83&bumper=0.25' lab",
     hint: "A hint",
     check: "Check what I did",
     checking: "The log is being checked. The first time this takes some seconds …",
