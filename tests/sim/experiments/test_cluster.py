@@ -31,7 +31,6 @@ def cluster():
         yield cluster
 
 
-@pytest.mark.timeout(300)  # three processes compile the batch, perhaps beside other work
 def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
     monkeypatch.setattr("host.figures.robot.kick_map.draw", lambda rows, findings: Figure())
     there = perform(
