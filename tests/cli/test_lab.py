@@ -116,7 +116,7 @@ def test_an_interrupt_stops_what_it_drives_and_is_no_error(desk, observer):
     with lab("--brick", desk.uri, "--token", desk.token) as (process, info):
         started(info)
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0, process.said()
+        assert process.wait(60.0) == 0, process.said()
         assert "Traceback" not in process.said()
         assert observer.status()["state"] == "stopped"
         assert process.stdout.read() == ""
@@ -127,7 +127,7 @@ def test_an_interrupt_lets_a_robot_go_on_that_may(desk, observer):
     with lab(*arguments) as (process, info):
         started(info)
         process.send_signal(signal.SIGTERM)
-        assert process.wait(20.0) == 0, process.said()
+        assert process.wait(60.0) == 0, process.said()
         status = observer.status()
         assert (status["state"], status["controller"]) == ("running", None)
 
@@ -147,7 +147,7 @@ def test_without_a_robot_it_simulates_one_between_walls_with_a_hand():
         with connect(robot["uri"], observe=True) as observer:
             assert observer.hello["seed"] == 3
         process.send_signal(signal.SIGINT)
-        assert process.wait(20.0) == 0, process.said()
+        assert process.wait(60.0) == 0, process.said()
 
 
 def test_a_robot_that_is_away_is_said_and_the_page_is_there():
