@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import robot
-from host.commands._claim_words import SENTENCES
 from host.commands._terminal import print_result, show
 from host.errors import NotDone
 from host.experiments.registry import TABLE as EXPERIMENTS
+from host.runs.claim_sentences import SENTENCES
 from host.runs.registry import Option
 from host.theory.studies.registry import TABLE as STUDIES
 from robot.params import TABLE as PARAMS

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from host.logs.log import Log
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim, too_few
 from host.util.intervals import bootstrap_interval, fraction, wilson
 from robot.kicks import WHEELS
@@ -90,7 +91,7 @@ def coexistence(wheels: Sequence[Steady]) -> Claim:
     asymmetry = float(abs(forward.mean() / backward.mean() - 1.0)) if both else 1.0
     claim = Claim(
         "R1",
-        "forward and backward locomotion coexist; the start alone decides between them",
+        SENTENCES["R1"],
         "both from random starts, speeds equal within 3 %",
         asymmetry,
         "1",
@@ -114,7 +115,7 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
     return [
         Claim(
             "R2",
-            "at k = 8 a wheel makes about 2 turns per second",
+            SENTENCES["R2"],
             "1.8 to 2.3 Hz",
             mean,
             "Hz",
@@ -124,7 +125,7 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
         ),
         Claim(
             "R3",
-            "at k = 8 the robot drives at 0.35 m/s, with 80 to 90 % of the motor's power",
+            SENTENCES["R3"],
             "0.32 to 0.39 m/s, duty 80 to 90 %",
             mean * to_m_s,
             "m/s",
@@ -134,7 +135,7 @@ def locomotion(wheels: Sequence[Steady]) -> list[Claim]:
         ),
         Claim(
             "R4",
-            "the torque M hardly changes in locomotion",
+            SENTENCES["R4"],
             "std(M) / mean(|M|) < 0.1",
             ripple,
             "1",
@@ -168,7 +169,7 @@ def break_away(log: Log, span: Span) -> Claim:
         moves.append(float(torque[:first].max(initial=0.0)) if len(moved) else 1.0)
     return Claim(
         "R5",
-        "the motor stalls for |M| <= 0.1",
+        SENTENCES["R5"],
         "no motion from rest below, motion above",
         float(np.mean(moves)),
         "1",
@@ -194,7 +195,7 @@ def inversions(reversals: Sequence[bool]) -> Claim:
     done, tried = sum(reversals), len(reversals)
     claim = Claim(
         "R8",
-        "inverting the membrane potentials always reverses the wheels",
+        SENTENCES["R8"],
         f"{ALWAYS} of {ALWAYS}",
         done / max(1, tried),
         "1",

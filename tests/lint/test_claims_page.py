@@ -1,8 +1,8 @@
 """docs/claims.md and README.md say what `kickctl reproduce` has answered."""
 
 from docs.site.claims import PAGE, load, rendered
-from host.commands._claim_words import SENTENCES
 from host.perform.reproduce import claim_ids
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import FAILS, HOLDS
 from tests.lint.sources import ROOT
 

@@ -13,6 +13,7 @@ from typing import TypedDict, final
 import numpy as np
 
 from host.experiments.bodies.simulation import EDGE_M, Position, build_body, run_body, set_heading
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
@@ -183,8 +184,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     ]
     claim = Claim(
         "B1",
-        "a car with one rod for each wheel follows intricate trajectories, and stays inside"
-        " confining slopes",
+        SENTENCES["B1"],
         "all stay inside for 10 min, and do not flip",
         fraction(good, len(tried)),
         "1",

@@ -10,6 +10,7 @@ from typing import TypedDict
 import numpy as np
 
 from host.experiments.bodies.simulation import ORDERED, PRESETS, build_body, run_body
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction, wilson
@@ -155,7 +156,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     )
     claim = Claim(
         "B2",
-        "from random phases, the ten wheels of a train find one speed and direction by themselves",
+        SENTENCES["B2"],
         f"order parameter > {ORDERED:g} in all, in both presets; both directions occur",
         fraction(done, tried),
         "1",

@@ -15,6 +15,7 @@ from typing import TypedDict, final
 import numpy as np
 
 from host.experiments.bodies.simulation import ORDERED, BodyRun, build_body, run_body
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from sim_motor.bodies.measures import reversals_s
@@ -251,7 +252,7 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     still = all(kind["constant_torque"]["ended"] == STUCK for kind in kinds)
     claim = Claim(
         "B3",
-        "a train reverses as a whole at a wall, with no sensor for it",
+        SENTENCES["B3"],
         f">= {LEAST} reversals in a row in both presets; a train with constant torque gets stuck",
         least,
         "1",

@@ -55,6 +55,7 @@ from host.kicking.primitives import drive
 from host.kicking.robot_claims import STALL_TORQUE, break_away
 from host.logs.log import Log
 from host.runs.answers import Answer
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import bootstrap_interval, standard_error
@@ -243,7 +244,7 @@ def _stall(ramps: list[RampRow]) -> Claim:
     failed = [row["note"] for row in ramps if not row["holds"]]
     return Claim(
         "R5",
-        "the motor stalls for |M| <= 0.1",
+        SENTENCES["R5"],
         "no motion from rest below, motion above",
         _mean(torques),
         "1",
@@ -264,7 +265,7 @@ def _jump(folds: list[FoldRow], critical: list[float], again: list[float]) -> Cl
     low, high = bootstrap_interval(critical) or (0.0, 0.0)
     return Claim(
         "R6",
-        "as k decreases, M jumps to zero at k_c; above k_c, rest and locomotion coexist",
+        SENTENCES["R6"],
         "a jump from |M| > 0.15 to |M| < 0.1; hysteresis",
         _mean(before),
         "1",

@@ -43,6 +43,7 @@ from host.experiments.robot.switching import CONDITIONS, OLDER, ORDINARY
 from host.kicking.outcome import require_running
 from host.logs.log import Log
 from host.runs.answers import Answer, share
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.theory.analysis.series_exponents import of_noise
@@ -167,7 +168,7 @@ def report(rows: list[ChaosRow], setting: Setting) -> Findings:
         notes += reasons(explanations, older["exponent"])
     claim = Claim(
         "R14",
-        "at k = 15 and tau = 1000 ms the motors switch irregularly: the motion is chaotic",
+        SENTENCES["R14"],
         "sustained irregular switching over 10 min; positive largest Lyapunov exponent estimate",
         own["to_the_end"] / own["wheels"],
         "1",

@@ -35,6 +35,7 @@ from host.kicking.primitives import PRIMITIVES, STOP_PULSE_S, drive
 from host.kicking.robot_claims import Steady, coexistence, locomotion, steady
 from host.logs.log import Log
 from host.logs.motion import heading
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim, too_few
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import wilson
@@ -236,8 +237,7 @@ def _primitives(rows: list[PrimitivesRow]) -> Claim:
     tried = sum(bool(transitions(rows, *pair)) for pair in PAIRS)
     claim = Claim(
         "R7",
-        "kicks alone lead from each of forward, backward and both spins to each other; a pulse of k"
-        " leads to rest",
+        SENTENCES["R7"],
         "all reached; the range of k where the stopped state coexists with locomotion shown",
         alone / max(1, len(kicked)),
         "1",

@@ -18,10 +18,11 @@ from host.errors import NotDone
 from host.experiments.registry import claimed
 from host.kicking.kick_map import KickCell, request, shift_of, span_ticks, times_of
 from host.kicking.outcome import DIRECTIONS, OPPOSITE, Outcome, kick_and_watch, wait_settled
-from host.kicking.robot_claims import INVERTED, SHIFTED, inversions, quenched
+from host.kicking.robot_claims import inversions, quenched
 from host.logs.log import Log
 from host.logs.motion import settling_s
 from host.runs.answers import Answer, share
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import fraction
@@ -185,8 +186,8 @@ def report(rows: list[Row], setting: Setting) -> Findings:
     """R8 to R10."""
     claims = [
         inversions([row["reversed"] for row in points(rows, MEMBRANE, 1)]),
-        _quenched("R9", INVERTED, rows, POSITION, None),
-        _quenched("R10", SHIFTED, rows, PHASE, named=True),
+        _quenched("R9", rows, POSITION, None),
+        _quenched("R10", rows, PHASE, named=True),
     ]
     kinds = (
         ("position", POSITION, None),
@@ -242,7 +243,7 @@ def _answers(rows: list[Row]) -> list[Answer]:
     ]
 
 
-def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
+def _quenched(number: str, rows: list[Row], mode: str, named: bool | None) -> Claim:
     """Claim that a kick is reliable in the worse direction, and fails in both."""
     least_sure: dict[int, tuple[int, int]] = {}
     rates: dict[int, float] = {}
@@ -255,7 +256,7 @@ def _quenched(number: str, what: str, rows: list[Row], mode: str, named: bool | 
         fewest = min(fewest, *(tried for _, tried in both))
     return quenched(
         number,
-        f"{what} reverses a wheel reliably if it lasts 3 to 5 ticks",
+        SENTENCES[number],
         "in the worse direction",
         least_sure,
         rates,

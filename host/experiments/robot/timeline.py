@@ -33,6 +33,7 @@ from host.kicking.robot_claims import LEAST_TRIALS, inversions
 from host.logs.log import Log
 from host.logs.motion import settling_s
 from host.runs.answers import Answer, share
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim, too_few
 from host.runs.contract import Findings, Options, Setting
 from host.util.intervals import bootstrap_interval, standard_error, wilson
@@ -223,8 +224,7 @@ def _settling(done: list[SettledKick]) -> Claim:
     slow = sum(time >= 0.5 for time in times)
     return Claim(
         "R11",
-        "settling into the reversed cycle takes longer than the kick, at times half a second or"
-        " more",
+        SENTENCES["R11"],
         "distribution of settling times",
         median,
         "s",
@@ -242,7 +242,7 @@ def _slips(done: list[SettledKick]) -> Claim:
     beyond = sum(slip > usual for slip in slips)
     return Claim(
         "R12",
-        "a kick changes the relative phase of the left and the right wheel (phase slip)",
+        SENTENCES["R12"],
         "relative phase shown before and after",
         median,
         "rad",

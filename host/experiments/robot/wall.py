@@ -49,6 +49,7 @@ from host.kicking.robot_claims import WHEEL_RADIUS_M
 from host.logs.log import Log
 from host.runs import presets
 from host.runs.answers import Answer, share
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim, too_few
 from host.runs.contract import Findings, Options, Part, Row, Setting, as_rows
 from host.runs.presets import OPTION
@@ -208,7 +209,7 @@ def report(rows: list[WallRow], setting: Setting) -> Findings:
     part = fraction(done, tried)
     claim = Claim(
         "R13",
-        "at k = 2 a robot that hits a wall reverses by itself, with no sensor for it",
+        SENTENCES["R13"],
         ">= 95 % of 50 bounces, M changes sign",
         part,
         "1",

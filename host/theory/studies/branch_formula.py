@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NamedTuple, TypedDict
 
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.theory.analysis.hopf import estimate, hopf
 from host.theory.model.turning import constant_velocity
@@ -120,7 +121,7 @@ def claim_m6(
     """M6: the formula holds at the end of the branch."""
     claim = Claim(
         "M6",
-        "far above the onset, locomotion has the speed of the constant-velocity formula",
+        SENTENCES["M6"],
         "omega = +- sqrt((a k tau - 2 f) / (2 f tau^2)), beside the numeric branch",
         None,
         "1",
@@ -184,7 +185,7 @@ def claim_m9(turned: list[Turning]) -> Claim:
         note += f"; a wheel that rolls by itself has no steady speed, and differs by {own}"
     return Claim(
         "M9",
-        "the membrane potentials of a wheel that turns steadily are those of eq. x-t",
+        SENTENCES["M9"],
         "numeric against formula",
         worst,
         "1",

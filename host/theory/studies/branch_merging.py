@@ -8,6 +8,7 @@ from typing import TypedDict
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.theory.model.wheel import Array
 from host.theory.studies.branch_rows import WAYS, CyclePart
@@ -208,8 +209,7 @@ def claim_m5(
     """
     claim = Claim(
         "M5",
-        "the Hopf bifurcation is supercritical; its four cycles grow until they merge with the"
-        " saddles into a rotation",
+        SENTENCES["M5"],
         "amplitude of the cycle against k up to the merging; merging value located",
         merging["value"] if merging else None,
         "1",

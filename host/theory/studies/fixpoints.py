@@ -9,6 +9,7 @@ from typing import Any, TypedDict
 import numpy as np
 
 from host.runs.answers import Answer
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import Fixpoint, Kind, fixpoints, growth_by_time_course
@@ -157,8 +158,7 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
         [
             Claim(
                 "M1",
-                "a wheel has eight fixpoints, omega = 0 and phi = n pi/4; those with odd n are"
-                " always unstable",
+                SENTENCES["M1"],
                 "odd n unstable; even n stable for small a k tau / (2 f)",
                 float(len(one)),
                 "fixpoints",
@@ -169,7 +169,7 @@ def report(rows: list[FixpointsRow], setting: Setting) -> Findings:
             ).doubted(foreign),
             Claim(
                 "M2",
-                "two wheels have 16 non-moving states",
+                SENTENCES["M2"],
                 "4 x 4 stable fixpoints",
                 float(stable_pairs),
                 "stable states",

@@ -12,6 +12,7 @@ from typing import Any, TypedDict
 import numpy as np
 
 from host.runs.answers import Answer
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import ANGLES
@@ -122,7 +123,7 @@ def report(rows: list[HopfRow], setting: Setting) -> Findings:
     }
     claim = Claim(
         "M3",
-        "rest becomes unstable at about k_c = 2 f / (a tau)",
+        SENTENCES["M3"],
         "the line, beside the numerically exact Hopf line",
         ratio,
         "1",

@@ -8,6 +8,7 @@ import numpy as np
 
 from host.errors import NotDone
 from host.runs.answers import Answer, share
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.attractors import CHAOS, KINDS, Kind
@@ -253,7 +254,7 @@ def spectrum_claim(point: Point, series: Series | None) -> Claim:
     all_four = ", ".join(Answer("", exponent, own).in_words() for exponent, own in pairs)
     return Claim(
         "M8",
-        "at k = 15 and tau = 1 s a wheel is chaotic: its largest Lyapunov exponent is positive",
+        SENTENCES["M8"],
         "series and Lyapunov spectrum",
         rate,
         "1/s",

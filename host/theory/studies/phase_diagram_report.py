@@ -8,6 +8,7 @@ from typing import NotRequired, TypedDict
 import numpy as np
 
 from host.runs.answers import Answer
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.deciding import STILL
@@ -181,7 +182,7 @@ def _claim(numbers: Numbers, way: Way) -> Claim:
     in_plane = ", ".join(f"{share:.1%} {name}" for name, share in shares[f"plane, {way}"].items())
     return Claim(
         "M7",
-        "the plane (k, tau) has four phases, S, FB, LLM and C; rest ends near k tau = 2 f / a",
+        SENTENCES["M7"],
         "std(omega), |mean(omega)|, the inset, the numeric and the analytic line",
         by_hopf,
         "1",

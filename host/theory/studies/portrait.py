@@ -14,6 +14,7 @@ from typing import Any, TypedDict
 import numpy as np
 
 from host.runs.answers import Answer
+from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.fixpoints import fixpoint, fixpoints
@@ -176,7 +177,7 @@ def _claim(found: list[SummaryRow], k_hopf: float) -> Claim:
     )
     return Claim(
         "M4",
-        "at tau = 0.25 s a wheel rests at k = 1.4, swings at 1.65 and rolls at 1.85",
+        SENTENCES["M4"],
         "the three portraits",
         float(agreed),
         f"of {len(found)} portraits",
