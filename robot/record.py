@@ -30,6 +30,23 @@ def channel(name, code, unit, doc):
     return SimpleNamespace(name=name, code=code, unit=unit, doc=doc)
 
 
+def of_each_wheel(rows, mark="_"):
+    """Values that each wheel has.
+
+    Args:
+        rows: Channels of one wheel.
+        mark: What stands between the wheel's name and that of the channel.
+
+    Returns:
+        A tuple of the left wheel's channels and the right one's.
+    """
+    return tuple(
+        channel(side + mark + row.name, row.code, row.unit, row.doc)
+        for side in WHEELS
+        for row in rows
+    )
+
+
 _TICK = (
     channel("tick", "I", "1", "number of the tick, without gaps since the robot's program started"),
     channel("t_s", "d", "s", "the robot's clock when the tick began, since its program started"),
@@ -62,22 +79,23 @@ _WHEEL = (
     channel("duty_pct", "b", "%", "duty cycle written to the motor, forward positive"),
 )
 
-CHANNELS = _TICK + tuple(
-    channel(side + "_" + row.name, row.code, row.unit, row.doc) for side in WHEELS for row in _WHEEL
-)
+CHANNELS = _TICK + of_each_wheel(_WHEEL)
 NAMES = tuple(row.name for row in CHANNELS)
 STRUCT = struct.Struct("<" + "".join(row.code for row in CHANNELS))
 Record = namedtuple("Record", NAMES)
 
 
-def describe():
-    """The channels as plain data, as the robot sends them.
+def describe(channels=CHANNELS):
+    """Channels as plain data, as the robot sends them.
+
+    Args:
+        channels: Those of a record, or others.
 
     Returns:
         A list of OrderedDicts with the keys name, code (as in Python's struct), unit and doc.
     """
     keys = ("name", "code", "unit", "doc")
-    return [OrderedDict((key, getattr(row, key)) for key in keys) for row in CHANNELS]
+    return [OrderedDict((key, getattr(row, key)) for key in keys) for row in channels]
 
 
 def unpack(data):

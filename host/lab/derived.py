@@ -14,7 +14,7 @@ from robot.blackbox import Snapshot
 from robot.controller import actual_positions, target_position
 from robot.kicks import WHEELS, Kick, apply_kick, seen_positions
 from robot.params import Params
-from robot.record import Record, channel
+from robot.record import Record, channel, of_each_wheel
 from sim_motor.constants import data
 
 _WHEEL = (
@@ -30,14 +30,7 @@ _PLACE = (
     channel("y_m", "f", "m", "place by odometry, to the left of the first heading"),
     channel("heading_rad", "f", "rad", "heading by odometry, to the left positive"),
 )
-CHANNELS = (
-    *(
-        channel(f"{side}_{row.name}", row.code, row.unit, row.doc)
-        for side in WHEELS
-        for row in _WHEEL
-    ),
-    *_PLACE,
-)
+CHANNELS = (*of_each_wheel(_WHEEL), *_PLACE)
 
 
 class Body(NamedTuple):
@@ -52,11 +45,6 @@ def body() -> Body:
     """The measures of the paper's robot, as motors.toml has them."""
     robot = data()["robot"]
     return Body(float(robot["track"][0]), float(robot["wheel_radius"][0]))
-
-
-def describe() -> list[dict[str, str]]:
-    """The derived channels as plain data, in the order of `Follower.derive`."""
-    return [dict(vars(row)) for row in CHANNELS]
 
 
 class Follower:

@@ -29,7 +29,7 @@ from host.lab.worker import Worker
 from host.logs.tap import Event
 from robot import __version__, params
 from robot.record import STATES, STRUCT, Record
-from robot.record import describe as own_channels
+from robot.record import describe as describe_channels
 
 STOP, CONTINUE = "stop", "continue"
 # A robot whose records have not come for so long counts as lost (s).
@@ -139,8 +139,8 @@ class Station:
             "label": self._label,
             "software": str(self._hello.get("software", __version__)),
             "motor": printable(str(self._hello.get("motor", ""))),
-            "channels": own_channels(),
-            "derived": derived.describe(),
+            "channels": describe_channels(),
+            "derived": describe_channels(derived.CHANNELS),
             "params": params.describe(),
             "tick_s": values["tick_s"],
             "stall": stall(self._hello, values),

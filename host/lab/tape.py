@@ -236,7 +236,7 @@ def make_tape(
         if writer.twin is None
         else {
             "motor": entry,
-            "derived": derived.describe(),
+            "derived": describe(derived.CHANNELS),
             "kicks": compare_kicks(*writer.pair, writer.events),
             "records": _written(writer.packed_twin),
         },
@@ -276,7 +276,7 @@ def _robot(info: dict[str, Any]) -> dict[str, Any]:
     return {
         "name": printable(str(info.get("brick", ""))),
         "channels": describe(),
-        "derived": [*derived.describe(), *(dict(vars(row)) for row in worked.CHANNELS)],
+        "derived": describe((*derived.CHANNELS, *worked.CHANNELS)),
         "tick_s": info.get("params", {}).get("tick_s", 0.03),
         "stall": _stall(info),
         "track_m": place.track_m,

@@ -20,8 +20,8 @@ from robot.controller import (
     tangential_force,
     target_position,
 )
-from robot.kicks import WHEELS, Kick, apply_kick, seen_positions
-from robot.record import NAMES, Record, channel
+from robot.kicks import Kick, apply_kick, seen_positions
+from robot.record import NAMES, Record, channel, of_each_wheel
 from robot.safety import limit_duty
 from robot.wheel import Wheel
 
@@ -63,11 +63,7 @@ _WHEEL = (
 )
 CHANNELS = (
     channel("compared", "B", "1", "0 not comparable, 1 the same bits, 2 rounded, 3 different"),
-    *(
-        channel(f"{side}_eq_{row.name}", row.code, row.unit, row.doc)
-        for side in WHEELS
-        for row in _WHEEL
-    ),
+    *of_each_wheel(_WHEEL, "_eq_"),
 )
 STRUCT = struct.Struct("<" + "".join(row.code for row in CHANNELS))
 # A wheel's numbers in a tick in which no equation acts.
