@@ -29,6 +29,25 @@ _FINENESS = 0.6
 STILL = 0.02
 
 
+def with_close(states: Array) -> Array:
+    """Wheels, and behind them a close one for each: (rows, 2 wheels) of (rows, wheels)."""
+    return np.hstack([states, states + CLOSE])
+
+
+def parted(ended: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Whether close wheels have parted.
+
+    Args:
+        ended: Where wheels of `with_close` ended, (rows, 2 wheels).
+
+    Returns:
+        Where the wheels themselves ended, (rows, wheels), and which the close ones have parted
+        from, (wheels,).
+    """
+    states, others = np.hsplit(ended, 2)
+    return states, np.abs(states - others).max(axis=0) > APART
+
+
 def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
     """The attractors of wheels.
 
@@ -47,10 +66,8 @@ def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
         states, left, sizes = states[:, quick], left[quick], sizes[quick]
         if not len(left):
             break
-        close = np.hstack([states, states + CLOSE])
-        ended = settle(close, np.tile(parameters[:, left], (1, 2)), seconds, _FINENESS)
-        states, others = np.hsplit(ended, 2)
-        chaotic = np.abs(states - others).max(axis=0) > APART
+        pairs = np.tile(parameters[:, left], (1, 2))
+        states, chaotic = parted(settle(with_close(states), pairs, seconds, _FINENESS))
         kinds[left[chaotic]] = CHAOS
         states, left, sizes = states[:, ~chaotic], left[~chaotic], sizes[~chaotic]
         if not len(left):

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from host.theory.analysis.deciding import APART, CLOSE
+from host.theory.analysis.deciding import parted, with_close
 from host.theory.analysis.stability_thresholds import leading
 from host.theory.engine.ensemble import Averages
 from host.theory.engine.kicked import Model, Sampled, inverted, memory_s, seen_in
@@ -95,13 +95,21 @@ def settle_and_classify(
     """
     memory, parameters = memory_s(wheel), wheel.columns(states.shape[1])
     settled = model.averages(states, parameters, SETTLE * memory)
-    first = model.averages(settled.states, parameters, WINDOW * memory)
-    second = model.averages(first.states, parameters, WINDOW * memory)
     stable = rest_is_stable(model, wheel)
-    names = classify(first, second, WINDOW * memory, stable=stable)
+    names, last = _watched(model, settled.states, wheel, stable=stable)
     if (names == OTHER).any():
-        return _followed(model, names, second, wheel, stable=stable)
-    return names, second
+        return _followed(model, names, last, wheel, stable=stable)
+    return names, last
+
+
+def _watched(
+    model: Model, states: Array, wheel: Wheel, *, stable: bool
+) -> tuple[NDArray[np.str_], Averages]:
+    """What settled wheels do in two windows, and the averages over the second one."""
+    window_s, parameters = WINDOW * memory_s(wheel), wheel.columns(states.shape[1])
+    first = model.averages(states, parameters, window_s)
+    second = model.averages(first.states, parameters, window_s)
+    return classify(first, second, window_s, stable=stable), second
 
 
 def _followed(
@@ -116,21 +124,14 @@ def _followed(
     names, (mean, std, states) = names.copy(), (values.copy() for values in last)
     left = np.arange(len(names))
     for seconds in (SETTLE * memory * 2**number for number in range(ROUNDS)):
-        own = states[:, left]
-        ended = model.averages(
-            np.hstack([own, own + CLOSE]), wheel.columns(2 * len(left)), seconds
-        ).states
-        own, others = np.hsplit(ended, 2)
-        parted = np.abs(own - others).max(axis=0) > APART
-        names[left[parted]] = OTHER
-        states[:, left] = own
-        left = left[~parted]
+        pairs = wheel.columns(2 * len(left))
+        ended = model.averages(with_close(states[:, left]), pairs, seconds).states
+        states[:, left], irregular = parted(ended)
+        names[left[irregular]] = OTHER
+        left = left[~irregular]
         if not len(left):
             break
-        parameters = wheel.columns(len(left))
-        first = model.averages(states[:, left], parameters, WINDOW * memory)
-        second = model.averages(first.states, parameters, WINDOW * memory)
-        again = classify(first, second, WINDOW * memory, stable=stable)
+        again, second = _watched(model, states[:, left], wheel, stable=stable)
         settled = (again == names[left]) & (again != OTHER)
         names[left] = again
         mean[left], std[left], states[:, left] = second
