@@ -118,11 +118,13 @@ def _grid(rows: list[PointRow], name: Literal[Quantity, "chaotic"]) -> tuple[Arr
 def _draw_lines(axes: Axes, wheel: Wheel) -> None:
     (_, k_to), (_, tau_to) = axes.get_xlim(), axes.get_ylim()
     taus = np.geomspace(tau_to / 1000, tau_to, 400)
-    lines = [(critical_k, "whitesmoke", "rest becomes unstable, exactly")]
     if wheel.rods == 1:
         lines = [(critical_k, "whitesmoke", "rest at 90° becomes unstable; at 0° it never does")]
     else:
-        lines.append((estimate, "darkgrey", r"$k_c = 2f/(a\tau)$"))
+        lines = [
+            (critical_k, "whitesmoke", "rest becomes unstable, exactly"),
+            (estimate, "darkgrey", r"$k_c = 2f/(a\tau)$"),
+        ]
     for line, colour, label in lines:
         axes.plot(
             [line(wheel._replace(tau=float(tau))) for tau in taus],
