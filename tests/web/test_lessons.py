@@ -44,10 +44,11 @@ def test_an_exercise_from_the_prediction_to_the_explanation(visit, lab, station,
     page.click("text=Lock my prediction")
     visitor.reads("#lessons", "Your prediction is locked")
     visitor.until("r.status.recording")
+    log = visitor.robot()["status"]["recording"]
     page.click("text=Leave the exercise")
     page.click("text=What jumps in a kick?")
     visitor.reads("#lessons", "Your prediction is locked")  # it cannot be changed by coming back
-    visitor.until("r.status.recording")
+    visitor.until(f"r.status.recording && r.status.recording !== '{log}'")
     assert page.is_hidden("#prediction-0")
     page.click("text=A hint")
     visitor.reads("#lessons", "Each plane is a slice")

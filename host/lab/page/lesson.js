@@ -8,6 +8,10 @@ const LEFT = "lab.exercises-left";
 
 /** What this tab remembers of exercises, so that a reload changes nothing. */
 export class Lesson {
+    // What was asked for last, and how much of it is not done yet.
+    #last = Promise.resolve();
+    #waiting = 0;
+
     /** @param {import("./lab.js").Lab} lab */
     constructor(lab) {
         this.lab = lab;
@@ -20,7 +24,7 @@ export class Lesson {
         this.done = JSON.parse(recall("sessionStorage", DONE) ?? "[]");
         /** @type {object} Exercises that were left after the prediction was locked, by name. */
         this.left = JSON.parse(recall("sessionStorage", LEFT) ?? "{}");
-        this.busy = this.checking = false;
+        this.checking = false;
         /** Whether the last thing went wrong; then the next one is a person's. */
         this.stuck = false;
         this.#changed();
@@ -29,6 +33,11 @@ export class Lesson {
     /** @returns {?object} The texts of the exercise that goes on. */
     get texts() {
         return this.all.find(({ name }) => name === this.state?.name) ?? null;
+    }
+
+    /** @returns {boolean} Whether something is being done. */
+    get busy() {
+        return this.#waiting > 0;
     }
 
     /** Get the texts. */
@@ -49,7 +58,8 @@ export class Lesson {
         this.state = this.left[name] ?? { name, ...fresh };
         delete this.left[name];
         this.#changed();
-        if (this.state.locked) this.#alone(() => this.#prepare());
+        const { texts } = this;
+        if (this.state.locked) this.#alone(() => this.#prepare(texts));
     }
 
     guess(answer) {
@@ -59,9 +69,10 @@ export class Lesson {
 
     /** From here on the prediction holds, and the robot may move. */
     lock() {
+        const { state, texts } = this;
         return this.#alone(async () => {
-            await this.#prepare();
-            this.state.locked = true;
+            await this.#prepare(texts);
+            state.locked = true;
         });
     }
 
@@ -80,13 +91,14 @@ export class Lesson {
     /** Have the lab check what was done since the prediction. */
     check() {
         this.checking = true;
+        const { state } = this;
+        const { name, logs } = state;
         return this.#alone(async () => {
-            const { name, logs } = this.state;
-            this.#noteLog();
+            this.#noteLog(state);
             this.#changed();
             await this.lab.do("record", { on: false });
             const found = await this.lab.request({ type: "check", lesson: name, logs });
-            Object.assign(this.state, found);
+            Object.assign(state, found);
             if (!found.done) return;
             this.done = [...new Set([...this.done, name])];
             keep("sessionStorage", DONE, JSON.stringify(this.done));
@@ -98,7 +110,7 @@ export class Lesson {
         const { name, locked, done } = this.state;
         const goesOn = locked && !done;
         if (goesOn) {
-            this.#noteLog();
+            this.#noteLog(this.state);
             this.left[name] = this.state;
         }
         this.state = null;
@@ -107,31 +119,34 @@ export class Lesson {
     }
 
     /** Set the robot as the exercise needs it, and end a recording of something else. */
-    async #prepare() {
+    async #prepare(texts) {
         if (this.lab.store.robot.status.recording) await this.lab.do("record", { on: false });
-        await this.lab.do("set", { set: this.texts.set });
+        await this.lab.do("set", { set: texts.set });
     }
 
     /** The log that is being recorded belongs to the exercise. */
-    #noteLog() {
-        const { logs } = this.state;
+    #noteLog({ logs }) {
         const { recording } = this.lab.store.robot.status;
         if (recording && !logs.includes(recording)) logs.push(recording);
     }
 
-    /** Do one thing at a time, and say what went wrong. */
-    async #alone(work) {
-        if (this.busy) return;
-        this.busy = this.lab.changed = true;
-        this.stuck = false;
-        try {
-            await work();
-        } catch (error) {
-            this.stuck = true;
-            this.lab.tell(error.message ? error : { message: String(error), hint: "" });
-        }
-        this.busy = this.checking = false;
-        this.#changed();
+    /** Do one thing after the other, and say what went wrong. */
+    #alone(work) {
+        this.#waiting += 1;
+        this.lab.changed = true;
+        this.#last = this.#last.then(async () => {
+            this.stuck = false;
+            try {
+                await work();
+            } catch (error) {
+                this.stuck = true;
+                this.lab.tell(error.message ? error : { message: String(error), hint: "" });
+            }
+            this.#waiting -= 1;
+            this.checking = false;
+            this.#changed();
+        });
+        return this.#last;
     }
 
     #changed() {
