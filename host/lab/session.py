@@ -25,7 +25,7 @@ from host.lab.page_end import Departed, Page
 from host.lab.poll import Poll
 from host.lab.presets import describe_presets, describe_primitives
 from host.lab.recording import describe_logs, find_log
-from host.lab.station import HISTORY, STOP, Station
+from host.lab.station import STOP, Station
 
 # How many pages there may be; some of the places are kept for those that may drive.
 MAX_PAGES, KEPT_FOR_DRIVERS = 64, 4
@@ -257,7 +257,7 @@ class Session:
 
     def _greet(self, page: Page) -> None:
         for station in self.stations.values():
-            page.places[station.name] = station.ring.latest(HISTORY)
+            page.places[station.name] = station.history()
         page.send(
             {
                 "type": "welcome",

@@ -1,15 +1,13 @@
-"""One robot as the lab knows it: its latest records for the pages, its state, and its commands.
+"""A robot that the lab's pages watch and drive.
 
-This part does no I/O and knows no threads. `LiveStation` connects it to a robot in real time,
-`SteppedStation` to an embedded one whose time passes only when a test says so.
+`LiveStation` connects it to a robot in real time, `SteppedStation` to an embedded one whose time
+passes only when a test says so.
 """
 
 from __future__ import annotations
 
-import struct
-from collections import deque
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from host.client.robot import Robot
 from host.client.stop import Stopped
@@ -19,64 +17,20 @@ from host.kicking.modes import leave
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
 from host.kicking.robot_motor import MEASURE
-from host.lab import basin_question, derived
+from host.lab import basin_question
 from host.lab.forecasts import Forecasts, Question
-from host.lab.kicks import Kicks, motor_known, stall
+from host.lab.kicks import motor_known
+from host.lab.observed import Observed
 from host.lab.recording import Recording
-from host.lab.ring import Ring
-from host.lab.stopper import of_this_lab, plain
 from host.lab.worker import Worker
-from host.logs.tap import Event
-from robot import __version__, params
-from robot.record import STATES, STRUCT, Record
-from robot.record import describe as describe_channels
 
 STOP, CONTINUE = "stop", "continue"
-# A robot whose records have not come for so long counts as lost (s).
-LOST_S = 1.0
-# How many records a page gets of what was before it came.
-HISTORY = 600
-EVENTS_KEPT = 100
-VERDICTS_KEPT = 40
-# How soon after a page has asked for it a stop is of that page (s).
-ASKED_S = 7.0
-# A tick that begins later than this counts as late for people (s).
-LATE_S = 0.005
-_STATE_OF = {
-    "start": "running",
-    "resume": "running",
-    "stop": "stopped",
-    "clear": "stopped",
-    "hold": "held",
-    "fault": "fault",
-}
-_HINTS = {
-    "idle": "start it: the wheels will turn",
-    "stopped": "start it: the wheels will turn",
-    "held": "the robot waits for its driver: take the baton, then kick it or set a parameter",
-    "fault": "mend the cause, then clear the fault, then start",
-}
-_REMEDIES = {"idle": "start", "stopped": "start", "fault": "clear"}
-_DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
 
 Answer = Callable[[dict[str, Any] | KickctlError], None]
 
 
-class Pages(Protocol):
-    """Where a station's news goes. All of it may be called from any thread."""
-
-    def hear(self, message: dict[str, Any]) -> None:
-        """Give a message to all pages."""
-
-    def wake(self) -> None:
-        """There are new records, or the state has changed."""
-
-    def call(self, function: Callable[[], object]) -> None:
-        """Call a function where the session lives."""
-
-
-class Station:
-    """The part of a station that is the same for all robots; also a Tap of its stream.
+class Station(Observed):
+    """The part of a station that is the same for all robots.
 
     Args:
         name: What people call the robot.
@@ -86,156 +40,24 @@ class Station:
         walls_m: How far apart the walls are (m); None if there are none.
 
     Attributes:
-        ring: The latest records, packed with the derived channels.
-        pages: Where news goes.
         recording: The log that is being written, or None.
         logs: The logs that this lab has recorded, by the names of their files.
         forecasts: Where kicks are predicted; None if nowhere.
         basins: Where basins are computed; None if nowhere.
-        verdicts: The latest predictions and outcomes, for pages that join later.
-        trouble: Why the robot is lost, in words; empty if that is not known, or it is not lost.
     """
-
-    hand_possible = False
 
     def __init__(
         self, name: str, uri: str, rule: str, label: str, walls_m: float | None = None
     ) -> None:
-        self.name = name
-        self.uri = uri
+        super().__init__(name, uri, label, walls_m)
         self.rule = rule
-        self.ring = Ring(STRUCT.size + _DERIVED.size)
-        self.pages: Pages | None = None
         self.forecasts: Forecasts | None = None
         self.basins: Worker | None = None
         self.recording: Recording | None = None
         self.logs: dict[str, Recording] = {}
-        self._label = label
-        self._walls_m = walls_m
-        self._follower = derived.Follower()
-        self._hello: dict[str, Any] = {}
-        self._status: dict[str, Any] = {}
-        self._heard_at: float | None = None
-        self._began_at = self.clock()
-        self.trouble = ""
-        self._asker: int | None = None
-        self._asked_at = 0.0
-        self._stopped_by: int | None = None
-        self._known = False
-        self._tick = 0
-        self._events: deque[Event] = deque(maxlen=EVENTS_KEPT)
-        self.verdicts: deque[dict[str, Any]] = deque(maxlen=VERDICTS_KEPT)
-        self._kicks = Kicks()
-
-    # What pages are told.
-
-    def description(self) -> dict[str, Any]:
-        """The robot's entry in the welcome."""
-        place = derived.body()
-        values = dict(self._follower.params)
-        return {
-            "name": self.name,
-            "uri": self.uri,
-            "label": self._label,
-            "software": str(self._hello.get("software", __version__)),
-            "motor": printable(str(self._hello.get("motor", ""))),
-            "channels": describe_channels(),
-            "derived": describe_channels(derived.CHANNELS),
-            "params": params.describe(),
-            "tick_s": values["tick_s"],
-            "stall": stall(self._hello, values),
-            "track_m": place.track_m,
-            "wheel_radius_m": place.wheel_radius_m,
-            "walls": self._walls_m,
-            "hand": self.hand_possible,
-            "events": [*self._events, self._follower.snapshot(self._tick)],
-            "verdicts": list(self.verdicts),
-            "history": self.ring.end - self.ring.latest(HISTORY),
-        }
 
     def state(self) -> dict[str, Any]:
-        """What a `state` message says of the robot now."""
-        now = self.clock()
-        heard_at = self._began_at if self._heard_at is None else self._heard_at
-        lost = self._heard_at is None or now - heard_at > LOST_S
-        message: dict[str, Any] = {
-            "type": "state",
-            "robot": self.name,
-            "link": "lost" if lost else "up",
-            "since_s": round(now - heard_at, 1) if lost else 0.0,
-            "recording": self.recording.name if self.recording else None,
-        }
-        status = dict(self._status)
-        if lost and self.trouble:
-            message["hint"] = self.trouble
-        if not status:
-            return message
-        state = str(status["state"])
-        edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
-        hint = message.get("hint", _HINTS.get(state, ""))
-        return message | {
-            "state": state,
-            "reason": plain(printable(str(status["reason"]))),
-            "stopped_by": self._stopped_by if state == "stopped" else None,
-            "remedy": _REMEDIES.get(state),
-            "hint": hint,
-            "params": dict(self._follower.params),
-            "battery_v": status["battery_v"],
-            "controller": _text(status["controller"]),
-            "here": self.drives_here(),
-            "late": sum(n for edge, n in zip([0.0, *edges], counts, strict=True) if edge >= LATE_S),
-            "missed": status["missed"],
-            "overrun": status["overruns"],
-        }
-
-    # What the robot says.
-
-    def take_records(self, records: list[Record]) -> None:
-        """Keep records for the pages."""
-        for record in records:
-            values = self._follower.derive(record)
-            if values is not None:
-                self.ring.append(STRUCT.pack(*record) + _DERIVED.pack(*values))
-        outcome = self._kicks.take_records(records)
-        if outcome is not None:
-            self._hear({"type": "outcome", "robot": self.name, **outcome})
-        if records:
-            self._tick = records[-1].tick + 1
-            self._take_state(STATES[records[-1].state])
-        self._heard_at = self.clock()
-        self._wake()
-
-    def take_event(self, event: Event) -> None:
-        """Follow what changes the robot's course, and tell the pages."""
-        self._follower.take_event(event)
-        if event["event"] == "restart":
-            self._events.clear()
-            self.verdicts.clear()
-        self._events.append(event)
-        self._kicks.take_event(event)
-        if event["event"] == "snapshot" and not self._known:
-            self._known = True
-            self._hear({"type": "welcome"})  # pages that came before know only what is usual
-        if event["event"] in _STATE_OF and self._status:
-            self._status["state"] = _STATE_OF[event["event"]]
-            self._status["reason"] = event.get("reason", "")
-        if event["event"] == "stop":
-            # Another program of this person may stop the robot, too, long after a page has.
-            ours = self.clock() - self._asked_at < ASKED_S and of_this_lab(event["reason"])
-            self._stopped_by = self._asker if ours else None
-        self._hear({"type": "event", "robot": self.name, "event": event})
-        self._wake()
-
-    def _take_state(self, state: str) -> None:
-        if self._status:
-            self._status["state"] = state
-
-    def _meet(self, robot: Watcher) -> None:
-        """A connection to the robot has been opened."""
-        self._hello = dict(robot.hello)
-        self.trouble = ""
-        self._status = robot.status()
-        self._wake()
+        return super().state() | {"recording": self.recording.name if self.recording else None}
 
     # What pages want.
 
@@ -299,10 +121,6 @@ class Station:
         battery_v = self._status.get("battery_v")
         return basin_question.Question(decisive, motor, battery_v, side, (0, side))
 
-    def note_asker(self, page: int) -> None:
-        """A page, or LAB, is about to stop the robot."""
-        self._asker, self._asked_at = page, self.clock()
-
     def stop(self) -> None:
         """Stop the motors. It returns at once and waits for nothing."""
         raise NotImplementedError
@@ -322,14 +140,6 @@ class Station:
 
     def close(self) -> None:
         """Hang up."""
-
-    def drives_here(self) -> bool:
-        """Whether this lab drives the robot, and not another host."""
-        raise NotImplementedError
-
-    def clock(self) -> float:
-        """Seconds on the clock of this station."""
-        raise NotImplementedError
 
     def _carry_out(self, robot: Robot, command: str, arguments: dict[str, Any]) -> dict[str, Any]:
         """Have a robot that may be driven do a command. Raises KickctlError."""
@@ -373,28 +183,7 @@ class Station:
         self._wake()
         return {"log": self.recording.name if self.recording else None}
 
-    def _say(self, message: str, hint: str = "") -> None:
-        """Tell the pages what a person should know of this robot."""
-        self._hear({"type": "note", "message": f"{self.name}: {message}", "hint": hint})
-
-    def _say_error(self, error: KickctlError) -> None:
-        self._say(error.message, error.hint)
-
-    def _hear(self, message: dict[str, Any]) -> None:
-        pages = self.pages
-        if pages is not None:
-            pages.hear(message)
-
-    def _wake(self) -> None:
-        pages = self.pages
-        if pages is not None:
-            pages.wake()
-
 
 def stop_words(stopped: Stopped) -> str:
     """What a robot has said about a stop, if a person has to know it; else empty."""
     return stopped.sentence() if stopped.state != "stopped" else ""
-
-
-def _text(value: object) -> str | None:
-    return None if value is None else printable(str(value))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from host.lab.station import ASKED_S
+from host.lab.observed import ASKED_S
 
 FOCUS = {
     "nowhere": lambda page: page.click("h1"),
