@@ -17,10 +17,11 @@ from robot.kicks import DIRECTION_TICKS, NO_ACTION, NO_KICK, Kick
 from robot.loop import clamp_step
 from robot.params import Params
 from robot.safety import limit_duty
+from sim_motor.arrays import Array, scalars, tables
 from sim_motor.clock import lateness_s
 from sim_motor.compiled import compiled, jit, parallel_jit, prange
 from sim_motor.compiled_motor import advance, encoder, substep_at, substep_from
-from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
+from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE
 from sim_motor.settling import settling_s
 
@@ -216,7 +217,7 @@ def run(
         param_numbers(params),
         numbers,
         tables(motors),
-        np.stack([motor.scalars() for motor in motors]),
+        scalars(motors),
         np.ascontiguousarray(volts),
         (latency_s, motors[0].encoder_counts, motors[0].dither),
         np.array([motor.dither_seed for motor in motors]),

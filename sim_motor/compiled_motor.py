@@ -4,8 +4,8 @@ Who imports this loads numba, which takes a second.
 """
 
 from sim_motor import motor
+from sim_motor.arrays import Array
 from sim_motor.compiled import inlined_jit
-from sim_motor.constants import Array
 from sim_motor.mathematics import with_mathematics
 
 substep_at = with_mathematics(motor.substep_at, {}, inlined_jit)

@@ -2,7 +2,7 @@
 
 Electrical: L di/dt = V - R i - Ke w. Mechanical: J dw/dt = Kt i - B w - friction - contact. Between
 events this is linear, so every substep of 1 ms applies the exact solution for constant V and
-torque, tabulated for each duty cycle (sim_motor.constants). Events are resolved to the substep: a
+torque, tabulated for each duty cycle (sim_motor.exact_step). Events are resolved to the substep: a
 stop, a break-away, a separation or an impact of the two sides of the backlash.
 
 - The gearing sticks with a static torque above its kinetic (Coulomb) friction; the wheel's rolling
@@ -14,16 +14,24 @@ stop, a break-away, a separation or an impact of the two sides of the backlash.
 They run as they stand here, and compiled (sim_motor.compiled_motor), with the same bits.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from math import copysign, floor, pi, sqrt
+from typing import TYPE_CHECKING
 
-from sim_motor.constants import COAST, SUBSTEP_S, SUBSTEPS_PER_S, Array
+from sim_motor.constants import SUBSTEP_S, SUBSTEPS_PER_S
+from sim_motor.exact_step import COAST
+
+if TYPE_CHECKING:
+    from sim_motor.arrays import Array
+
+    Row = Sequence[float] | Array
+    # A motor's own of sim_motor.arrays.tables, or sim_motor.constants.Steps, which plain Python
+    # reads fast.
+    Tables = Array | Mapping[tuple[int, int], Row]
 
 State = tuple[float, float, float, float, float, float]
-Row = Sequence[float] | Array
-# Those of Constants.tables, or its rows by (alone or with wheel, |duty|): what plain Python reads
-# fast.
-Tables = Array | Mapping[tuple[int, int], Row]
 
 SAMPLE_SUBSTEPS = 2  # the kernel samples the encoder at 500 Hz
 
@@ -174,7 +182,7 @@ def advance(
         current: Its current, A.
         gap: How far the motor is ahead of the wheel, rad.
         wheel_speed: The wheel's speed, rad/s.
-        tables: Constants.tables of the motor.
+        tables: The motor's steps.
         c: Constants.scalars of the motor.
 
     Returns:

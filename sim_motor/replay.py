@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_motor.arrays import Array, scalars, tables
 from sim_motor.compiled import parallel_jit, prange
 from sim_motor.compiled_motor import advance, substep_at, substep_from
-from sim_motor.constants import Array, Constants, tables
+from sim_motor.constants import Constants
 from sim_motor.motor import ANGLE
 
 
@@ -44,7 +45,7 @@ def replay(
         until_s,
         motors[0].latency_s,
         tables(motors),
-        np.stack([motor.scalars() for motor in motors]),
+        scalars(motors),
         volts,
     )
     return ends, angles

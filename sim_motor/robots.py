@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from robot.kicks import DIRECTION_TICKS, WHEELS, Kick
 from robot.params import Params
+from sim_motor.arrays import Array, scalars, tables
 from sim_motor.batch import (
     CHANNELS,
     VALUE,
@@ -30,7 +31,7 @@ from sim_motor.batch import (
 )
 from sim_motor.compiled import jit, parallel_jit, prange
 from sim_motor.compiled_motor import encoder, substep_at, substep_from
-from sim_motor.constants import SUBSTEP_S, Array, Constants, load, tables
+from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE
 from sim_motor.scene import Scene
 from sim_motor.world import (
@@ -166,7 +167,7 @@ def run(
         left_kick,
         right_kick,
         tables(tuple(motors)),
-        np.stack([motor.scalars() for motor in motors]),
+        scalars(motors),
         motors[0].battery_v if battery_v is None else battery_v,
         (motors[0].latency_s, motors[0].encoder_counts, motors[0].dither),
         np.array([motor.dither_seed for motor in motors]),

@@ -8,21 +8,20 @@ in real time.
 from __future__ import annotations
 
 import sys
+from array import array
 from collections import deque
+from collections.abc import Callable
+from functools import cached_property
 from math import inf, pi
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from robot.motors import Motor, MotorFault
 from sim_motor.clock import Clock
-from sim_motor.constants import COAST, SUBSTEPS_PER_S, Constants
+from sim_motor.constants import SUBSTEPS_PER_S, Constants, Steps
+from sim_motor.exact_step import COAST
 from sim_motor.motor import (
-    ANGLE,
     CURRENT,
-    GAP,
-    LAST_ANGLE,
     advance,
     encoder,
     substep_at,
@@ -32,8 +31,8 @@ from sim_motor.motor import (
 if TYPE_CHECKING:
     from sim_motor.world import Drive, World
 
-# In plain Python this takes about as long as compiled code takes to load.
-PLAIN_SUBSTEPS = 1_000_000
+# In plain Python this takes about as long as compiled code takes to load. Browsers have none.
+PLAIN_SUBSTEPS = inf if sys.platform == "emscripten" else 1_000_000
 COMPILED = "sim_motor.compiled_motor"
 
 
@@ -78,17 +77,12 @@ class SimMotor(Motor):
         self.model = model
         self.mount = mount
         self.world: World | None = None
-        self.state = np.zeros(6)
-        self.state[[ANGLE, LAST_ANGLE]] = angle
-        self.state[GAP] = gap
+        self.state = array("d", (angle, angle, 0.0, 0.0, gap, 0.0))
         self._name = name
         self._clock = clock
         self._epoch = clock.now()
         self._battery_v = battery_v
-        self._arrays = constants.tables(), constants.scalars()
-        table, scalars = self._arrays
-        rows = {(side, duty): table[side, duty].tolist() for side, duty in np.ndindex(2, COAST + 1)}
-        self._plain = rows, scalars.tolist()
+        self._plain = Steps(constants), constants.scalars()
         self._began = monotonic()
         self._latency_s = constants.latency_s
         self._substep = 0
@@ -98,7 +92,7 @@ class SimMotor(Motor):
 
     def angle_rad(self) -> float:
         self._catch_up()
-        angle, last_angle, *_ = self.state.tolist()
+        angle, last_angle, *_ = self.state
         own = self.constants
         position = encoder(
             self._substep, angle, last_angle, own.encoder_counts, own.dither, own.dither_seed
@@ -137,9 +131,7 @@ class SimMotor(Motor):
     def truth(self) -> Truth:
         """The wheel's state now."""
         self._catch_up()
-        angle, _, speed, current, gap, wheel_speed = (
-            self.mount * value for value in self.state.tolist()
-        )
+        angle, _, speed, current, gap, wheel_speed = (self.mount * value for value in self.state)
         return Truth(angle, speed, current, angle - gap, wheel_speed)
 
     def draw_a(self) -> float:
@@ -148,7 +140,7 @@ class SimMotor(Motor):
         Negative while it feeds back.
         """
         self._catch_up()
-        return 0.0 if self._duty == COAST else float(self.state[CURRENT]) * self._duty / 100
+        return 0.0 if self._duty == COAST else self.state[CURRENT] * self._duty / 100
 
     def drive(self) -> Drive:
         """What drives the motor now, in its own sense of turning.
@@ -191,13 +183,25 @@ class SimMotor(Motor):
         self._substep = substep
         drive = count, self._duty, self._battery_v, self._load
         if self._is_compiled_code_due(count):
-            from sim_motor.compiled_motor import advance_in_place
-
-            advance_in_place(self.state, *drive, *self._arrays)
+            self._advance_compiled(*drive)
         else:
-            angle, last_angle, speed, current, gap, wheel_speed = self.state.tolist()
+            angle, last_angle, speed, current, gap, wheel_speed = self.state
             motion = angle, last_angle, speed, current, gap, wheel_speed
-            self.state[:] = advance(*drive, *motion, *self._plain)
+            self.state[:] = array("d", advance(*drive, *motion, *self._plain))
+
+    @cached_property
+    def _advance_compiled(self) -> Callable[[int, int, float, float], None]:
+        """`advance` for this motor in compiled code."""
+        import numpy as np
+
+        from sim_motor.arrays import scalars, tables
+        from sim_motor.compiled_motor import advance_in_place
+
+        state = np.frombuffer(self.state)
+        (own_tables,), (own_scalars,) = tables([self.constants]), scalars([self.constants])
+        return lambda count, duty, battery_v, load: advance_in_place(
+            state, count, duty, battery_v, load, own_tables, own_scalars
+        )
 
     def _is_compiled_code_due(self, count: int) -> bool:
         """Whether the time that it takes to load compiled code is saved by it.

@@ -15,16 +15,20 @@ from where things are, then speeds, then places (symplectic Euler).
   each substep where there are walls.
 """
 
+from __future__ import annotations
+
+from array import array
 from collections.abc import Sequence
 from math import cos, hypot, inf, sin
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from sim_motor.arrays import Array, scalars, tables
 from sim_motor.axle import next_stretch, twist_speed
 from sim_motor.compiled import compiled, jit
 from sim_motor.compiled_motor import advance_in_place
-from sim_motor.constants import GRAVITY, SUBSTEP_S, Array, Constants, data
+from sim_motor.constants import GRAVITY, SUBSTEP_S, Constants, data
 from sim_motor.motor import WHEEL_SPEED
 from sim_motor.scene import Scene
 
@@ -54,7 +58,7 @@ class Place(NamedTuple):
 class Driven(Protocol):
     """A motor whose wheel stands on the floor, as sim_motor.wheel_motor.SimMotor."""
 
-    state: Array
+    state: array[float]
     mount: int
     constants: Constants
 
@@ -75,8 +79,9 @@ class World:
     def __init__(self, scene: Scene, motors: Sequence[Driven], heading: float = 0.0) -> None:
         self._place = np.array([0.0, 0.0, heading, 0.0, 0.0, 0.0])
         self._left, self._right = motors
-        self._tables = self._left.constants.tables(), self._right.constants.tables()
-        self._scalars = self._left.constants.scalars(), self._right.constants.scalars()
+        constants = [motor.constants for motor in motors]
+        self._tables, self._scalars = tuple(tables(constants)), tuple(scalars(constants))
+        self._states = np.frombuffer(self._left.state), np.frombuffer(self._right.state)
         self._numbers = numbers(scene)
         self._stretches = no_stretches()
         self._substep = 0
@@ -99,7 +104,7 @@ class World:
 
     def _advance(self, substeps: int) -> None:
         left, right = self._left, self._right
-        wheels = (left.state, right.state), (left.drive(), right.drive()), (left.mount, right.mount)
+        wheels = self._states, (left.drive(), right.drive()), (left.mount, right.mount)
         advance(
             substeps,
             self._place,

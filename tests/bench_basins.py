@@ -6,6 +6,7 @@ and whose ticks are late. It takes about 20 s of a core for each setting.
 """
 
 import random
+from array import array
 from math import atan2, pi
 
 import numpy as np
@@ -47,7 +48,7 @@ class Robot:
         """Put both wheels where two wheels of a batch start."""
         rows = (self.brick.motors, self.wheels, start.states, start.potentials, start.duties)
         for motor, wheel, state, potentials, duty in zip(*rows, strict=True):
-            motor.state[:] = state
+            motor.state[:] = array("d", state)
             wheel.x1, wheel.x2 = potentials.tolist()
             motor.write_duty(int(duty))
         self.loop.deadline += self.loop.params.tick_s

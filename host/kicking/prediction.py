@@ -27,9 +27,10 @@ from robot.kick_requests import parse
 from robot.kicks import DIRECTION_TICKS, MEMBRANE, WHEELS, Kick
 from robot.params import TABLE, Params
 from robot.record import STATES, Record
+from sim_motor.arrays import Array
 from sim_motor.batch import Start, run
 from sim_motor.compiled import on_one_core
-from sim_motor.constants import SUBSTEP_S, Array, Constants, load
+from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, GAP, LAST_ANGLE, SPEED, WHEEL_SPEED
 from sim_motor.replay import replay
 from sim_motor.settling import COUNT_RAD

@@ -18,8 +18,9 @@ from host.errors import WrongUse
 from host.kicking.kick_map import period_rad, settle_ticks, watch_ticks
 from robot.kick_requests import parse
 from robot.params import Params
+from sim_motor.arrays import Array
 from sim_motor.batch import Start, random_start, run
-from sim_motor.constants import Array, Constants
+from sim_motor.constants import Constants
 from sim_motor.replay import replay
 
 # About half of them roll each way: at 2 turns a second, eight of those meet a kick in each tick.

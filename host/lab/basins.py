@@ -24,9 +24,10 @@ from host.kicking.prediction import watch_s
 from host.lab.basin_question import ENDS, Question
 from host.logs.motion import directions
 from robot.params import Params
+from sim_motor.arrays import Array
 from sim_motor.batch import CHANNELS, Start, control, kick_numbers, param_numbers, run
 from sim_motor.compiled import on_one_core
-from sim_motor.constants import Array, Constants
+from sim_motor.constants import Constants
 from sim_motor.motor import ANGLE, LAST_ANGLE, SPEED, WHEEL_SPEED
 
 PHI_RAD = 0.0

@@ -94,7 +94,7 @@ class Twin:
         motor = SimMotor(side, self._clock, self._constants, self._battery_v, angle=angle)
         if before is not None and t_s > before[0]:
             speed = (angle - getattr(before[1], name)) / (t_s - before[0])
-            motor.state[[SPEED, WHEEL_SPEED]] = speed
+            motor.state[SPEED] = motor.state[WHEEL_SPEED] = speed
         return motor
 
     def _results(self, record: Record) -> dict[str, float]:

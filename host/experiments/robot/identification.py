@@ -18,9 +18,10 @@ from scipy.stats import t as student
 from host.errors import NotDone
 from host.experiments.robot.motor_traits import Traits, constants_of, traits
 from host.util.intervals import CONFIDENCE
+from sim_motor.arrays import Array, scalars, tables
 from sim_motor.compiled import jit
 from sim_motor.compiled_motor import advance, substep_at, substep_from
-from sim_motor.constants import Array, Constants
+from sim_motor.constants import Constants
 from sim_motor.motor import ANGLE, LAST_ANGLE, SAMPLE_SUBSTEPS
 
 Interval = tuple[float, float]
@@ -118,7 +119,8 @@ def follow(drive: Drive, constants: Constants) -> Array:
     In each stretch their mean is that of the logged angles.
     """
     c = constants
-    angles = _follow(drive.times, c.latency_s, drive.duties, c.battery_v, c.tables(), c.scalars())
+    (own_tables,), (own_scalars,) = tables([c]), scalars([c])
+    angles = _follow(drive.times, c.latency_s, drive.duties, c.battery_v, own_tables, own_scalars)
     return np.asarray(angles + _stretch_means(drive.angles - angles, drive.stretches))
 
 

@@ -18,7 +18,8 @@ from host.experiments.robot.motor_traits import Traits, constants_of
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from robot.kicks import WHEELS
-from sim_motor.constants import Array, Constants, load
+from sim_motor.arrays import Array
+from sim_motor.constants import Constants, load
 
 _STRETCHES = 4
 _SIZES = (6.0, 3.0)  # of marks, so that both wheels show where they agree

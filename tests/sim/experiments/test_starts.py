@@ -70,7 +70,7 @@ def test_a_robot_exactly_at_a_fixed_point_stays_there_and_one_beside_it_goes(
 ):
     with connect("sim://?idle=1", 1) as robot:
         for motor in robot.link.brick.motors:
-            motor.state[[ANGLE, LAST_ANGLE]] = radians(angle_deg + 0.5)
+            motor.state[ANGLE] = motor.state[LAST_ANGLE] = radians(angle_deg + 0.5)
         # Instead of angles at random, the neurons remember that of the wheels, or nearly so.
         remembered = radians(angle_deg) + offset
         robot.link.loop._random.uniform = lambda low, high: remembered

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
+from sim_motor.arrays import scalars, tables
 from sim_motor.compiled_motor import advance_in_place
 from sim_motor.constants import load, names
 from sim_motor.motor import CURRENT, SPEED, WHEEL_SPEED
@@ -17,7 +18,7 @@ def bare(constants):
 
 ROBOTS = {name: load(name) for name in names()}
 ARRAYS = {
-    constants: (constants.tables(), constants.scalars())
+    constants: (tables([constants])[0], scalars([constants])[0])
     for robot in ROBOTS.values()
     for constants in (robot, bare(robot))
 }
@@ -36,7 +37,7 @@ def push(constants, state, substeps, duty, battery_v=NOMINAL_V, torque=0.0):
         duty,
         battery_v,
         torque,
-        *(ARRAYS.get(constants) or (constants.tables(), constants.scalars())),
+        *(ARRAYS.get(constants) or (tables([constants])[0], scalars([constants])[0])),
     )
     return state
 

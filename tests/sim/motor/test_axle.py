@@ -12,9 +12,11 @@ from scipy.sparse.linalg import spsolve
 
 from host.errors import WrongUse
 from host.link.addresses import make_link
+from sim_motor.arrays import scalars, tables
 from sim_motor.axle import axle_stiffness, stiffness_range
 from sim_motor.brick import SimBrick
-from sim_motor.constants import COAST, SUBSTEP_S, data, load
+from sim_motor.constants import SUBSTEP_S, data, load
+from sim_motor.exact_step import COAST
 from sim_motor.motor import WHEEL_SPEED
 from sim_motor.scene import Scene
 from sim_motor.world import advance, no_stretches, numbers, tyre_force
@@ -96,8 +98,8 @@ def test_a_motor_swings_on_its_axle_as_a_torsion_pendulum():
             (states[0], states[1]),
             ((COAST, 7.5, 0.0), (COAST, 7.5, 0.0)),
             (1, 1),
-            (motor.tables(),) * 2,
-            (motor.scalars(),) * 2,
+            tuple(tables([motor, motor])),
+            tuple(scalars([motor, motor])),
             body,
             (TREAD[0], 0.0, axle, 0.0),
             walls,

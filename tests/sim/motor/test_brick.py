@@ -13,6 +13,7 @@ from robot.motors import MonotonicClock, MotorFault
 from sim_motor.brick import SimBrick
 from sim_motor.clock import LATE_MOST_S, VirtualClock
 from sim_motor.constants import load
+from sim_motor.motor import ANGLE, LAST_ANGLE
 
 
 class HandClock:
@@ -264,7 +265,7 @@ def test_encoders_dither_only_if_they_are_asked_to_and_each_on_its_own():
     def readings(**options):
         brick = SimBrick(3, clock=HandClock(), **options)
         for motor in brick.motors:
-            motor.state[:2] = 1.0
+            motor.state[ANGLE] = motor.state[LAST_ANGLE] = 1.0
         return [
             [at(brick, sample / 500).motors[side].angle_rad() for sample in range(100)]
             for side in (0, 1)

@@ -9,11 +9,14 @@ from hypothesis import strategies as st
 
 import sim_motor.wheel_motor
 from sim_motor import compiled_motor, motor
+from sim_motor.arrays import scalars, tables
 from sim_motor.brick import SimBrick
-from sim_motor.constants import COAST
+from sim_motor.constants import Steps
+from sim_motor.exact_step import COAST
 from tests.lint.sources import ROOT
 from tests.sim.motor.motions import ROBOTS, at_rest
 
+STEPS = {name: Steps(constants) for name, constants in ROBOTS.items()}
 SCRIPT = """
 import sys
 from host.cli import main
@@ -32,11 +35,12 @@ print("numba" in sys.modules, file=sys.stderr)
     ),
 )
 def test_every_motion_is_the_same_in_plain_python(robot, turns):
-    tables, scalars = ROBOTS[robot].tables(), ROBOTS[robot].scalars()
+    constants = ROBOTS[robot]
+    (table,), (numbers,), steps = tables([constants]), scalars([constants]), STEPS[robot]
     state, plain = at_rest(), at_rest()
     for turn in turns:
-        compiled_motor.advance_in_place(state, *turn, tables, scalars)
-        plain[:] = motor.advance(*turn, *plain.tolist(), tables, scalars.tolist())
+        compiled_motor.advance_in_place(state, *turn, table, numbers)
+        plain[:] = motor.advance(*turn, *plain.tolist(), steps, constants.scalars())
         assert plain.tolist() == state.tolist()
 
 

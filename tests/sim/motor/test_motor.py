@@ -6,7 +6,8 @@ from math import degrees, pi, radians
 import numpy as np
 import pytest
 
-from sim_motor.constants import COAST, SUBSTEP_S, data, load, names
+from sim_motor.constants import SUBSTEP_S, data, load, names
+from sim_motor.exact_step import COAST
 from sim_motor.motor import (
     ANGLE,
     CURRENT,

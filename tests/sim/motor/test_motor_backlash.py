@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim_motor.constants import COAST, SUBSTEP_S, names
+from sim_motor.constants import SUBSTEP_S, names
+from sim_motor.exact_step import COAST
 from sim_motor.motor import (
     ANGLE,
     GAP,

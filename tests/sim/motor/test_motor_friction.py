@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_motor.constants import COAST, GRAVITY, SUBSTEP_S, data, names
+from sim_motor.constants import GRAVITY, SUBSTEP_S, data, names
+from sim_motor.exact_step import COAST
 from sim_motor.motor import (
     ANGLE,
     CURRENT,

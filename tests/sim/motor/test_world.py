@@ -13,6 +13,7 @@ from host.link.addresses import make_link
 from robot.loop import Loop
 from sim_motor.brick import SimBrick
 from sim_motor.constants import GRAVITY, SUBSTEP_S, data
+from sim_motor.motor import ANGLE, LAST_ANGLE
 from sim_motor.scene import Scene
 from sim_motor.world import PARTS, World, move_body, numbers, plate_inertia, tyre_force
 
@@ -78,7 +79,7 @@ def test_the_controller_runs_the_same_in_an_empty_hall():
     def run(scene):
         brick = SimBrick(4, scene=scene)
         for motor in brick.motors:
-            motor.state[:2] = 0.4
+            motor.state[ANGLE] = motor.state[LAST_ANGLE] = 0.4
         loop = Loop(brick.motors, brick.battery, brick.clock, 4)
         loop.start()
         angles = []
