@@ -16,10 +16,11 @@ from aiohttp import web
 from host.errors import KickctlError, NotDone, WrongUse
 from host.lab.forecasts import Forecasts
 from host.lab.keys import Keys
+from host.lab.page_files import PAGE_FOLDER
 from host.lab.replays import Replays
 from host.lab.session import Session
 from host.lab.station import Station
-from host.lab.web import PAGE_FOLDER, Site
+from host.lab.web import Site
 from host.lab.worker import Worker
 
 LOOPBACK = "127.0.0.1"

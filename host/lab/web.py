@@ -19,11 +19,11 @@ from aiohttp import WSMsgType, web
 
 from host.errors import KickctlError
 from host.lab.page_end import Page
+from host.lab.page_files import PAGE_FOLDER
 from host.lab.replays import Replays
 from host.lab.requests import MAX_BYTES
 from host.lab.session import Session
 
-PAGE_FOLDER = Path(__file__).parent / "page"
 TYPES = {
     ".html": "text/html",
     ".js": "text/javascript",

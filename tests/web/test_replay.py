@@ -150,7 +150,7 @@ def test_keys_move_the_cursor_and_space_plays(read_file, tape):
     press("End")
     press(" ")  # from the end it plays from the beginning
     reader.until("s.playing && s.place > 0 && s.place < 300")
-    reader.page.click("#speed-4")
+    reader.page.click("#speed-1-4")
     reader.until(f"!s.playing && s.place === {tape['ticks'] - 1}")
 
 

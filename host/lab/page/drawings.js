@@ -11,10 +11,12 @@ import { texts } from "./texts.js";
 /**
  * Draw the robot in each frame.
  * @param {import("./frames.js").Frames} frames
- * @param {import("./screen.js").Screen} screen
+ * @param {{themeFor: Function}} screen As in screen.js.
  * @param {() => import("./views.js").Views | null} views Those of now; null for none.
+ * @param {(id: string) => ?HTMLElement} find Finds the canvases, not all of which need be there,
+ *     and the key.
  */
-export function addDrawings(frames, screen, views) {
+export function addDrawings(frames, screen, views, find = byId) {
     // Each with the room that its text needs: letters in a line, and lines.
     const drawings = [
         ["left-wheel", drawWheel, ({ wheels }) => wheels.left, 21, 19],
@@ -26,13 +28,14 @@ export function addDrawings(frames, screen, views) {
         ["floor", drawFloor, ({ floor }) => floor, 17, 10],
     ];
     for (const [id, draw, view, letters, lines] of drawings) {
-        const canvas = byId(id);
+        const canvas = find(id);
+        if (!canvas) continue;
         frames.add(canvas, draw, () => {
             const now = views();
             return now && [view(now), screen.themeFor(canvas, letters, lines)];
         });
     }
-    byId("key").append(
+    find("key").append(
         ...Object.entries(texts.key).map(([mark, words]) =>
             element("li", { className: `mark-${mark}`, title: texts.keyHints[mark] ?? "" }, words),
         ),
@@ -40,9 +43,9 @@ export function addDrawings(frames, screen, views) {
 }
 
 /** Say by the labels of the wheels' canvases how they turn. */
-export function labelWheels(views, ids = ["left-wheel", "right-wheel"]) {
+export function labelWheels(views, find = byId, ids = ["left-wheel", "right-wheel"]) {
     ["left", "right"].forEach((side, n) => {
         const label = texts.wheelLabel(side, views?.wheels[side]);
-        byId(ids[n]).setAttribute("aria-label", label);
+        find(ids[n]).setAttribute("aria-label", label);
     });
 }

@@ -16,6 +16,8 @@ export class Frames {
     constructor(update, beat) {
         this.update = update;
         this.beat = beat;
+        /** Called when a canvas has come into view, or has another size: it is empty then. */
+        this.appeared = () => {};
         /** How many frames were drawn. */
         this.count = 0;
         this.#watch = new IntersectionObserver((entries) => {
@@ -23,11 +25,19 @@ export class Frames {
                 if (isIntersecting) this.#visible.add(target);
                 else this.#visible.delete(target);
             }
+            this.appeared();
         });
-        requestAnimationFrame((now) => this.#frame(now));
+        this.#next = requestAnimationFrame((now) => this.#frame(now));
     }
 
     #watch;
+    #next;
+
+    /** Draw no more. */
+    stop() {
+        cancelAnimationFrame(this.#next);
+        this.#watch.disconnect();
+    }
 
     /**
      * Draw a canvas in each frame in which it can be seen.
@@ -48,7 +58,7 @@ export class Frames {
 
     // The browser calls no frames on a hidden page: nothing is drawn then, and nothing beats.
     #frame(now) {
-        requestAnimationFrame((next) => this.#frame(next));
+        this.#next = requestAnimationFrame((next) => this.#frame(next));
         if (now - this.#beaten >= BEAT_MS) {
             this.#beaten = now;
             this.beat();
@@ -57,7 +67,7 @@ export class Frames {
         this.update();
         for (const { canvas, draw, view } of this.#drawings) {
             if (!this.#visible.has(canvas)) continue;
-            fit(canvas);
+            if (fit(canvas)) this.appeared();
             const seen = view();
             if (seen) draw(canvas, ...seen);
         }
@@ -66,10 +76,11 @@ export class Frames {
     }
 }
 
-/** Give a canvas as many pixels as it covers on the screen. */
+/** Give a canvas as many pixels as it covers on the screen. Returns whether these are others. */
 function fit(canvas) {
     const width = Math.round(canvas.clientWidth * devicePixelRatio);
     const height = Math.round(canvas.clientHeight * devicePixelRatio);
-    if (canvas.width !== width) canvas.width = width;
-    if (canvas.height !== height) canvas.height = height;
+    if (canvas.width === width && canvas.height === height) return false;
+    [canvas.width, canvas.height] = [width, height];
+    return true;
 }

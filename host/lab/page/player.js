@@ -1,21 +1,25 @@
 /** The slider with its marks, the buttons beside it, and the keys that move the cursor. */
 
-import { button, byId, choices, element, setText } from "./dom.js";
+import { button, choices, element, setText } from "./dom.js";
 import { words } from "./replay_texts.js";
 
 // How far an arrow goes with Shift, s.
 const LEAP_S = 1;
+// A notebook has several, and their choices must not be the same.
+let players = 0;
 
 /**
- * @param {HTMLElement} root
+ * @param {(id: string) => HTMLElement} find Finds the slider, `time`, and where the buttons go,
+ *     `player`.
+ * @param {EventTarget} keys Where keys move the cursor.
  * @param {import("./cursor.js").Cursor} cursor
  * @param {{marks: import("./marks.js").Mark[], ticks: Float64Array, begin_s: number}} log
  * @returns {() => void} Brings the player up to date.
  */
-export function createPlayer(root, cursor, { marks, ticks, begin_s }) {
+export function createPlayer(find, keys, cursor, { marks, ticks, begin_s }) {
     const { times } = cursor;
     const total_s = times[times.length - 1] - begin_s;
-    const slider = byId("time");
+    const slider = find("time");
     slider.max = times.length - 1;
     slider.oninput = () => cursor.go(Number(slider.value));
     const play = button("", () => cursor.toggle(), "record");
@@ -48,12 +52,13 @@ export function createPlayer(root, cursor, { marks, ticks, begin_s }) {
     const speeds = Object.entries(words.speeds)
         .map(([value, label]) => ({ value: Number(value), label }))
         .sort((one, other) => one.value - other.value);
-    const speed = choices("speed", words.speed, speeds, cursor.speed, (value) => {
+    players += 1;
+    const speed = choices(`speed-${players}`, words.speed, speeds, cursor.speed, (value) => {
         cursor.speed = value;
     });
     speed.classList.add("inline");
     const time = element("output");
-    root.append(
+    find("player").append(
         small("⇤", words.former, ","),
         small("‹", words.back, "ArrowLeft"),
         play,
@@ -62,9 +67,7 @@ export function createPlayer(root, cursor, { marks, ticks, begin_s }) {
         time,
         speed,
     );
-    addEventListener("keydown", (event) => press(event, acts, slider));
-    // A click leaves the focus on no control, so that the keys move the cursor.
-    addEventListener("click", (event) => event.detail > 0 && document.activeElement?.blur());
+    keys.addEventListener("keydown", (event) => press(event, acts, slider));
 
     return () => {
         if (Number(slider.value) !== cursor.place) slider.value = cursor.place;

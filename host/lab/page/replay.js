@@ -1,97 +1,57 @@
 /** The page of a replay: a log instead of a robot, and a cursor instead of the present. */
 
-import { Cursor } from "./cursor.js";
 import { byId, element, fillTexts, setText, show } from "./dom.js";
-import { draw as drawMarks } from "./draw/marks.js";
-import { addDrawings, labelWheels } from "./drawings.js";
-import { Frames } from "./frames.js";
 import { createHappened } from "./happened.js";
-import { marksOf } from "./marks.js";
-import { createPlayer } from "./player.js";
-import { RecordedRobot } from "./recorded.js";
+import { Reel } from "./reel.js";
 import { words } from "./replay_texts.js";
 import { Screen } from "./screen.js";
 import { STATES } from "./store.js";
 import { loadTape } from "./tape.js";
 import { createTwin } from "./twin.js";
-import { Views } from "./views.js";
 import { sentences } from "./words.js";
 import { createWorking } from "./working.js";
 
-// How many frames are drawn after the last change: what scrolls into view is drawn, too.
-const FRAMES_AFTER = 30;
 // While the log plays, nobody reads equations that change more often, ms.
 const READ_MS = 150;
-// Half of the width of the slider's thumb, CSS pixels.
-const THUMB = 8;
 
 fillTexts(words);
 const screen = new Screen();
 setText(byId("loading"), words.loading);
 try {
-    const { tape, records, twin } = await loadTape();
-    begin(tape, new RecordedRobot(tape, records), twin);
+    begin(await loadTape());
     show(byId("loading"), false);
 } catch (error) {
     setText(byId("loading"), words.failed(error.message));
     window.lab = { state: () => ({ failed: error.message }) };
 }
 
-function begin(tape, robot, twinTape) {
+function begin(log) {
+    const { tape } = log;
+    const reel = new Reel(log, screen, byId, window);
+    const { robot, cursor, views, marks, frames } = reel;
     const { columns } = robot.ring;
-    const cursor = new Cursor(columns.t_s);
-    robot.playout = cursor;
-    const views = new Views(robot);
-    views.linked = true;
-    const twin = twinTape && createTwin(tape, twinTape, cursor);
-    const marks = marksOf(tape, robot.ring);
-    const log = { marks, ticks: columns.tick, begin_s: tape.begin_s };
-    const player = createPlayer(byId("player"), cursor, log);
+    const twin = log.twin && createTwin(tape, log.twin, cursor);
     const working = createWorking(byId("working"), tape, robot);
     const happened = createHappened(byId("happened"), marks, cursor, tape.begin_s);
     const about = createAbout(byId("about"), tape);
-    let labelled = null;
-    let drawn = [];
-    let left = 0;
     let read = 0;
-    const renew = () => (left = FRAMES_AFTER);
-    for (const change of ["scroll", "resize", "click", "keydown"]) {
-        addEventListener(change, renew, true);
-    }
+    for (const change of ["click", "keydown"]) addEventListener(change, () => reel.renew(), true);
+    // A click leaves the focus on no control, so that the keys move the cursor.
+    addEventListener("click", (event) => event.detail > 0 && document.activeElement?.blur());
 
-    const frames = new Frames(
-        () => {
-            cursor.advance(performance.now() / 1000);
-            left -= 1;
-            const now = [cursor.time_s, screen.theme];
-            if (now.some((one, n) => one !== drawn[n])) renew();
-            drawn = now;
-            if (left <= 0) return;
-            robot.setPlace(cursor.place);
-            views.update();
-            twin?.update();
-            player();
-            const time = performance.now();
-            if (!cursor.playing || time - read > READ_MS) {
-                read = time;
-                working.update(cursor.place);
-            }
-            happened();
-            about(robot);
-            showState(STATES[columns.state[cursor.place]]);
-            if (!cursor.playing && labelled !== cursor.place) {
-                labelled = cursor.place;
-                labelWheels(views);
-                twin?.label();
-            }
-        },
-        () => {},
-    );
-    addDrawings(frames, screen, () => (left > 0 ? views : null));
-    twin?.add(frames, screen, () => left > 0);
-    const band = byId("marks");
-    const state = { marks, count: tape.ticks, edge: THUMB };
-    frames.add(band, drawMarks, () => left > 0 && [state, screen.themeFor(band, 1, 1.5)]);
+    reel.onframe = (label) => {
+        twin?.update();
+        const time = performance.now();
+        if (!cursor.playing || time - read > READ_MS) {
+            read = time;
+            working.update(cursor.place);
+        }
+        happened();
+        about(robot);
+        showState(STATES[columns.state[cursor.place]]);
+        if (label) twin?.label();
+    };
+    twin?.add(frames, screen, () => reel.due);
     show(byId("log"), true);
 
     window.lab = {

@@ -2,7 +2,7 @@
 
 import { byId } from "./dom.js";
 import { keep, recall } from "./storage.js";
-import { media, theme } from "./theme.js";
+import { fitted, media, theme } from "./theme.js";
 
 const PROJECTOR = "lab.projector";
 // The names of the theme's colours that keys beside drawings show.
@@ -50,8 +50,6 @@ export class Screen {
      */
     themeFor(canvas, letters, lines) {
         if (this.projector && !NARROW.matches) return this.theme;
-        const room = Math.min(canvas.clientWidth / letters, canvas.clientHeight / lines);
-        const text = Math.min(this.theme.text, room);
-        return text < this.theme.text ? { ...this.theme, text } : this.theme;
+        return fitted(this.theme, canvas, letters, lines);
     }
 }

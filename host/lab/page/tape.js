@@ -6,13 +6,19 @@ import { readKey } from "./keys.js";
 
 /**
  * Get the tape of this page.
- * @returns {Promise<{tape: object, records: DataView, twin: ?object}>} What the tape says, its
- *     packed records, and those of the twin with their own derived channels. It fails with an Error
- *     in words.
+ * @returns {Promise<object>} See `unpackTape`. It fails with an Error in words.
  */
 export async function loadTape() {
     const inside = document.getElementById("tape");
-    const { records, twin, ...tape } = JSON.parse(inside ? inside.textContent : await fetched());
+    return unpackTape(JSON.parse(inside ? inside.textContent : await fetched()));
+}
+
+/**
+ * @param {object} packed As MESSAGES.md says.
+ * @returns {Promise<{tape: object, records: DataView, twin: ?object}>} What the tape says, its
+ *     packed records, and those of the twin with their own derived channels.
+ */
+export async function unpackTape({ records, twin, ...tape }) {
     return {
         tape: { ...tape, twin: twin && { motor: twin.motor, kicks: twin.kicks } },
         records: await unpacked(records),

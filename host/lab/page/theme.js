@@ -135,6 +135,21 @@ export function theme({ dark, scale, height }, projector = false) {
 }
 
 /**
+ * A theme for a drawing: a small one has a smaller text.
+ *
+ * @param {Theme} theme the page's
+ * @param {HTMLCanvasElement} canvas the drawing's
+ * @param {number} letters for how many letters' heights it needs room in a line
+ * @param {number} lines for how many lines it needs room
+ * @returns {Theme}
+ */
+export function fitted(theme, canvas, letters, lines) {
+    const room = Math.min(canvas.clientWidth / letters, canvas.clientHeight / lines);
+    const text = Math.min(theme.text, room);
+    return text < theme.text ? { ...theme, text } : theme;
+}
+
+/**
  * Begin a drawing: an empty sheet in CSS pixels.
  *
  * @param {HTMLCanvasElement} canvas its width and height are device pixels

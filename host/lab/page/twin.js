@@ -40,7 +40,7 @@ export function createTwin(tape, twin, cursor) {
             robot.setPlace(cursor.place);
             views.update();
         },
-        label: () => labelWheels(views, ["twin-left", "twin-right"]),
+        label: () => labelWheels(views, byId, ["twin-left", "twin-right"]),
         state: () => ({ ...tape.twin, wheels: views.wheels }),
     };
 }
