@@ -9,16 +9,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from math import degrees, pi, radians
-from typing import Any, TypedDict
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from robot.kick_requests import parse
 from robot.kicks import DEFAULT_SHIFT_RAD, PHASE, POSITION
 from robot.params import Params
-from sim_motor.batch import Result, run
 from sim_motor.constants import Constants, load
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sim_motor.batch import Result
 
 
 class KickCell(TypedDict):
@@ -124,6 +126,8 @@ def span_ticks(least_s: float, params: Params) -> int:
 
 def times_of(ticks: int, params: Params) -> NDArray[np.float64] | None:
     """When ticks begin (s), (ticks,): exactly in time if they are short; None for by chance."""
+    import numpy as np
+
     return None if params.tick_s >= _LEAST_LATE_TICK_S else np.arange(ticks) * params.tick_s
 
 
@@ -147,6 +151,10 @@ def kick_specimens(
             the published one.
         battery_v: The battery's voltage, V; None for the motor's nominal one.
     """
+    import numpy as np
+
+    from sim_motor.batch import run
+
     rng = np.random.default_rng(seed)
     specimens = min(_SPECIMENS, 1 + wheels // _WHEELS_OF_A_SPECIMEN)
     motors = (motor or load()).specimens(specimens, rng)

@@ -9,11 +9,10 @@ from __future__ import annotations
 import json
 import os
 from contextlib import suppress
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import urlencode
-
-import numpy as np
 
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone
@@ -187,8 +186,7 @@ def _into_chaos(robot: Robot, log: Log) -> dict[str, Any]:
 def _turns(log: Log, side: str, first: int) -> int:
     """How often a wheel has changed its direction since this row of a log."""
     way = directions(log.column(side + "_phi_rad")[first:])
-    moving = way[way != 0]
-    return int(np.count_nonzero(np.diff(moving)))
+    return sum(a != b for a, b in pairwise(way[way != 0].tolist()))
 
 
 def _place(robot: Robot) -> Path | None:

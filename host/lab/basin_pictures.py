@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from host.errors import KickctlError, NotDone
 from host.lab.basin_question import ENDS, Question
 from host.lab.station import Station
-from host.lab.worker import Answer
+
+if TYPE_CHECKING:
+    from host.lab.worker import Answer
 
 # How many starts there are along each axis, one picture after the other.
 SIDES = (16, 32, 64)

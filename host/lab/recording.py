@@ -7,8 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
-from host.logs.log_folder import in_folder
-from host.logs.mcap_files import McapTap
 from host.logs.tap import Event
 from robot.record import Record
 
@@ -31,6 +29,10 @@ class Recording:
     """
 
     def __init__(self, info: dict[str, Any], say: Callable[[str, str], None]) -> None:
+        # What writes files is only imported by who does.
+        from host.logs.log_folder import in_folder
+        from host.logs.mcap_files import McapTap
+
         self._file = in_folder("lab", info, lambda path: McapTap(path, info))
         # The folder in which the program works may change.
         self.path: Path = self._file.path.absolute()

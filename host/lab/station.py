@@ -7,22 +7,24 @@ passes only when a test says so.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from host.client.robot import Robot
-from host.client.stop import Stopped
-from host.client.watching import Watcher
 from host.errors import KickctlError, NotDone, WrongUse, printable
 from host.kicking.modes import leave
 from host.kicking.outcome import require_running
 from host.kicking.primitives import drive
 from host.kicking.robot_motor import MEASURE
 from host.lab import basin_question
-from host.lab.forecasts import Forecasts, Question
 from host.lab.kicks import motor_known
 from host.lab.observed import Observed
-from host.lab.recording import Recording
-from host.lab.worker import Worker
+
+if TYPE_CHECKING:
+    from host.client.robot import Robot
+    from host.client.stop import Stopped
+    from host.client.watching import Watcher
+    from host.lab.forecasts import Forecasts, Question
+    from host.lab.recording import Recording
+    from host.lab.worker import Worker
 
 STOP, CONTINUE = "stop", "continue"
 
@@ -78,16 +80,18 @@ class Station(Observed):
             kick: The request, as robot.kick_requests.parse takes it.
             answer: Gets {shares, of} or the error, where the session lives.
         """
-        pages, question = self.pages, self._question(kick)
+        pages = self.pages
         if self.forecasts is None or pages is None:
             answer(NotDone("this lab does not predict kicks", "kick, and see what happens"))
-        elif question is None:
+        elif (question := self._question(kick)) is None:
             answer(NotDone("nobody here knows the motors of this robot", MEASURE))
         else:
             self.forecasts.ask(question, lambda result: pages.call(lambda: answer(result)))
 
     def _question(self, kick: dict[str, Any]) -> Question | None:
         """What is to be predicted of a kick that begins now; None if the motors are not known."""
+        from host.lab.forecasts import Question  # which only a lab that predicts needs
+
         motor = motor_known(self._hello)
         if motor is None:
             return None
@@ -153,7 +157,7 @@ class Station(Observed):
         if command in ("set", "preset"):
             return {"tick": robot.command("set", set=arguments["set"])}
         if command == "kick":
-            question = self._question(arguments)
+            question = None if self.forecasts is None else self._question(arguments)
             tick = robot.command("kick", kick=arguments)
             self._forecast(question, arguments["id"])
             return {"tick": tick, "kick_id": arguments["id"]}
@@ -171,6 +175,8 @@ class Station(Observed):
 
     def _record(self, robot: Watcher, on: bool) -> dict[str, Any]:
         """Begin or end a log of the robot. Raises KickctlError or OSError."""
+        from host.lab.recording import Recording  # which only a lab with a disk needs
+
         if on and self.recording is None:
             recording = Recording(robot.info(), self._say)
             self.logs[recording.name] = self.recording = recording

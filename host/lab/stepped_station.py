@@ -3,32 +3,42 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
+from typing import Any, Protocol, cast
 
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone
 from host.lab.station import STOP, Answer, Station
 from host.lab.stopper import LAB
-from host.link.sim import SimLink
 from robot.commands import execute
+from robot.loop import Loop
 from robot.wire import load
 
 
+class SteppedLink(Protocol):
+    """A link that carries its own robot, as host.link.sim.SimLink."""
+
+    loop: Loop
+
+    def run_tick(self) -> None: ...
+    def now(self) -> float: ...
+
+
 class SteppedStation(Station):
-    """A robot on a sim:// link, for tests: the same steps give the same records.
+    """An embedded robot: the same steps give the same records.
 
     Args:
-        uri: Its address, as in sim://?seed=1.
-        name: What people call the robot.
+        robot: The robot, or its address, as in sim://?seed=1.
+        name: What people call it.
         rule: What happens when nobody drives it any more: STOP or CONTINUE.
     """
 
-    def __init__(self, uri: str = "sim://?seed=1", name: str = "sim", rule: str = STOP) -> None:
+    def __init__(
+        self, robot: Robot | str = "sim://?seed=1", name: str = "sim", rule: str = STOP
+    ) -> None:
         self._lock = threading.RLock()
-        self._robot = Robot.connect(uri)
-        assert isinstance(self._robot.link, SimLink)
-        self._link = self._robot.link
-        super().__init__(name, uri, rule, "simulated")
+        self._robot = robot if isinstance(robot, Robot) else Robot.connect(robot)
+        self._link = cast(SteppedLink, self._robot.link)
+        super().__init__(name, self._robot.link.uri, rule, "simulated")
         self._meet(self._robot)
         self._robot.add_tap(self)
 

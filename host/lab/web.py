@@ -7,9 +7,7 @@ site in the same browser cannot talk to it, not even under a name that leads her
 from __future__ import annotations
 
 import asyncio
-import json
 import re
-import struct
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from ipaddress import ip_address
@@ -18,6 +16,7 @@ from pathlib import Path
 from aiohttp import WSMsgType, web
 
 from host.errors import KickctlError
+from host.lab.outgoing import outgoing
 from host.lab.page_end import Page
 from host.lab.page_files import PAGE_FOLDER
 from host.lab.replays import Replays
@@ -41,9 +40,6 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
 }
-RECORDS = struct.Struct("<BBHI")
-RECORDS_KIND = 1
-MOST_RECORDS = 256
 # How long a page that is let go may take to read why (s).
 GOODBYE_S = 2.0
 
@@ -191,25 +187,14 @@ class Site:
             while True:
                 await news.wait()
                 news.clear()
-                while page.waiting:
-                    await socket.send_str(json.dumps(page.waiting.popleft(), allow_nan=False))
+                for data in outgoing(page, self._session.stations):
+                    if isinstance(data, str):
+                        await socket.send_str(data)
+                    else:
+                        await socket.send_bytes(data)
                 if page.closed:
                     await socket.close()
                     return
-                for index, name in enumerate(page.places):
-                    await self._send_records(socket, page, index, name)
-
-    async def _send_records(
-        self, socket: web.WebSocketResponse, page: Page, index: int, name: str
-    ) -> None:
-        ring = self._session.stations[name].ring
-        while page.places[name] < ring.end:
-            portion = ring.read(page.places[name], MOST_RECORDS)
-            page.places[name] = portion.place
-            if portion.missed:
-                page.send({"type": "lost", "robot": name, "records": portion.missed})
-            header = RECORDS.pack(RECORDS_KIND, index, portion.records, portion.missed)
-            await socket.send_bytes(header + portion.data)
 
 
 @web.middleware

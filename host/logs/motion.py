@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
+from itertools import pairwise
 from math import isnan
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from host.logs.log import Log
 from robot.kicks import DIRECTION_TICKS, REST_TRAVEL_RAD, direction
+from robot.record import Record
 from sim_motor.settling import BAND, COUNT_RAD, ROUNDING, WINDOW_S
 from sim_motor.settling import settling_s as rule
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 HEADINGS = {1: "forward", -1: "backward", 0: "stopped"}
 
@@ -47,6 +51,8 @@ def travels(phi: NDArray[np.float64]) -> NDArray[np.float64]:
     Returns:
         Travels (rad), as many as angles; 0 in the first DIRECTION_TICKS ticks.
     """
+    import numpy as np
+
     found = np.zeros_like(phi)
     found[DIRECTION_TICKS:] = phi[DIRECTION_TICKS:] - phi[:-DIRECTION_TICKS]
     return found
@@ -58,6 +64,8 @@ def directions(phi: NDArray[np.float64]) -> NDArray[np.int64]:
     Args:
         phi: angles (rad), (ticks, ...).
     """
+    import numpy as np
+
     way = travels(phi)
     return np.where(np.abs(way) > REST_TRAVEL_RAD, np.sign(way), 0).astype(np.int64)
 
@@ -74,22 +82,26 @@ def heading(log: Log, side: str, tick: int) -> str:
     Raises:
         ValueError: The tick is not in the log.
     """
-    ticks, _, phi, row = _around(log, side, tick)
-    return heading_of(phi[: row + 1][ticks[: row + 1] >= tick - DIRECTION_TICKS].tolist())
-
-
-def _around(log: Log, side: str, tick: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], int]:
-    """Ticks, times (s) and angles (rad) between the restarts around `tick`, and its row in them."""
-    ticks = log.column("tick")
-    rows = np.flatnonzero(ticks == tick)
-    if not len(rows):
-        raise ValueError(f"tick {tick} is not in the log")
-    row = int(rows[-1])
-    edges = [0, *log.restarts(), len(log)]
-    run = slice(
-        max(edge for edge in edges if edge <= row), min(edge for edge in edges if edge > row)
+    first, row, _ = _around(log, tick)
+    recent = log.records[max(first, row - DIRECTION_TICKS) : row + 1]
+    return heading_of(
+        [_phi(record, side) for record in recent if record.tick >= tick - DIRECTION_TICKS]
     )
-    return ticks[run], log.column("t_s")[run], log.column(side + "_phi_rad")[run], row - run.start
+
+
+def _around(log: Log, tick: int) -> tuple[int, int, int]:
+    """The row of a tick between those of the restarts around it: (first, row, end)."""
+    records = log.records
+    row = next((row for row in reversed(range(len(records))) if records[row].tick == tick), None)
+    if row is None:
+        raise ValueError(f"tick {tick} is not in the log")
+    edges = [0, *log.restarts(), len(records)]
+    first = max(edge for edge in edges if edge <= row)
+    return first, row, min(edge for edge in edges if edge > row)
+
+
+def _phi(record: Record, side: str) -> float:
+    return float(getattr(record, side + "_phi_rad"))
 
 
 def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
@@ -110,23 +122,34 @@ def settled(phi: Sequence[float], t: Sequence[float]) -> bool:
         phi: angles (rad), (ticks,).
         t: times (s), (ticks,).
     """
-    times, angles = np.asarray(t, dtype=float), np.asarray(phi, dtype=float)
-    if len(times) < 2 or times[-1] - times[0] < 2 * WINDOW_S - ROUNDING:
+    if len(t) < 2 or t[-1] - t[0] < 2 * WINDOW_S - ROUNDING:
         return False
-    begin = times[-1] - 2 * WINDOW_S
-    start, middle, end = np.interp([begin, begin + WINDOW_S, times[-1]], times, angles)
-    inner = np.concatenate([[start], angles[times > begin]])
-    if np.ptp(inner) <= COUNT_RAD + ROUNDING:
+    begin = t[-1] - 2 * WINDOW_S
+    start, first, middle, third, end = (
+        _angle_at(begin + quarter * WINDOW_S / 2, phi, t) for quarter in range(5)
+    )
+    inner = [start, *phi[bisect_right(t, begin) :]]
+    if max(inner) - min(inner) <= COUNT_RAD + ROUNDING:
         return True
     before, last = middle - start, end - middle
-    turned_back = (np.abs(np.diff(inner)).sum() - abs(end - start)) / 2
+    turned_back = (sum(abs(b - a) for a, b in pairwise(inner)) - abs(end - start)) / 2
     if before * last <= 0 or turned_back > COUNT_RAD + ROUNDING:
         return False
-    quarters = np.diff(np.interp(np.linspace(begin, times[-1], 5), times, angles))
-    if np.abs(quarters - quarters.mean()).max() > PAUSE * abs(quarters.mean()) + COUNT_RAD:
+    mean = (end - start) / 4
+    quarters = first - start, middle - first, third - middle, end - third
+    if max(abs(quarter - mean) for quarter in quarters) > PAUSE * abs(mean) + COUNT_RAD:
         return False
     allowed = max(BAND * max(abs(before), abs(last)), 2 * COUNT_RAD)
-    return bool(abs(last - before) <= allowed + ROUNDING)
+    return abs(last - before) <= allowed + ROUNDING
+
+
+def _angle_at(time: float, phi: Sequence[float], t: Sequence[float]) -> float:
+    """The angle (rad) at a time (s), on a line between the ticks around it."""
+    after = bisect_right(t, time)
+    if after in (0, len(t)):
+        return phi[max(0, after - 1)]
+    share = (time - t[after - 1]) / (t[after] - t[after - 1])
+    return phi[after - 1] + share * (phi[after] - phi[after - 1])
 
 
 def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
@@ -143,13 +166,13 @@ def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
     Raises:
         ValueError: The tick is not in the log.
     """
-    _, times, angles, row = _around(log, side, begin_tick)
-    return settling_of(angles, times, float(times[row]))
+    first, row, end = _around(log, begin_tick)
+    run = log.records[first:end]
+    phi, times = [_phi(record, side) for record in run], [record.t_s for record in run]
+    return settling_of(phi, times, log.records[row].t_s)
 
 
-def settling_of(
-    phi: Sequence[float] | NDArray[Any], t: Sequence[float] | NDArray[Any], begin_s: float
-) -> float | None:
+def settling_of(phi: Sequence[float], t: Sequence[float], begin_s: float) -> float | None:
     """How long after a moment a wheel had settled, by the rule of sim_motor.settling.
 
     Args:
@@ -160,7 +183,5 @@ def settling_of(
     Returns:
         The time (s), or None if the wheel has not settled by the end of the data.
     """
-    found = rule(
-        np.asarray(phi, dtype=float).tolist(), np.asarray(t, dtype=float).tolist(), begin_s
-    )
+    found = rule(phi, t, begin_s)
     return None if isnan(found) else found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.errors import KickctlError, NotDone, WrongUse, quotable
 from host.lab.lessons.texts import lessons
@@ -11,7 +11,9 @@ from host.lab.page_end import Page
 from host.lab.recording import find_log
 from host.lab.requests import RELOAD, text_of
 from host.lab.station import Station
-from host.lab.worker import Answer, Worker
+
+if TYPE_CHECKING:
+    from host.lab.worker import Answer, Worker
 
 # A pupil who checks more often than this has to begin again.
 _MOST_LOGS = 50

@@ -1,0 +1,38 @@
+"""What waits for a page, as it is sent: JSON texts, and records in binary messages."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator, Mapping
+
+from host.lab.observed import Observed
+from host.lab.page_end import Page
+
+_HEADER = struct.Struct("<BBHI")
+_KIND = 1
+_MOST_RECORDS = 256
+
+
+def outgoing(page: Page, robots: Mapping[str, Observed]) -> Iterator[str | bytes]:
+    """What a page has to get now. It counts as sent as soon as the next one is asked for.
+
+    Args:
+        page: The page.
+        robots: All robots by name, in the order of the welcome.
+
+    Yields:
+        Messages as MESSAGES.md has them: texts, and to a page that stays, records.
+    """
+    while page.waiting:
+        yield json.dumps(page.waiting.popleft(), allow_nan=False)
+    if page.closed:
+        return
+    for index, name in enumerate(page.places):
+        ring = robots[name].ring
+        while page.places[name] < ring.end:
+            portion = ring.read(page.places[name], _MOST_RECORDS)
+            page.places[name] = portion.place
+            if portion.missed:
+                page.send({"type": "lost", "robot": name, "records": portion.missed})
+            yield _HEADER.pack(_KIND, index, portion.records, portion.missed) + portion.data
