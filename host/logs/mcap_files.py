@@ -21,22 +21,21 @@ from typing import IO, Any, Self
 from mcap.writer import CompressionType, Writer
 
 from host.errors import WrongUse
+from host.logs.messages import SCHEMAS, Message, Messages, nanoseconds
 from host.logs.tap import Event
 from host.util.interrupts import uninterrupted
 from host.util.whole_files import FileTaken, is_stream, naming, require_text, whole_file
 from robot import __version__
-from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
+from robot.record import Record
 
 METADATA = "kickctl"
 FORMAT = "1"
-TICKS, EVENTS = "/ticks", "/events"
 CHUNK_S = 1.0
 # Files of other kinds, which programs would try to read as such.
 _OTHER_ENDINGS = (
     *(".csv", ".npz", ".parquet", ".json", ".txt", ".tsv", ".xlsx"),
     *(".png", ".svg", ".gif", ".mp4"),
 )
-NAMED = {"state": STATES, "kick": KICK_NAMES}
 
 
 class LogError(WrongUse):
@@ -74,38 +73,6 @@ def require_new_log(path: Path) -> None:
         raise NameTaken(path)
 
 
-def _ticks_schema() -> dict[str, Any]:
-    properties: dict[str, Any] = {}
-    for channel in CHANNELS:
-        if channel.name in NAMED:
-            properties[channel.name] = {"type": "string", "enum": list(NAMED[channel.name])}
-        else:
-            properties[channel.name] = {"type": "number" if channel.code in "df" else "integer"}
-        doc = channel.doc.split(":")[0] if channel.name in NAMED else channel.doc
-        properties[channel.name]["description"] = f"[{channel.unit}] {doc}"
-    return {
-        "title": "tick",
-        "description": "one tick of the robot",
-        "type": "object",
-        "properties": properties,
-        "required": list(NAMES),
-    }
-
-
-def _events_schema() -> dict[str, Any]:
-    properties = {
-        "event": {"type": "string", "description": "what happened"},
-        "tick": {"type": "integer", "description": "[1] the first tick that it concerns"},
-        "reason": {"type": "string", "description": "why, for people"},
-    }
-    return {
-        "title": "event",
-        "description": "what changed the robot's course",
-        "type": "object",
-        "properties": properties,
-    }
-
-
 def _to_text(value: Any) -> str:
     """Text as it is unless it would read back as something else; everything else as JSON."""
     if isinstance(value, str):
@@ -137,9 +104,10 @@ class McapTap:
     ) -> None:
         self.path = Path(path)
         self._file = file or _create(self.path, self.path)
-        self._zero_ns = _nanoseconds(info.get("clock_zero_s", 0.0))
-        self._now_ns = self._chunk_ns = self._zero_ns
-        self._waiting: list[Event] = []
+        zero_s = info.get("clock_zero_s", 0.0)
+        self._messages = Messages(zero_s)
+        self._chunk_ns = nanoseconds(zero_s)
+        self._channels: dict[str, int] = {}
         self._writer: Any = Writer(
             self._file, compression=CompressionType.LZ4, enable_data_crcs=True
         )
@@ -160,15 +128,11 @@ class McapTap:
         self._writer.add_metadata(
             METADATA, {"format": FORMAT, **{name: _to_text(value) for name, value in info.items()}}
         )
-        self._ticks = self._register(TICKS, "kickctl.Tick", _ticks_schema())
-        self._events = self._register(EVENTS, "kickctl.Event", _events_schema())
+        for topic, schema in SCHEMAS.items():
+            identity = self._writer.register_schema(schema.name, "jsonschema", schema.data)
+            self._channels[topic] = self._writer.register_channel(topic, "json", identity)
         self._writer.flush()
         self._file.flush()
-
-    def _register(self, topic: str, name: str, schema: dict[str, Any]) -> int:
-        text = json.dumps(schema, allow_nan=False)
-        identity = self._writer.register_schema(name, "jsonschema", text.encode())
-        return int(self._writer.register_channel(topic, "json", identity))
 
     def take_records(self, records: list[Record]) -> None:
         """Write records, and the events that waited for the first of them."""
@@ -177,37 +141,27 @@ class McapTap:
                 self._take(record)
 
     def _take(self, record: Record) -> None:
-        self._now_ns = self._zero_ns + _nanoseconds(record.t_s)
-        self._write_events()
-        message = record._asdict()
-        for name, words in NAMED.items():
-            message[name] = words[message[name]]
-        self._write(self._ticks, message, record.tick)
-        if abs(self._now_ns - self._chunk_ns) >= CHUNK_S * 1e9:
+        messages = self._messages.take_record(record)
+        self._write(messages)
+        now_ns = messages[-1].time_ns
+        if abs(now_ns - self._chunk_ns) >= CHUNK_S * 1e9:
             self._writer.flush()
-            self._chunk_ns = self._now_ns
+            self._chunk_ns = now_ns
 
     def take_event(self, event: Event) -> None:
         """Keep an event until the next record gives it its time."""
-        if event["event"] == "restart" and "clock_zero_s" in event:
-            self._zero_ns = _nanoseconds(event["clock_zero_s"])
-        self._waiting.append(event)
+        self._messages.take_event(event)
 
-    def _write_events(self) -> None:
-        for event in self._waiting:
-            self._write(self._events, event, event["tick"])
-        self._waiting.clear()
-
-    def _write(self, channel: int, message: dict[str, Any], tick: int) -> None:
-        data = json.dumps(message, allow_nan=False, separators=(",", ":")).encode()
-        self._writer.add_message(channel, self._now_ns, data, self._now_ns, tick)
+    def _write(self, messages: list[Message]) -> None:
+        for topic, time_ns, tick, data in messages:
+            self._writer.add_message(self._channels[topic], time_ns, data, time_ns, tick)
 
     def close(self) -> None:
         """Write what waits and the file's index. Once is enough, more does no harm."""
         if self._file.closed:
             return
         with uninterrupted(), naming(self.path), self._file:
-            self._write_events()
+            self._write(self._messages.rest())
             self._writer.finish()
 
     def __enter__(self) -> Self:
@@ -264,7 +218,3 @@ def _create(place: Path, path: Path) -> IO[bytes]:
             f"{path} cannot be written: {error.strerror}",
             "choose a folder that is there, and that you may write to",
         ) from None
-
-
-def _nanoseconds(seconds: float) -> int:
-    return round(seconds * 1e9)

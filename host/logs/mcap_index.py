@@ -11,7 +11,8 @@ from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
 from mcap.records import Statistics
 
-from host.logs.mcap_files import METADATA, TICKS
+from host.logs.mcap_files import METADATA
+from host.logs.messages import TICKS
 
 MAGIC = b"\x89MCAP0\r\n"
 # What mcap's readers raise for a file that breaks off or was damaged. A wrong checksum and wrong

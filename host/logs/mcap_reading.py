@@ -13,8 +13,9 @@ from typing import Any
 from mcap.records import Channel, Message, Metadata
 
 from host.logs.mcap_chunks import Damage, read_items
-from host.logs.mcap_files import EVENTS, FORMAT, METADATA, NAMED, TICKS, LogError
+from host.logs.mcap_files import FORMAT, METADATA, LogError
 from host.logs.mcap_index import DAMAGE, MAGIC, Index, read_index
+from host.logs.messages import EVENTS, NAMED, TICKS
 from host.logs.tap import Event, Tap
 from host.util.whole_files import is_stream
 from robot.record import NAMES, Record

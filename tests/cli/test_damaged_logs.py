@@ -9,7 +9,8 @@ from mcap.writer import Writer
 
 from host.logs import log_folder
 from host.logs.log import Log
-from host.logs.mcap_files import EVENTS, METADATA, TICKS
+from host.logs.mcap_files import METADATA
+from host.logs.messages import EVENTS, TICKS
 
 READERS = {
     "csv": ("export",),
