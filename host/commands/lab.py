@@ -11,11 +11,11 @@ from ipaddress import ip_address
 from typing import TYPE_CHECKING, Any
 
 from host.commands import _lab_replay
+from host.commands._stations import add_unattended, network_address, robots_of, station_of
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
-from host.link.addresses import SIM, sim_options, with_params
-from host.link.names import Chosen, chosen, is_several, named, several
-from host.util.interrupts import uninterrupted
+from host.link.addresses import sim_options
+from host.link.names import Chosen
 from host.util.numbers import Number
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     network = parser.add_mutually_exclusive_group()
     network.add_argument(
         "--host",
-        type=_address,
+        type=network_address,
         metavar="ADDRESS",
         help="an address of this computer in its network: who has the view address may watch there,"
         " answer and stop, and drives only if a page hands over the baton (default: this computer"
@@ -57,12 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the same at this computer's own address, which is looked up",
     )
     parser.add_argument("--no-open", action="store_true", help="open no browser")
-    parser.add_argument(
-        "--unattended",
-        choices=("stop", "continue"),
-        help="what a robot does when the page that drives it is hidden, closed or asleep for 1 s"
-        " (default: real robots stop, simulated ones continue)",
-    )
+    add_unattended(parser, "the page that drives it is hidden, closed or asleep")
     parser.add_argument(
         "--walls",
         type=Number("m", 0.3, 100.0),
@@ -77,6 +72,7 @@ def run(options: argparse.Namespace) -> int:
     if _lab_replay.wants_replay(options):
         return _lab_replay.run(options, _open)
     from host.lab.forecasts import Forecasts
+    from host.lab.live_station import LiveStation
     from host.lab.replays import Replays
     from host.lab.server import Lab
     from host.lab.worker import Worker
@@ -86,7 +82,9 @@ def run(options: argparse.Namespace) -> int:
         checks = Worker("checks exercises", _CHECKS_NICENESS)
         for worker in (forecasts, basins, checks):
             stack.callback(worker.close)
-        stations = [_station(robot, options, stack) for robot in _robots(options)]
+        robots = robots_of(options)
+        walls_m = _walls_m(options, robots)
+        stations = [station_of(one, options, stack, LiveStation, walls_m) for one in robots]
         lab = stack.enter_context(
             Lab(
                 stations,
@@ -106,20 +104,6 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _address(text: str) -> str:
-    """The address for others. A name or 'every address' would let foreign sites in by a name."""
-    try:
-        address = ip_address(text)
-    except ValueError:
-        address = None
-    if address is None or address.is_unspecified or address.is_multicast:
-        raise argparse.ArgumentTypeError(
-            f"cannot be '{text}'; give one IP address of this computer, as in 192.168.1.5;"
-            " `ip address` shows them"
-        )
-    return str(address)
-
-
 class _OwnAddress(argparse.Action):
     """Takes the address of this computer in its network for --host."""
 
@@ -137,59 +121,11 @@ class _OwnAddress(argparse.Action):
         options.host = address
 
 
-def _robots(options: argparse.Namespace) -> list[Chosen]:
-    text = named(options.brick)
-    robots = several(text) if text is not None and is_several(text) else [chosen(text)]
-    simulated = [robot for robot in robots if sim_options(robot.address) is not None]
-    if len(simulated) < len(robots):
-        if options.walls is not None:
-            raise WrongUse("--walls is for the simulated robot", "leave it or --brick out")
-        if options.seed is not None:
-            raise WrongUse(
-                f"--seed fixes the chances of {SIM} only",
-                "a robot elsewhere has the seed that it was started with",
-            )
-    return robots
-
-
-def _station(robot: Chosen, options: argparse.Namespace, stack: ExitStack) -> LiveStation:
-    """The station of a robot. A simulated one is started for it."""
-    from host.lab.desk_robot import DeskRobot, child_options
-    from host.lab.live_station import LiveStation
-    from host.lab.station import CONTINUE, STOP
-
-    if sim_options(robot.address) is None:
-        token = options.token or robot.token
-        station = LiveStation(
-            robot.name, robot.address, options.unattended or STOP, "real", token=token
-        )
-    else:
-        address = robot.address
-        if options.walls is not None:
-            address = with_params(address, [f"walls={options.walls:g}"])
-        walls = (sim_options(address) or {}).get("walls")
-        desk = stack.enter_context(DeskRobot(child_options(address, options.seed)))
-        name = "simulated" if robot.name == robot.address else robot.name
-        station = LiveStation(
-            name,
-            desk.uri,
-            options.unattended or CONTINUE,
-            "simulated",
-            walls_m=None if walls is None else float(walls),
-            token=desk.token,
-            pull=desk.pull,
-        )
-        desk.on_end = station.say_end
-    stack.callback(_end, station)
-    station.start()
-    return station
-
-
-def _end(station: LiveStation) -> None:
-    with uninterrupted():
-        words = station.end()
-        if words:
-            say(f"{station.name}: {words}")
+def _walls_m(options: argparse.Namespace, robots: list[Chosen]) -> float | None:
+    """How far apart the walls are that were asked for. Raises WrongUse for a real robot."""
+    if options.walls is not None and any(sim_options(one.address) is None for one in robots):
+        raise WrongUse("--walls is for the simulated robot", "leave it or --brick out")
+    return None if options.walls is None else float(options.walls)
 
 
 def _tell(lab: Lab, stations: list[LiveStation], options: argparse.Namespace) -> None:

@@ -117,7 +117,11 @@ class Schema(NamedTuple):
     data: bytes
 
 
+def _schema(name: str, schema: dict[str, Any]) -> Schema:
+    return Schema(name, json.dumps(schema, allow_nan=False).encode())
+
+
 SCHEMAS = {
-    TICKS: Schema("kickctl.Tick", json.dumps(_ticks_schema()).encode()),
-    EVENTS: Schema("kickctl.Event", json.dumps(_events_schema()).encode()),
+    TICKS: _schema("kickctl.Tick", _ticks_schema()),
+    EVENTS: _schema("kickctl.Event", _events_schema()),
 }

@@ -1,0 +1,114 @@
+"""Robots that are shown live, each by a station of its own."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import ExitStack
+from ipaddress import ip_address
+from typing import TYPE_CHECKING, TypeVar
+
+from host.commands._terminal import say
+from host.errors import WrongUse
+from host.link.addresses import SIM, sim_options, with_params
+from host.link.names import Chosen, chosen, is_several, named, several
+from host.util.interrupts import uninterrupted
+
+if TYPE_CHECKING:
+    from host.lab.live_station import LiveStation
+
+S = TypeVar("S", bound="LiveStation")
+
+
+def network_address(text: str) -> str:
+    """The address at which others reach this computer, as an option takes it.
+
+    A name or 'every address' would let foreign sites in by a name.
+    """
+    try:
+        address = ip_address(text)
+    except ValueError:
+        address = None
+    if address is None or address.is_unspecified or address.is_multicast:
+        raise argparse.ArgumentTypeError(
+            f"cannot be '{text}'; give one IP address of this computer, as in 192.168.1.5;"
+            " `ip address` shows them"
+        )
+    return str(address)
+
+
+def add_unattended(parser: argparse.ArgumentParser, left_alone: str) -> None:
+    """Add --unattended.
+
+    Args:
+        parser: Gets the option.
+        left_alone: When a robot counts as left alone, in words.
+    """
+    parser.add_argument(
+        "--unattended",
+        choices=("stop", "continue"),
+        help=f"what a robot does when {left_alone} for 1 s (default: real robots stop, simulated"
+        " ones continue)",
+    )
+
+
+def robots_of(options: argparse.Namespace) -> list[Chosen]:
+    """The robots that a command line names. Raises WrongUse."""
+    text = named(options.brick)
+    robots = several(text) if text is not None and is_several(text) else [chosen(text)]
+    if options.seed is not None and any(sim_options(one.address) is None for one in robots):
+        raise WrongUse(
+            f"--seed fixes the chances of {SIM} only",
+            "a robot elsewhere has the seed that it was started with",
+        )
+    return robots
+
+
+def station_of(
+    robot: Chosen,
+    options: argparse.Namespace,
+    stack: ExitStack,
+    kind: type[S],
+    walls_m: float | None = None,
+) -> S:
+    """The station of a robot, which looks for it already. A simulated one is started for it.
+
+    Args:
+        robot: The robot.
+        options: Of the command, with --unattended, --token and --seed.
+        stack: Ends what is begun here.
+        kind: What kind of station.
+        walls_m: The walls' distance for a simulated robot (m); None for what its address says.
+    """
+    from host.lab.desk_robot import DeskRobot, child_options
+    from host.lab.station import CONTINUE, STOP
+
+    if sim_options(robot.address) is None:
+        token = options.token or robot.token
+        station = kind(robot.name, robot.address, options.unattended or STOP, "real", token=token)
+    else:
+        address = robot.address
+        if walls_m is not None:
+            address = with_params(address, [f"walls={walls_m:g}"])
+        walls = (sim_options(address) or {}).get("walls")
+        desk = stack.enter_context(DeskRobot(child_options(address, options.seed)))
+        name = "simulated" if robot.name == robot.address else robot.name
+        station = kind(
+            name,
+            desk.uri,
+            options.unattended or CONTINUE,
+            "simulated",
+            walls_m=None if walls is None else float(walls),
+            token=desk.token,
+            pull=desk.pull,
+        )
+        desk.on_end = station.say_end
+    stack.callback(_end, station)
+    station.start()
+    return station
+
+
+def _end(station: LiveStation) -> None:
+    with uninterrupted():
+        words = station.end()
+        if words:
+            say(f"{station.name}: {words}")
