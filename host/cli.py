@@ -34,6 +34,7 @@ VERBS = (
     "record",
     "watch",
     "lab",
+    "foxglove",
     "log",
     "doctor",
     "discover",
@@ -47,9 +48,9 @@ VERBS = (
     "help",
 )
 
-# `stop` waits for nothing, `watch` has one table and `lab` one page, so they have ways of their own
-# with several robots; `deploy` says itself that it has no robot.
-_OWN_WAYS = ("stop", "watch", "lab", "deploy")
+# `stop` waits for nothing, `watch` has one table, `lab` one page and `foxglove` one server, so they
+# have ways of their own with several robots; `deploy` says itself that it has no robot.
+_OWN_WAYS = ("stop", "watch", "lab", "foxglove", "deploy")
 
 _EPILOG = """\
 Without --brick (or KICK_BRICK) the robot is simulated, embedded in this program.

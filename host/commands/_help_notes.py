@@ -51,6 +51,7 @@ NOTES = {
     ),
     "watch": Note("--brick anna", "until q or ^C, or --seconds", "docs/listen.md"),
     "lab": Note("--walls 2", "3 s until the page opens; until ^C", "docs/lab.md"),
+    "foxglove": Note("--brick anna", "3 s until it serves; until ^C", "docs/foxglove.md"),
     "log": Note("plot logs/mine.mcap", "2 s; see kickctl log ACTION --help", _LOGS),
     "log list": Note("", _SHORT, _LOGS),
     "log pull": Note("--brick anna --out last.mcap", "2 s", _LOGS),

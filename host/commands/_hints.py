@@ -14,7 +14,7 @@ _COMMAND = re.compile(
     rf"params(?: (?:list|get|set|reset)\b(?: {_SETTING}\b)*)?"
     r"|drive(?: (?:forward|backward|spin-left|spin-right|stopped|chaos|wall-turner))?"
     r"|experiment [-\w]+|kick(?: --mode \w+)?|record(?: [0-9]+)?|log pull"
-    r"|demo|plan|start|stop|clear|status|identify|watch|lab|doctor|rods|reproduce"
+    r"|demo|plan|start|stop|clear|status|identify|watch|lab|foxglove|doctor|rods|reproduce"
     r")\b(?![^`'\"\n,;]*--help)"  # which needs no robot
 )
 _named: list[str] = []

@@ -1,0 +1,1 @@
+"""Live channels for Foxglove and Lichtblick: a robot's stream over their WebSocket protocol."""
