@@ -12,11 +12,13 @@ MUTATOR := mutmut==3.8.1 coverage hypothesis pytest pytest-timeout
 MUTANTS := build/mutants
 # Nor are the engines that the analytic model's own is measured against.
 PEERS := build/peers
+# Nor is the Python for browsers.
+PYODIDE := build/pyodide
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint docs bench bench-arm bench-theory faults \
-	soak stress mutants lock screenshots clean
+.PHONY: help setup demo reproduce test test-py35 lint docs page bench bench-arm \
+	bench-theory faults soak stress mutants lock screenshots clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
@@ -60,6 +62,9 @@ lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the 
 
 docs: $(STAMP) ## make the site of the docs, with all notebooks, in build/docs/html (5 minutes)
 	$(BIN)/python -m docs.site
+
+page: $(STAMP) $(PYODIDE)/.complete ## make the lab's page for any web server, in build/page
+	$(BIN)/python -m host.lab.static_page $(PYODIDE)/node_modules/pyodide build/page
 
 bench: $(STAMP) ## measure the speed of what has to be fast
 	$(BIN)/python -m tests.bench
@@ -118,6 +123,17 @@ $(STAMP): requirements.lock pyproject.toml
 $(MUTANTS)/.complete: Makefile
 	$(PYTHON) -m venv --clear $(MUTANTS)
 	$(MUTANTS)/bin/python -m $(INSTALL) $(MUTATOR)
+	@touch $@
+
+# From the registry that npm is set to; what comes is checked against the lock's hashes.
+$(PYODIDE)/.complete: host/lab/pyodide/package.json host/lab/pyodide/package-lock.json
+	@command -v npm >/dev/null || { echo "make page: needs npm. Install it (Debian, Ubuntu:\
+ apt-get install npm) and try again." >&2; exit 1; }
+	@mkdir -p $(PYODIDE)
+	cp host/lab/pyodide/*.json $(PYODIDE)
+	@cd $(PYODIDE) && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error || { \
+		echo "make page: npm could not fetch Pyodide. Is there a network, and a registry in\
+ npm's settings? 'npm ping' asks it." >&2; exit 1; }
 	@touch $@
 
 # Our own dependencies as locked, so that all engines run with the same numba, numpy and scipy.

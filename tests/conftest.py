@@ -75,6 +75,7 @@ REAL_TIME = (
     "tests/link/test_stop.py",
     "tests/link/test_who_drives.py",
     "tests/sysfs/",
+    "tests/web/test_alone.py",
     "tests/web/test_access.py",
     "tests/web/test_baton.py",
     "tests/web/test_hidden.py",

@@ -29,9 +29,6 @@ TICK_S = 0.1
 class BrowserStation(SteppedStation):
     """The robot of a page that runs it itself."""
 
-    def description(self) -> dict[str, Any]:
-        return super().description() | {"alone": True}
-
     def catch_up(self, seconds: float) -> None:
         """Let the robot's time pass (s): as many ticks as have fitted into it."""
         tick_s = float(self._follower.params["tick_s"])

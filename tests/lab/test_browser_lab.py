@@ -1,14 +1,12 @@
 """The lab that a page runs by itself."""
 
-import json
-import struct
 import subprocess
 import sys
 
 import pytest
 
-from host.lab.browser_lab import MOST_S, BrowserLab
-from robot.record import STRUCT, unpack
+from host.lab.browser_lab import MOST_S
+from tests.lab.own_lab import Visit
 from tests.lint.sources import ROOT
 
 # What a browser has not, or what takes it long to load.
@@ -23,54 +21,6 @@ for step in range(100):
     lab.step(step / 50)
 assert len(heard) > 50, heard
 """
-
-
-class Visit:
-    """A page that runs its lab: sends commands, lets time pass, and keeps what it hears."""
-
-    def __init__(self, seed=1):
-        self.now = 100.0
-        self.heard, self.records = [], []
-        self.lab = BrowserLab(seed, self.now, self.hear)
-        self._size = STRUCT.size
-        self._requests = 0
-
-    def hear(self, message):
-        if isinstance(message, str):
-            self.heard.append(json.loads(message))
-            return
-        kind, robot, count, missed = struct.unpack_from("<BBHI", message)
-        assert (kind, robot, missed) == (1, 0, 0)
-        size = (len(message) - 8) // count
-        for place in range(count):
-            begin = 8 + place * size
-            self.records += unpack(message[begin : begin + STRUCT.size])
-
-    def say(self, **message):
-        self._requests += 1
-        message |= {"request": self._requests}
-        self.tell(message)
-        replies = [one for one in self.heard if one.get("request") == self._requests]
-        return replies[-1]
-
-    def tell(self, message):
-        self.lab.receive(json.dumps(message, allow_nan=False), self.now)
-
-    def do(self, command, **arguments):
-        robot = self.welcome["robots"][0]["name"]
-        return self.say(type="do", robot=robot, command=command, arguments=arguments)
-
-    def wait(self, seconds):
-        for _ in range(round(seconds / 0.02)):
-            self.now += 0.02
-            self.lab.step(self.now)
-
-    def last(self, kind):
-        return [one for one in self.heard if one["type"] == kind][-1]
-
-    @property
-    def welcome(self):
-        return self.last("welcome")
 
 
 @pytest.fixture
@@ -127,7 +77,6 @@ def test_it_does_not_catch_up_hours_in_which_the_page_slept(visit):
 
 def test_what_a_page_cannot_do_alone_is_refused_in_words(visit):
     visit.wait(0.5)
-    assert visit.welcome["robots"][0]["alone"]
     assert "keeps no logs" in visit.do("record", on=True)["error"]["message"]
     robot = visit.welcome["robots"][0]["name"]
     answer = visit.say(type="predict", robot=robot, kick={"mode": "phase", "ticks": 4})

@@ -8,12 +8,13 @@ class Visitor:
         page: The page, of playwright.
     """
 
-    def __init__(self, browser, lab, url, **context):
+    def __init__(self, browser, lab, url, script="", **context):
         self._home = lab.drive_url.partition("#")[0]
         self.complaints = []
         self.context = browser.new_context(
             **{"viewport": {"width": 1280, "height": 720}, **context}
         )
+        self.context.add_init_script(script)
         self.page = self.context.new_page()
         self.page.on("console", self._hear)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))

@@ -63,7 +63,7 @@ export function createDesigner(lab, kick, predict) {
     );
     const form = element("div", { className: "own-form" });
     form.append(mode, ticks.root, param, value.root, sign, shift.root, variable, delta.root, shape);
-    const ask = button(texts.askSimulation, () => sound() && predict(fields()), "quiet");
+    const ask = button(texts.askSimulation, () => sound() && predict(fields()), "quiet asks");
     form.append(commands, ask);
     const root = element(
         "details",

@@ -1,5 +1,6 @@
 /** The page of the lab: wires the source, what is known, the panels and the drawings. */
 
+import { aloneTexts } from "./alone_texts.js";
 import { createBasins } from "./basins.js";
 import { createBaton } from "./baton.js";
 import { createClass } from "./class_panel.js";
@@ -20,19 +21,22 @@ import { createRecording } from "./recording.js";
 import { createSaid } from "./said.js";
 import { Screen } from "./screen.js";
 import { Sound } from "./sound.js";
-import { WebSocketSource } from "./source.js";
+import { messagesAddress, WebSocketSource } from "./source.js";
 import { createState } from "./state_panel.js";
 import { Stop } from "./stop.js";
 import { snapshot } from "./snapshot.js";
 import { texts } from "./texts.js";
 import { Views } from "./views.js";
+import { WorkerSource } from "./worker_source.js";
 
 fillTexts(texts);
 
-const address = new URL("messages", location.href);
-address.protocol = address.protocol.replace("http", "ws");
-address.hash = "";
-const source = new WebSocketSource(address.href);
+const alone = Boolean(document.querySelector("meta[name=alone]"));
+document.body.classList.toggle("alone", alone);
+setText(byId("alone-note"), alone ? aloneTexts.note : "");
+const source = alone
+    ? new WorkerSource(`robot_worker.js${location.search}`)
+    : new WebSocketSource(messagesAddress());
 const lab = new Lab(source);
 const stop = new Stop(lab);
 const screen = new Screen();

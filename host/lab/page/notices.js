@@ -31,7 +31,7 @@ export function createNotices(root, lab) {
         const off = !store.link.up;
         show(link.root, off);
         show(again, Boolean(store.refused));
-        if (off) setText(link.words, linkWords(store));
+        if (off) setText(link.words, linkWords(store, lab.source));
         const { driver, you, asking } = store.baton;
         const watching = store.link.up && !store.canDrive;
         show(role.root, watching);
@@ -51,8 +51,8 @@ function notice(className) {
     return { root, words };
 }
 
-function linkWords({ refused, link }) {
+function linkWords({ refused, link }, source) {
     if (refused) return sentences(texts.refused, refused.message, refused.hint);
-    if (!link.ever) return texts.connecting;
+    if (!link.ever) return source.waiting ?? texts.connecting;
     return texts.noLab((performance.now() - link.since) / 1000);
 }

@@ -12,6 +12,14 @@ const LONGEST_PAUSE_MS = 5000;
 // The server says something once a second; a connection that is silent for longer is dead.
 const SILENCE_MS = 3500;
 
+/** @returns {string} Where the lab that has served this page listens. */
+export function messagesAddress() {
+    const address = new URL("messages", location.href);
+    address.protocol = address.protocol.replace("http", "ws");
+    address.hash = "";
+    return address.href;
+}
+
 export class WebSocketSource {
     #socket = null;
     #pause = FIRST_PAUSE_MS;

@@ -16,6 +16,7 @@ export function createState(root, lab) {
         values[name] = element("dd");
         list.append(element("div", {}, element("dt", {}, text), values[name]));
     }
+    values.unattended.parentElement.classList.add("unattended");
     const identify = button(texts.identify, async () => {
         if (await lab.try("identify")) lab.tell(texts.identified);
     });

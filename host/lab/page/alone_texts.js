@@ -1,0 +1,13 @@
+/** Texts of a page that runs the robot by itself. */
+
+export const aloneTexts = {
+    loading: "The robot is being loaded: 14 MB the first time, and then none …",
+    failed: (why) => ({
+        message: `the robot does not run in this browser (${why})`,
+        hint: "try again, or in a newer browser: Chrome 115, Edge 115, Firefox 115, Safari 16.4",
+    }),
+    note:
+        "The robot is simulated in this page: nothing is installed, and nothing leaves it. After" +
+        " a reload another robot begins. Logs, basins, predictions, guided exercises and a class" +
+        " need the whole lab, `kickctl lab` on a computer.",
+};
