@@ -8,6 +8,7 @@ from math import isfinite
 from typing import Any
 
 from host.errors import RefusedByRobot, WrongUse, quotable
+from host.lab.lessons.straight import STRAIGHT
 from host.lab.presets import PRESETS, PRIMITIVES
 from robot.kick_requests import FIELDS
 from robot.kicks import WHEELS
@@ -144,7 +145,7 @@ _CHECKS: dict[str, _Check] = {
     "set": lambda fields: {"set": changes_of(fields)},
     "record": lambda fields: {"on": flag_of(fields, "on")},
     "preset": lambda fields: {"set": PRESETS[named(fields, PRESETS)].set},
-    "primitive": lambda fields: {"name": named(fields, PRIMITIVES)},
+    "primitive": lambda fields: {"name": named(fields, {**PRIMITIVES, STRAIGHT: ""})},
 }
 
 

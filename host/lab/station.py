@@ -16,6 +16,7 @@ from host.kicking.primitives import drive
 from host.kicking.robot_motor import MEASURE
 from host.lab import basin_question
 from host.lab.kicks import motor_known
+from host.lab.lessons.straight import STRAIGHT, start_straight
 from host.lab.observed import Observed
 
 if TYPE_CHECKING:
@@ -166,6 +167,8 @@ class Station(Observed):
     def _perform(self, robot: Robot, primitive: str) -> dict[str, Any]:
         """Bring the robot into a primitive, by kicks that need no plan. Raises KickctlError."""
         robot.lease()
+        if primitive == STRAIGHT:
+            return start_straight(robot)
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)

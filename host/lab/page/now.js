@@ -12,7 +12,11 @@ export function createNow(lab) {
     const [tabs, root] = [byId("robots"), byId("now")];
     const state = element("b", { className: "state" });
     const reason = element("span", { className: "reason" });
-    const remedy = button("", () => lab.try(remedy.value), "remedy");
+    const remedy = button("", () => help(), "remedy");
+    const help = () => {
+        const straight = remedy.value === "start" && lab.store.straight;
+        return straight ? lab.try("primitive", { name: "straight" }) : lab.try(remedy.value);
+    };
     root.append(state, reason, remedy);
     let filled = null;
     let buttons = [];
@@ -39,15 +43,15 @@ export function createNow(lab) {
         const is = shown(robot);
         root.dataset.state = is;
         setText(state, texts.states[is]);
-        let help = is === "lost" ? null : robot.status.remedy;
+        let helps = is === "lost" ? null : robot.status.remedy;
         let why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status, page);
-        if (help === "start" && (held || still)) {
-            [help, why] = [null, held ? texts.startsAfterPrediction : texts.staysStill];
+        if (helps === "start" && (held || still)) {
+            [helps, why] = [null, held ? texts.startsAfterPrediction : texts.staysStill];
         }
         setText(reason, why);
-        show(remedy, Boolean(help));
-        remedy.value = help ?? "";
-        setText(remedy, texts.remedies[help] ?? "");
+        show(remedy, Boolean(helps));
+        remedy.value = helps ?? "";
+        setText(remedy, texts.remedies[helps] ?? "");
         remedy.disabled = !mayDrive;
     };
 }

@@ -187,6 +187,8 @@ export class Store {
         this.held = false;
         /** Whether an exercise goes on in which the motors stay off. */
         this.still = false;
+        /** Whether an exercise goes on that needs a robot that drives straight. */
+        this.straight = false;
         /** The newest `poll` message. */
         this.poll = { state: "none", score: { kicks: 0 } };
     }
