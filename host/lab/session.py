@@ -210,7 +210,7 @@ class Session:
             page.answer(request, invitation(self.view_url))
         elif kind == "lessons":
             page.answer(request, {"lessons": lessons()})
-        elif kind == "check":
+        elif kind in ("check", "model"):
             self.marking.take(page, message, request)
         elif kind == "predict":
             self._predict(page, message, request)

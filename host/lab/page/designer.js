@@ -1,6 +1,6 @@
 /** The form for a kick of one's own. */
 
-import { button, choices, element, options, show } from "./dom.js";
+import { button, choices, element, numberField, options, show } from "./dom.js";
 import { texts } from "./texts.js";
 
 const USUAL_TICKS = { position: 3, phase: 4, pulse: 4 };
@@ -110,18 +110,4 @@ export function createDesigner(lab, kick, predict) {
         tell();
     };
     return { root, commands, update };
-}
-
-/** A labelled number with a place for what it means. */
-function numberField(id, text, properties) {
-    const input = element("input", { type: "number", id, ...properties });
-    const label = element("label", { htmlFor: id }, text);
-    const output = element("output", { className: "meaning" });
-    output.htmlFor.add(id);
-    return {
-        input,
-        label,
-        output,
-        root: element("div", { className: "field" }, label, input, output),
-    };
 }

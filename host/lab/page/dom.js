@@ -82,3 +82,23 @@ export function choices(name, legend, options, chosen, onchoice = () => {}) {
     group.choose(chosen);
     return group;
 }
+
+/**
+ * A labelled number with a place for what it means.
+ * @param {string} id
+ * @param {string} text The label.
+ * @param {object} properties Of the input.
+ * @returns {{root: HTMLElement, input: HTMLInputElement, label: HTMLElement, output: HTMLElement}}
+ */
+export function numberField(id, text, properties) {
+    const input = element("input", { type: "number", id, ...properties });
+    const label = element("label", { htmlFor: id }, text);
+    const output = element("output", { className: "meaning" });
+    output.htmlFor.add(id);
+    return {
+        input,
+        label,
+        output,
+        root: element("div", { className: "field" }, label, input, output),
+    };
+}

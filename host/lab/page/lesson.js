@@ -5,6 +5,16 @@ import { keep, recall } from "./storage.js";
 const KEPT = "lab.exercise";
 const DONE = "lab.exercises-done";
 const LEFT = "lab.exercises-left";
+const FRESH = {
+    guess: null,
+    locked: false,
+    logs: [],
+    runs: [],
+    own: null,
+    hints: 0,
+    findings: [],
+    done: false,
+};
 
 /** What this tab remembers of exercises, so that a reload changes nothing. */
 export class Lesson {
@@ -17,8 +27,9 @@ export class Lesson {
         this.lab = lab;
         /** @type {object[]} The texts of all exercises, once the lab has told them. */
         this.all = [];
-        /** @type {?{name: string, guess: ?number, locked: boolean, logs: string[], hints: number,
-         *     findings: object[], done: boolean}} The exercise that goes on. */
+        /** @type {?{name: string, guess: ?number, locked: boolean, logs: string[], runs: object[],
+         *     own: ?number, hints: number, findings: object[], done: boolean}} The exercise that
+         *     goes on; runs: those of its model wheel, own: the pupil's own number. */
         this.state = JSON.parse(recall("sessionStorage", KEPT) ?? "null");
         /** @type {string[]} The names of the exercises that are done. */
         this.done = JSON.parse(recall("sessionStorage", DONE) ?? "[]");
@@ -54,8 +65,7 @@ export class Lesson {
      */
     choose(name) {
         this.lab.send({ type: "stop", robot: this.lab.store.robot.name });
-        const fresh = { guess: null, locked: false, logs: [], hints: 0, findings: [], done: false };
-        this.state = this.left[name] ?? { name, ...fresh };
+        this.state = this.left[name] ?? { name, ...structuredClone(FRESH) };
         delete this.left[name];
         this.#changed();
         const { texts } = this;
@@ -80,6 +90,7 @@ export class Lesson {
     follow() {
         const { canDrive, robot } = this.lab.store;
         if (!this.state?.locked || this.state.done || this.busy || this.stuck || !canDrive) return;
+        if (!this.texts || this.texts.model) return;
         if (!robot.status.recording) this.#alone(() => this.lab.do("record", { on: true }));
     }
 
@@ -88,16 +99,39 @@ export class Lesson {
         this.#changed();
     }
 
+    /**
+     * Let the model wheel of the exercise go.
+     * @param {number} value What the pupil has chosen.
+     * @param {(run: object) => void} take Gets the run, as MESSAGES.md says.
+     */
+    run(value, take) {
+        const { state } = this;
+        return this.#alone(async () => {
+            const run = await this.lab.request({ type: "model", lesson: state.name, value });
+            state.runs.push({ value, seen: run.seen });
+            take(run);
+        });
+    }
+
+    /** @param {?number} own The pupil's own number; null for none. */
+    answer(own) {
+        this.state.own = own;
+        this.#changed();
+    }
+
     /** Have the lab check what was done since the prediction. */
     check() {
         this.checking = true;
-        const { state } = this;
-        const { name, logs } = state;
+        const { state, texts } = this;
+        const { name, logs, runs, own } = state;
         return this.#alone(async () => {
-            this.#noteLog(state);
-            this.#changed();
-            await this.lab.do("record", { on: false });
-            const found = await this.lab.request({ type: "check", lesson: name, logs });
+            const what = texts.model ? { runs, own } : { logs };
+            if (!texts.model) {
+                this.#noteLog(state);
+                this.#changed();
+                await this.lab.do("record", { on: false });
+            }
+            const found = await this.lab.request({ type: "check", lesson: name, ...what });
             Object.assign(state, found);
             if (!found.done) return;
             this.done = [...new Set([...this.done, name])];
@@ -109,17 +143,19 @@ export class Lesson {
     leave() {
         const { name, locked, done } = this.state;
         const goesOn = locked && !done;
+        const records = goesOn && !this.texts.model;
         if (goesOn) {
-            this.#noteLog(this.state);
+            if (records) this.#noteLog(this.state);
             this.left[name] = this.state;
         }
         this.state = null;
         this.#changed();
-        if (goesOn) this.#alone(() => this.lab.do("record", { on: false }));
+        if (records) this.#alone(() => this.lab.do("record", { on: false }));
     }
 
     /** Set the robot as the exercise needs it, and end a recording of something else. */
     async #prepare(texts) {
+        if (texts.model) return;
         if (this.lab.store.robot.status.recording) await this.lab.do("record", { on: false });
         await this.lab.do("set", { set: texts.set });
     }
@@ -153,7 +189,9 @@ export class Lesson {
         keep("sessionStorage", KEPT, JSON.stringify(this.state));
         keep("sessionStorage", LEFT, JSON.stringify(this.left));
         this.lab.store.held = Boolean(this.state && !this.state.locked);
-        this.lab.store.still = Boolean(this.state?.locked && !this.state.done && this.texts?.still);
+        const goesOn = this.state?.locked && !this.state.done;
+        this.lab.store.still = Boolean(goesOn && this.texts?.still);
+        this.lab.store.straight = Boolean(goesOn && this.texts?.walls);
         this.lab.changed = true;
     }
 }

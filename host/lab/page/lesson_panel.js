@@ -3,15 +3,18 @@
 import { button, choices, element, setText, show } from "./dom.js";
 import { Lesson } from "./lesson.js";
 import { lessonTexts } from "./lesson_texts.js";
+import { createModelBench } from "./model_bench.js";
 
 /**
  * @param {HTMLElement} root
  * @param {HTMLButtonElement} opener Opens and closes the panel.
  * @param {import("./lab.js").Lab} lab
- * @returns {() => void} Brings the panel up to date.
+ * @returns {{update: () => void, drawings: object[]}} `update` brings the panel up to date;
+ *     `drawings` are those of the model wheel, see model_bench.js.
  */
 export function createLessons(root, opener, lab) {
     const lesson = new Lesson(lab);
+    const bench = createModelBench(lesson);
     let open = lesson.state !== null;
     let shown = "";
     setText(opener, lessonTexts.button);
@@ -22,7 +25,7 @@ export function createLessons(root, opener, lab) {
         lab.changed = true;
     };
 
-    return () => {
+    const update = () => {
         const { robot, canDrive, role } = lab.store;
         show(opener, canDrive || role === "drive");
         opener.setAttribute("aria-pressed", String(open));
@@ -31,16 +34,19 @@ export function createLessons(root, opener, lab) {
         if (root.hidden) return;
         if (!lesson.all.length) lesson.load();
         const { all, done, state, busy } = lesson;
-        const known = JSON.stringify([all.length, done, state, busy, canDrive, robot.name]);
-        if (known === shown) return;
-        shown = known;
+        // While somebody types a number, nothing around it is renewed.
+        const known = { ...state, own: state?.own == null };
+        const now = JSON.stringify([all.length, done, known, busy, canDrive, robot.name]);
+        if (now === shown) return;
+        shown = now;
         const focused = root.contains(document.activeElement) ? document.activeElement.id : "";
-        root.replaceChildren(...(lesson.texts ? steps(lesson, robot) : list(lesson)));
+        root.replaceChildren(...(lesson.texts ? steps(lesson, robot, bench) : list(lesson)));
         for (const control of root.querySelectorAll("button, fieldset")) {
             control.disabled ||= busy || !canDrive;
         }
         if (focused) document.getElementById(focused)?.focus();
     };
+    return { update, drawings: bench.drawings };
 }
 
 /** All exercises. */
@@ -57,12 +63,12 @@ function list(lesson) {
 }
 
 /** The exercise that goes on, as far as it has come. */
-function steps(lesson, robot) {
+function steps(lesson, robot, bench) {
     const { texts, state } = lesson;
     const parts = [
         element("h2", {}, texts.title),
         element("p", { className: "question" }, texts.question),
-        ...(state.locked ? play(lesson) : predict(lesson, robot)),
+        ...(state.locked ? play(lesson, bench) : predict(lesson, robot)),
     ];
     if (state.done) parts.push(...explain(lesson));
     const last = button(lessonTexts.leave, () => lesson.leave(), "quiet");
@@ -85,7 +91,7 @@ function predict(lesson, robot) {
     return [group, lock];
 }
 
-function play(lesson) {
+function play(lesson, bench) {
     const { texts, state, checking } = lesson;
     const { ok, missing } = lessonTexts;
     const parts = [
@@ -94,6 +100,10 @@ function play(lesson) {
     if (!state.done) {
         const hints = texts.hints.slice(0, state.hints).map((words) => element("li", {}, words));
         parts.push(element("p", {}, texts.task), element("ul", {}, ...hints));
+    }
+    if (texts.model) {
+        bench.update();
+        parts.push(bench.root);
     }
     const verdict = element("p", { role: "status" });
     if (checking) verdict.append(lessonTexts.checking);

@@ -44,6 +44,7 @@ const sound = new Sound(byId("sound"));
 createSaid(lab);
 const kicks = createKicks(byId("kicks"), lab);
 const kTrace = createKTrace(byId("k-trace"), byId("k-plane"), lab);
+const lessons = createLessons(byId("lessons"), byId("lessons-switch"), lab);
 const panels = [
     createNow(lab),
     createNotices(byId("notices"), lab),
@@ -55,7 +56,7 @@ const panels = [
     createBasins(byId("basins"), byId("lag-plane"), lab),
     createRecording(byId("recording"), lab),
     kTrace.update,
-    createLessons(byId("lessons"), byId("lessons-switch"), lab),
+    lessons.update,
     createClass(byId("class"), byId("class-switch"), lab, kicks),
     () => stop.update(),
 ];
@@ -96,6 +97,12 @@ const kPlane = byId("k-plane");
 frames.add(kPlane, kTrace.draw, () => views && [kTrace.view(), screen.themeFor(kPlane, 24, 16)]);
 const { canvas: score, draw: drawScore, view: scoreView } = kicks.verdict;
 frames.add(score, drawScore, () => [scoreView(), screen.themeFor(score, 22, 6)]);
+for (const [canvas, draw, view, letters, lines] of lessons.drawings) {
+    frames.add(canvas, draw, () => {
+        const now = view();
+        return now && [now, screen.themeFor(canvas, letters, lines)];
+    });
+}
 
 window.lab = { state: () => snapshot(lab, stop, frames, views, kTrace, sound) };
 source.open();

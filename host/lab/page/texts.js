@@ -176,7 +176,7 @@ export const texts = {
     },
     remedies: { start: "Start", clear: "Clear the fault" },
     startsAfterPrediction: "It stands until you lock your prediction.",
-    staysStill: "In this exercise its motors stay off. Turn a wheel by hand.",
+    staysStill: "In this exercise its motors stay off.",
     lostFor: (seconds) =>
         `No word from the robot for ${number(seconds, 0)} s. The page looks for it.`,
     facts: {

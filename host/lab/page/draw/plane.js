@@ -46,6 +46,7 @@ const PIECE = 16;
  * @property {number} start index of the oldest record in the rings
  * @property {number} count how many records to draw
  * @property {boolean} equal whether a unit is as long on both axes
+ * @property {boolean} even whether old parts of a trace are as visible as new ones
  * @property {string} title for people
  * @property {string} note for people, such as 'a slice of four dimensions'
  * @property {boolean} stale whether this is no longer up to date
@@ -212,7 +213,7 @@ function course(pen, state, trace, box, x, y) {
         [px, py] = [vx, vy];
         // Pieces end at fixed records, so that dashes stay where they are while time goes on.
         if (index % PIECE === 0 || n === count - 1) {
-            const age = 1 - (n + 1) / count;
+            const age = state.even ? 0 : 1 - (n + 1) / count;
             ctx.globalAlpha = FAINTEST + (1 - FAINTEST) * (1 - age) ** 2;
             ctx.lineWidth = age > OLD ? 1 / theme.scale : theme.line;
             ctx.stroke();

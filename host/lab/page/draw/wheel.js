@@ -30,7 +30,7 @@ const ROUNDING = 1e-3;
  * @property {number} target2 where the second neuron wants its rod, 1
  * @property {number} seen1 first position that the neurons see, 1
  * @property {number} seen2 second position that the neurons see, 1
- * @property {number} torque M, 1
+ * @property {number} torque M, 1; missing for a wheel without a motor, as is duty_pct
  * @property {number} omega_rad_s angular velocity, rad/s
  * @property {number} duty_pct duty cycle of the motor, %
  * @property {?number} stall the least |M| that moves the wheel from rest, 1; null if unknown
@@ -172,8 +172,7 @@ function spokes(sheet, { phi_rad: phi, x1, x2 }, pin) {
 
 function rodAndSpring(sheet, state, rod, pin) {
     const { ctx, colours, x, y, radius, line: width } = sheet;
-    const actual = pin[rod];
-    const target = rod ? state.target2 : state.target1;
+    const [actual, target] = [pin[rod], rod ? state.target2 : state.target1];
     const half = sheet.mark;
     line(sheet, [pin, place(rod, actual, 0)], colours.rod, 2.6 * width);
     line(sheet, [place(rod, actual, 0), place(rod, actual, SPRING)], colours.actual, 1.6 * width);
@@ -238,8 +237,7 @@ function directions(sheet, { omega_rad_s: omega, labels }) {
 
 /** An arrow around the wheel between two angles. */
 function arc({ ctx, theme, x, y, radius }, from, to, colour, width) {
-    const r = 1.26 * radius;
-    const way = Math.sign(to - from);
+    const [r, way] = [1.26 * radius, Math.sign(to - from)];
     const head = Math.min(0.7 * theme.text, Math.abs(to - from) * r);
     ctx.beginPath();
     ctx.arc(x, y, r, -from, -to + (0.8 * way * head) / r, way > 0);
@@ -272,11 +270,12 @@ function readout({ ctx, colours, theme, x, y, radius }, state, width, height) {
         theme.write(ctx, unit, numbers + 0.4 * text, line, { colour: colours.faint });
     };
     const { omega_rad_s: omega, labels } = state;
-    row("M", theme.number(state.torque, 2, true), "", colours.force);
-    gauge({ ctx, colours, theme }, left, (line += 0.85 * step), room, state);
+    const motor = state.torque !== undefined;
+    if (motor) row("M", theme.number(state.torque, 2, true), "", colours.force);
+    if (motor) gauge({ ctx, colours, theme }, left, (line += 0.85 * step), room, state);
     row("ω", theme.number(omega, 1, true), "rad/s", colours.ink);
     row("", theme.number(omega / 2 / Math.PI, 1, true), labels?.turns ?? "", colours.ink);
-    row(labels?.duty ?? "", theme.number(state.duty_pct, 0, true), "%", colours.ink);
+    if (motor) row(labels?.duty ?? "", theme.number(state.duty_pct, 0, true), "%", colours.ink);
 }
 
 /** M between -1 and 1, with the band in which the wheel does not start. */
