@@ -12,7 +12,7 @@ from concurrent.futures import CancelledError
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from queue import Empty, SimpleQueue
-from time import monotonic
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
 from host.errors import NoLink, NotDone, WrongUse, quotable
@@ -103,7 +103,7 @@ def compute_on_cluster(
             except TimeoutError:
                 # A worker that is lost takes its results with it, and Dask computes them again,
                 # which may take long. A silent scheduler never answers.
-                _count_workers(client, address)
+                _wait_for_worker(client, address, NEXT_WORKER_S)
                 future.add_done_callback(done.put)
                 continue
             except (CancelledError, KilledWorker) as error:
@@ -157,23 +157,28 @@ def compare(theirs: dict[str, str]) -> str:
 def _next_done(
     done: SimpleQueue[Future[Any]], client: Client, address: str, patience_s: float
 ) -> Future[Any]:
-    """Wait for the next future that is complete.
-
-    Raises NoLink if the scheduler falls silent, or has no worker for longer than patience_s.
-    """
-    deadline_s = monotonic() + patience_s
+    """Wait for the next future that is complete. Raises NoLink as _wait_for_worker does."""
     while True:
         try:
             return done.get(timeout=LOOK_S)
         except Empty:
-            if _count_workers(client, address):
-                deadline_s = monotonic() + NEXT_WORKER_S
-            elif monotonic() > deadline_s:
-                raise NoLink(
-                    f"the Dask scheduler at {address} has no worker",
-                    f"start one: dask worker {address}; then run the same command again, which"
-                    " resumes the run",
-                ) from None
+            _wait_for_worker(client, address, patience_s)
+
+
+def _wait_for_worker(client: Client, address: str, patience_s: float) -> None:
+    """Wait until the scheduler has a worker.
+
+    Raises NoLink if it falls silent, or has none for longer than patience_s.
+    """
+    deadline_s = monotonic() + patience_s
+    while not _count_workers(client, address):
+        if monotonic() > deadline_s:
+            raise NoLink(
+                f"the Dask scheduler at {address} has no worker",
+                f"start one: dask worker {address}; then run the same command again, which"
+                " resumes the run",
+            )
+        sleep(LOOK_S)
 
 
 def _count_workers(client: Client, address: str) -> int:

@@ -18,7 +18,7 @@ from host.logs.log import Log
 from robot import wire
 from robot.record import STATES, unpack
 from robot.server import LINE_SILENCE_S, Server
-from tests.link.machines import STOP, TICK_S, Cable, Machine, noisy
+from tests.link.machines import STOP, Cable, Machine, noisy
 from tests.rig import TOKEN, Rig
 
 
@@ -40,14 +40,14 @@ def test_a_whole_conversation_over_a_noisy_line(joined):
         assert robot.describe("channels")[0]["name"] == "tick"
         robot.set(k=6.0)
         applied = robot.kick("position", ticks=3)
-        robot.wait(0.5)
+        while len(log) < 50:
+            robot.wait(0.1)
         robot.stop()
         robot.wait(0.05)
         robot.remove_tap(log)
         assert robot.status()["state"] == "stopped"
     ticks = [record.tick for record in log.records]
     assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
-    assert len(ticks) >= 0.5 / TICK_S
     assert [record.tick for record in log.records if record.kick] == [
         applied,
         applied + 1,
