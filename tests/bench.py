@@ -11,6 +11,7 @@ from tests.bench_io import reads_and_writes
 from tests.bench_jitter import collector, schedules
 from tests.bench_lab import lab_page
 from tests.bench_starts import starts
+from tests.bench_static_page import page_without_a_server
 from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell, stop_of_all
 from tests.bench_storm import many_hosts
 
@@ -33,6 +34,7 @@ def main() -> None:
         many_hosts,
         drawings,
         lab_page,
+        page_without_a_server,
     ):
         measure()
 

@@ -74,7 +74,7 @@ _PATIENCE_S = 15.0
 # With a shorter tick than this, a tick as late as on the brick would be missed. Wheels are then
 # computed without delays.
 _LEAST_LATE_TICK_S = 0.02
-# A specimen's tables take as long to compute as some twenty kicks.
+# How many specimens of the motor are kicked at most, and how many wheels share one before that.
 _SPECIMENS, _WHEELS_OF_A_SPECIMEN = 64, 20
 
 
