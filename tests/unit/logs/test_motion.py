@@ -118,6 +118,12 @@ def test_steady_motion_is_settled_at_any_speed(speed, jitter_s):
         assert all(settled(phi[end - 45 : end], t[end - 45 : end]) for end in range(45, len(t)))
 
 
+def test_windows_may_begin_between_ticks():
+    """A window of 0.5 s has 6.25 ticks of 80 ms: whole ticks alone would differ by a seventh."""
+    times = (0.08 * np.arange(20)).tolist()
+    assert settled([12.0 * time for time in times], times)
+
+
 def test_a_wheel_at_rest_may_flicker_by_one_count():
     t = ticks(2.0)
     rest = np.full(len(t), radians(40.0))
