@@ -42,6 +42,45 @@ def pull(away_rad: float, speed: float) -> float:
     return max(-MOST_NM, min(MOST_NM, torque))
 
 
+class Grip:
+    """Holds wheels of a simulated robot.
+
+    Args:
+        brick: Whose wheels it holds.
+    """
+
+    def __init__(self, brick: SimBrick) -> None:
+        self._brick = brick
+        self._holds: dict[str, tuple[float, float]] = {}  # wheel -> (angle in rad, heard of in s)
+
+    def hold(self, side: str, angle_rad: float, now: float) -> None:
+        """Pull a wheel towards an angle (rad, as the robot counts it) until SILENCE_S from now."""
+        self._holds[side] = angle_rad, now
+
+    def let_go(self, side: str) -> None:
+        """Let go of a wheel."""
+        self._holds.pop(side, None)
+        self._brick.set_load(WHEELS.index(side), 0.0)
+
+    def pull(self, loop: Loop) -> None:
+        """Pull the wheels that it holds; to be called once a tick.
+
+        Args:
+            loop: The robot's.
+        """
+        now = loop.clock.now()
+        polarities = loop.params.polarity_left, loop.params.polarity_right
+        for side, (target, heard_s) in list(self._holds.items()):
+            if now - heard_s > SILENCE_S:
+                self.let_go(side)
+                continue
+            index = WHEELS.index(side)
+            motor = self._brick.motors[index]
+            truth = motor.truth()
+            away_rad = polarities[index] * motor.mount * target - truth.wheel_angle
+            self._brick.set_load(index, pull(away_rad, truth.wheel_speed))
+
+
 class Hand:
     """The hand.
 
@@ -52,12 +91,11 @@ class Hand:
     """
 
     def __init__(self, brick: SimBrick, lines: int, say: Callable[[str], object]) -> None:
-        self._brick = brick
+        self._grip = Grip(brick)
         self._lines = lines
         self._say = say
         self._rest = b""
         self._complained = False
-        self._holds: dict[str, tuple[float, float]] = {}  # wheel -> (angle in rad, heard of in s)
 
     def serve(self, loop: Loop) -> None:
         """Read what has come, and pull.
@@ -65,28 +103,16 @@ class Hand:
         Args:
             loop: The robot's.
         """
-        now = loop.clock.now()
-        if not self._read(now):
+        if self._read(loop.clock.now()):
+            self._grip.pull(loop)
+        else:
             loop.done = True
-        polarities = loop.params.polarity_left, loop.params.polarity_right
-        for side, (target, heard_s) in list(self._holds.items()):
-            if loop.done or now - heard_s > SILENCE_S:
-                self._let_go(side)
-                continue
-            index = WHEELS.index(side)
-            motor = self._brick.motors[index]
-            truth = motor.truth()
-            away_rad = polarities[index] * motor.mount * target - truth.wheel_angle
-            self._brick.set_load(index, pull(away_rad, truth.wheel_speed))
+            self.close()
 
     def close(self) -> None:
         """Let go of both wheels."""
         for side in WHEELS:
-            self._let_go(side)
-
-    def _let_go(self, side: str) -> None:
-        self._holds.pop(side, None)
-        self._brick.set_load(WHEELS.index(side), 0.0)
+            self._grip.let_go(side)
 
     def _read(self, now: float) -> bool:
         """Obey the lines that have come, without waiting. Returns whether more can come."""
@@ -108,9 +134,9 @@ class Hand:
         side, _, angle = line.strip().partition(" ")
         target = _number(angle)
         if side in WHEELS and angle == "-":
-            self._let_go(side)
+            self._grip.let_go(side)
         elif side in WHEELS and isfinite(target):
-            self._holds[side] = target, now
+            self._grip.hold(side, target, now)
         elif not self._complained:
             self._complained = True
             self._say(

@@ -20,6 +20,7 @@ from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
 from host.link.direct import DirectLink
 from sim_motor.brick import SimBrick
+from sim_motor.hand import Grip
 
 # How far the robot may fall behind the page's clock (s): it does not catch up a night asleep.
 MOST_S = 0.5
@@ -27,14 +28,32 @@ TICK_S = 0.1
 
 
 class BrowserStation(SteppedStation):
-    """The robot of a page that runs it itself."""
+    """The robot of a page that runs it itself.
+
+    Args:
+        seed: Its random seed.
+    """
+
+    hand_possible = True
+
+    def __init__(self, seed: int) -> None:
+        brick = SimBrick(seed, jitter=False)
+        link = DirectLink(f"sim://?seed={seed}", brick)
+        super().__init__(Robot(link, link.token), "simulated", CONTINUE)
+        self._grip = Grip(brick)
+
+    def hand(self, wheel: str, angle_rad: float | None) -> None:
+        if angle_rad is None:
+            self._grip.let_go(wheel)
+        else:
+            self._grip.hold(wheel, angle_rad, self.clock())
 
     def catch_up(self, seconds: float) -> None:
         """Let the robot's time pass (s): as many ticks as have fitted into it."""
         tick_s = float(self._follower.params["tick_s"])
-        ticks = int(seconds / tick_s)
-        if ticks:
-            self.step(ticks * tick_s)
+        for _ in range(int(seconds / tick_s)):
+            self._grip.pull(self._link.loop)
+            self.step(tick_s)
 
     def _record(self, robot: Any, on: bool) -> dict[str, Any]:
         raise NotDone(
@@ -56,9 +75,7 @@ class BrowserLab:
     """
 
     def __init__(self, seed: int, now: float, send: Callable[[str | bytes], object]) -> None:
-        link = DirectLink(f"sim://?seed={seed}", SimBrick(seed, jitter=False))
-        robot = Robot(link, link.token)
-        self.station = BrowserStation(robot, "simulated", CONTINUE)
+        self.station = BrowserStation(seed)
         self.station.pages = self
         self._send = send
         self._calls: deque[Callable[[], object]] = deque()

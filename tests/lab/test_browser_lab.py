@@ -65,6 +65,24 @@ def test_parameters_and_primitives_can_be_chosen(visit):
     assert 9 <= visit.records[-1].tick - before <= 11
 
 
+def test_a_hand_turns_a_wheel_of_a_robot_at_rest_and_lets_go(visit):
+    visit.wait(0.5)
+    visit.tell({"type": "stop", "robot": None})
+    visit.say(type="take")
+    visit.wait(0.5)
+    begin_rad = visit.records[-1].left_phi_rad
+    for _ in range(20):
+        pulled = {"robot": "simulated", "wheel": "left", "angle_rad": begin_rad + 0.5}
+        visit.tell({"type": "hand", **pulled})
+        visit.wait(0.1)
+    held_rad = visit.records[-1].left_phi_rad
+    assert held_rad == pytest.approx(begin_rad + 0.5, abs=0.1)
+    visit.tell({"type": "hand", "robot": "simulated", "wheel": "left", "angle_rad": None})
+    visit.wait(1.0)
+    assert visit.records[-1].left_phi_rad == pytest.approx(held_rad, abs=0.02)
+    assert visit.welcome["robots"][0]["hand"]
+
+
 def test_it_does_not_catch_up_hours_in_which_the_page_slept(visit):
     visit.wait(0.5)
     before = visit.records[-1].tick

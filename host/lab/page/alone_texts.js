@@ -3,8 +3,11 @@
 export const aloneTexts = {
     loading: "The robot is being loaded: 14 MB the first time, and then none …",
     failed: (why) => ({
-        message: `the robot does not run in this browser (${why})`,
-        hint: "try again, or in a newer browser: Chrome 115, Edge 115, Firefox 115, Safari 16.4",
+        title: "The robot does not run",
+        message: why,
+        hint:
+            "try again, or in a newer browser: Chrome 115, Edge 115, Firefox 115, Safari 16.4. If" +
+            " that does not help, tell your teacher",
     }),
     note:
         "The robot is simulated in this page: nothing is installed, and nothing leaves it. After" +

@@ -52,7 +52,7 @@ function notice(className) {
 }
 
 function linkWords({ refused, link }, source) {
-    if (refused) return sentences(texts.refused, refused.message, refused.hint);
+    if (refused) return sentences(refused.title ?? texts.refused, refused.message, refused.hint);
     if (!link.ever) return source.waiting ?? texts.connecting;
     return texts.noLab((performance.now() - link.since) / 1000);
 }
