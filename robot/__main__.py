@@ -3,9 +3,9 @@
 import os
 import sys
 
+from robot.bare import socket
 from robot.beacon import Announcer
 from robot.button import BackButton
-from robot.kernel import socket
 from robot.lights import Lights
 from robot.motors import MonotonicClock, MotorFault
 from robot.notify import Notify

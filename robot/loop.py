@@ -3,11 +3,10 @@
 In this order: read the angles, step the neurons under a kick, limit the duties, write them, record.
 """
 
-import random
-from bisect import bisect_left
 from collections import deque
 from math import cos, isfinite, pi, sin
 
+from robot.bare import Random, bisect_left
 from robot.beacon import Beacon
 from robot.blackbox import BlackBox
 from robot.errors import Refused
@@ -86,7 +85,7 @@ class Loop(object):
         models = {motor.model for motor in motors}
         self.motor = models.pop() if len(models) == 1 else ""
         self._power = Power(battery)
-        self._random = random.Random(seed)
+        self._random = Random(seed)
         self._sides = [
             Side(Wheel(name), motor, deque(maxlen=DIRECTION_TICKS + 1))
             for name, motor in zip(WHEELS, motors)
@@ -218,9 +217,12 @@ class Loop(object):
         self.safety.start()
         wheels = [side.wheel for side in self._sides]
         for wheel in wheels:
-            remembered = self._random.uniform(-pi, pi)
+            remembered = self._random_angle()
             wheel.x1, wheel.x2 = cos(remembered), sin(remembered)
         return self.blackbox.note("start", x=[[wheel.x1, wheel.x2] for wheel in wheels])
+
+    def _random_angle(self):
+        return -pi + 2.0 * pi * self._random.random()
 
     def stop(self, reason):
         """Stop the motors at once. A robot that is stopped already, or in fault, keeps its reason.

@@ -1,6 +1,6 @@
 """Messages to systemd that the robot's program is ready and alive (sd_notify(3))."""
 
-from robot.kernel import socket
+from robot.bare import socket
 
 
 class Notify(object):

@@ -8,12 +8,11 @@ import sys
 
 from robot import schedule, token
 from robot.arguments import WRONG_USE, Arguments
+from robot.bare import signal, socket
 from robot.errors import Refused
-from robot.kernel import signal, socket
 from robot.loop import Loop
-from robot.serial_line import BAUD, SerialLine
 from robot.server import Server
-from robot.wire import PORT
+from robot.wire import BAUD, PORT
 from robot.words import say
 
 # On the brick, sending a record takes as long as a tick, and sending four hardly longer.
@@ -102,7 +101,7 @@ def run(options, motors, battery, clock, seed, panels=(), brick=False):
         server = Server(loop, secret, RECORDS_S if brick else 0.0)
         port = _listen(server, options)
         if options.serial is not None:
-            server.attach(SerialLine(options.serial, _warn).open)
+            _attach(server, options.serial)
         if new:
             _warn("wrote a new token: {}".format(options.token))
         loop.memory_locked = brick and schedule.lock_memory()
@@ -175,6 +174,13 @@ def own_address():
         return "127.0.0.1"
     finally:
         probe.close()
+
+
+def _attach(server, argument):
+    """Have the server serve a serial line as well. Raises Refused."""
+    from robot.serial_line import SerialLine  # with `termios`, which few robots need
+
+    server.attach(SerialLine(argument, _warn).open)
 
 
 def _serve(options, loop, server, port, panels):

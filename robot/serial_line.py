@@ -10,8 +10,8 @@ import os
 import termios
 
 from robot.errors import Refused
+from robot.wire import BAUD
 
-BAUD = 115200
 FASTEST_BAUD = 4000000
 
 _HINTS = {

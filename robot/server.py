@@ -6,7 +6,7 @@ Who controls the robot comes first, then all others by turns. A stop waits for n
 import select
 
 from robot import wire
-from robot.kernel import socket
+from robot.bare import socket
 from robot.peer import Peer
 from robot.safety import HELD, RUNNING
 from robot.session import Session, new_id

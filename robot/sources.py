@@ -1,7 +1,8 @@
 """A fingerprint of source files: it says which code computed a result, or is installed."""
 
-import hashlib
 import os
+
+from robot.bare import sha256
 
 # Beside Python: tables of constants, and MuJoCo's scenes.
 KINDS = (".py", ".toml", ".xml")
@@ -22,7 +23,7 @@ def fingerprint(*folders):
     Raises:
         OSError: A file cannot be read.
     """
-    digest = hashlib.sha256()
+    digest = sha256()
     for folder in folders:
         for name, path in _sources(folder):
             with open(path, "rb") as file:

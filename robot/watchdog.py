@@ -9,13 +9,12 @@ watchdog ends or does not answer, the loop stops the motors itself.
 """
 
 import errno
-import glob
 import os
 import select
 import time
 
 from robot import schedule
-from robot.kernel import signal, socket
+from robot.bare import signal, socket
 from robot.motors import MotorFault
 from robot.safety import RUNNING
 
@@ -48,7 +47,13 @@ def stop_all(root):
         A list with a line for each motor that could not be stopped: its name and why.
     """
     failed = []
-    for motor in glob.glob(os.path.join(root, "tacho-motor", "motor*")):
+    folder = os.path.join(root, "tacho-motor")
+    try:
+        motors = os.listdir(folder)
+    except OSError:  # this kernel has never seen a motor
+        motors = []
+    for name in motors:
+        motor = os.path.join(folder, name)
         for left in reversed(range(TRIES)):
             try:
                 _write(motor, "duty_cycle_sp", b"0")
@@ -63,7 +68,7 @@ def stop_all(root):
             except ValueError:
                 why = "its duty cycle cannot be read"
             if not left:
-                failed.append("{}: {}".format(os.path.basename(motor), why))
+                failed.append("{}: {}".format(name, why))
     return failed
 
 

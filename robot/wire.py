@@ -1,15 +1,17 @@
 """Frames and messages as bytes, without any I/O: what PROTOCOL.md says, for both ends of a link."""
 
-import hashlib
-import hmac
 import json
 import struct
 import zlib
 from functools import lru_cache
 
+from robot.bare import compare_digest, sha256
+
 PROTOCOL = (1, 3)
 # Where robots listen: KICK on a telephone's keys.
 PORT = 5425
+# The speed of a serial line to one, in baud.
+BAUD = 115200
 
 SYNC = b"\xa5K"
 _HEADER = struct.Struct(">2sBH")
@@ -282,7 +284,7 @@ def _hmac(key, message):
 def _keyed(key):
     """Both hashes of an HMAC, inner and outer, that have taken in the key."""
     block = key.ljust(_BLOCK_BYTES, b"\0")
-    return hashlib.sha256(block.translate(_INNER)), hashlib.sha256(block.translate(_OUTER))
+    return sha256(block.translate(_INNER)), sha256(block.translate(_OUTER))
 
 
 # `digest` takes these in before the nonces.
@@ -320,7 +322,7 @@ def same(one, other):
     Returns:
         True if they are equal.
     """
-    return hmac.compare_digest(one, other)
+    return compare_digest(one, other)
 
 
 def seal(key, counter, payload):
@@ -355,7 +357,7 @@ def unseal(key, counter, payload):
         raise BadMessage("too short to be sealed")
     number, mac = _SEAL.unpack_from(payload)
     body = payload[_SEAL.size :]
-    if not hmac.compare_digest(mac, _mac(key, number, body)):
+    if not compare_digest(mac, _mac(key, number, body)):
         raise BadMessage("the MAC is wrong")
     if number <= counter:
         raise BadMessage("the counter {} was used before".format(number))

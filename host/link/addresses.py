@@ -17,8 +17,8 @@ from host.link.settings import parse_setting
 from host.link.transport import Link, TcpLink
 from host.util.arguments import need_seed
 from host.util.interrupts import uninterrupted
-from robot.serial_line import BAUD, FASTEST_BAUD
-from robot.wire import PORT
+from robot.serial_line import FASTEST_BAUD
+from robot.wire import BAUD, PORT
 
 SIM = "sim://"
 

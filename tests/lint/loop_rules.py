@@ -12,6 +12,7 @@ BEFORE_THE_LOOP = {
     ("robot/__main__.py", "_drive_brick"),
     ("robot/__main__.py", "_drive_own"),
     ("robot/arguments.py", "_help"),
+    ("robot/program.py", "_attach"),
     ("robot/schedule.py", "lock_memory"),
     ("robot/serial_line.py", "__init__"),
 }

@@ -73,7 +73,7 @@ def test_a_robot_exactly_at_a_fixed_point_stays_there_and_one_beside_it_goes(
             motor.state[ANGLE] = motor.state[LAST_ANGLE] = radians(angle_deg + 0.5)
         # Instead of angles at random, the neurons remember that of the wheels, or nearly so.
         remembered = radians(angle_deg) + offset
-        robot.link.loop._random.uniform = lambda low, high: remembered
+        robot.link.loop._random_angle = lambda: remembered
         log = Log(robot.info())
         robot.add_tap(log)
         rows = starts.trial({"start": 0}, robot, log, SETTING)

@@ -8,7 +8,7 @@ from host.errors import KickctlError, NoLink, WrongUse
 from host.link.addresses import make_link, place_of, sim_options, with_params
 from host.link.serial_line import SerialLink
 from host.link.transport import TcpLink
-from robot.program import BAUD, PORT
+from robot.wire import BAUD, PORT
 
 
 @pytest.mark.parametrize(

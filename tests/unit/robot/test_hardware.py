@@ -18,13 +18,15 @@ def machine(tmp_path, monkeypatch):
     """A function that writes a machine's files: (of the EV3's board, of another board, system)."""
 
     def write(brick=None, board=None, system=None):
-        for old in tmp_path.iterdir():
-            old.unlink()
-        for name, text in (("board0", brick), ("serial-number", board), ("machine-id", system)):
+        places = (("boards/board0/uevent", brick), ("serial-number", board), ("machine-id", system))
+        for name, text in places:
+            if (tmp_path / name).exists():
+                (tmp_path / name).unlink()
             if text is not None:
+                (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
                 (tmp_path / name).write_text(text)
 
-    monkeypatch.setattr(hardware, "_BRICK", str(tmp_path / "board*"))
+    monkeypatch.setattr(hardware, "_BRICK", str(tmp_path / "boards"))
     monkeypatch.setattr(hardware, "_BOARD", str(tmp_path / "serial-number"))
     monkeypatch.setattr(hardware, "_SYSTEM", str(tmp_path / "machine-id"))
     return write
