@@ -40,11 +40,11 @@ def main() -> int:
             emulator = Emulator(Path(folder))
             version = emulator.run("-c", "import sys; print(sys.version.split()[0])")[0].line
             emulator.run("-m", "robot.compile")  # as deploy does
-            emulator.until_line(*arguments)  # leaves the other .pyc files behind
+            emulator.until_line("-S", *arguments)  # leaves the other .pyc files behind
             bare = emulator.run("-c", "print(1)")[0]
             ticks = emulator.run("-m", "tests.bench_arm.tick", str(tree))
             hosts = emulator.run("-m", "tests.bench_arm.hosts", str(tree))
-            ready = emulator.until_line(*arguments)
+            ready = emulator.until_line("-S", *arguments)
         except Unavailable as reason:
             print(f"make bench-arm: {reason}", file=sys.stderr)
             return 1

@@ -80,7 +80,6 @@ class Emulator:
             self._python,
         ]
         environment = {
-            "PYTHONPATH": str(self._sources),
             "PYTHONPYCACHEPREFIX": str(self._plugin.with_name("pyc")),
             "PYTHONHASHSEED": "0",
             # Where QEMU finds the loader and the C library of that Python.

@@ -15,6 +15,7 @@ import sys
 import time
 from pathlib import Path
 
+import ev3dev2
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -48,6 +49,7 @@ LOGIN = """\
 #!/bin/sh
 unset XDG_CONFIG_HOME KICK_TOKEN
 export KICK_SYSFS={brick}/class KICK_ETC={brick}/etc KICK_RUN={brick}/run PATH={brick}/bin:$PATH
+export KICK_PACKAGES={brick}/packages
 cd
 exec sh -c "$SSH_ORIGINAL_COMMAND"
 """
@@ -98,6 +100,7 @@ class Brick:
         self._port.bind(("127.0.0.1", 0))
         self.port = self._port.getsockname()[1]
         self.replace("python3", f'exec {sys.executable} "$@"')
+        (folder / "brick" / "packages").symlink_to(Path(ev3dev2.__file__).parents[1])
         self.ssh_config = folder / "ssh_config"
         for key in ("host_key", "user_key"):
             subprocess.run(
