@@ -108,10 +108,13 @@ def _tell(viewers: Viewers, stations: list[ShownStation], options: argparse.Name
         print_result(f"connect {viewers.url}")
         if viewers.key:
             print_result(f"key     {viewers.key}")
+    control = " --control" if viewers.key else ""
     say(
         "in Foxglove or Lichtblick: Open connection, Foxglove WebSocket, and this address."
-        " `kickctl foxglove --layout kick.json` writes a layout to import there"
+        f" `kickctl foxglove{control} --layout kick.json` writes a layout to import there"
     )
+    if viewers.key:
+        say("to drive, send the key to the service /unlock; that layout has a button for it")
     if options.listen:
         say(
             f"this opens {options.listen} to others in this network, who may look; nothing is"

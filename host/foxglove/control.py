@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import secrets
-import threading
 import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator
@@ -19,11 +18,12 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from foxglove import MessageSchema, Parameter, Schema, Service, ServiceRequest, ServiceSchema
-from foxglove.websocket import ChannelView, Client, ServerListener
+from foxglove.websocket import Client
 
 from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse
 from host.foxglove.station import ShownStation
 from host.foxglove.topics import parameter, split_parameter
+from host.foxglove.watching import Watching
 from host.lab.requests import MAX_BYTES
 from host.lab.station import STOP
 from host.logs.messages import TICKS
@@ -45,7 +45,7 @@ class Refused(Exception):
     """Why a service does nothing. Viewers show its name and its words."""
 
 
-class Control(ServerListener):
+class Control(Watching):
     """The services and parameters of some robots; a listener of the SDK's server.
 
     Args:
@@ -60,26 +60,17 @@ class Control(ServerListener):
     def __init__(
         self, robots: dict[str, ShownStation], clock: Callable[[], float] = time.monotonic
     ) -> None:
+        super().__init__()
         self.key = secrets.token_urlsafe(_KEY_BYTES)
         self.tell: Callable[[str], object] = lambda words: None
         self._robots = robots
         self._clock = clock
-        self._lock = threading.Lock()
         self._unlocked: set[int] = set()
-        self._watching: set[tuple[int, str]] = set()
         self._watched_s: dict[str, float] = {}
         self._waiting: set[_Answers] = set()
         self._closed = False
 
     # Who is there.
-
-    def on_subscribe(self, client: Client, channel: ChannelView) -> None:
-        with self._lock:
-            self._watching.add((client.id, channel.topic))
-
-    def on_unsubscribe(self, client: Client, channel: ChannelView) -> None:
-        with self._lock:
-            self._watching.discard((client.id, channel.topic))
 
     def look(self) -> None:
         """Attend to robots that are watched by who may drive; to be called several times a second.
@@ -87,8 +78,7 @@ class Control(ServerListener):
         By its station's rule a robot stops, or is given back, if nobody watches it any more.
         """
         now = self._clock()
-        with self._lock:
-            watched = {topic for client, topic in self._watching if client in self._unlocked}
+        watched = self.topics_of(self._unlocked)
         for prefix, station in self._robots.items():
             if prefix + TICKS in watched:
                 self._watched_s[prefix] = now
@@ -108,7 +98,7 @@ class Control(ServerListener):
             )
 
     def _require_watcher(self, client: int, prefix: str) -> None:
-        if (client, prefix + TICKS) not in self._watching:
+        if not self.watches(client, prefix + TICKS):
             raise NotDone(
                 "who drives a robot must watch it, and this connection does not",
                 f"subscribe to {prefix + TICKS}: open a plot of it",

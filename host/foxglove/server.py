@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 import logging
+import os
 import re
 from collections.abc import Callable, Sequence
 from types import TracebackType
@@ -20,8 +21,9 @@ from host.errors import KickctlError, NotDone, WrongUse
 from host.foxglove.control import Control
 from host.foxglove.station import ShownStation
 from host.foxglove.topics import prefixes
+from host.foxglove.watching import Watching
 from host.lab.observed import LOST_S
-from host.logs.messages import SCHEMAS, Message
+from host.logs.messages import EVENTS, SCHEMAS, Message
 
 LOOPBACK = "127.0.0.1"
 # Half a minute of the usual ticks of 30 ms.
@@ -56,6 +58,7 @@ class Viewers:
         found = prefixes([station.name for station in stations])
         self._robots = {found[station.name]: station for station in stations}
         self._control = Control(self._robots) if control else None
+        self._watching = self._control or Watching()
         self.key = self._control.key if self._control else ""
         self.url = ""
         self._port = port
@@ -78,7 +81,7 @@ class Viewers:
                 context=self._context,
                 message_backlog_size=BACKLOG,
                 capabilities=[Capability.Parameters, Capability.Services] if control else [],
-                server_listener=control,
+                server_listener=self._watching,
                 services=control.services() if control else None,
             )
         except RuntimeError as error:
@@ -135,8 +138,11 @@ class Viewers:
         """See who is there; to be called several times a second, in one thread."""
         if self._control:
             self._control.look()
-        for station in self._robots.values():
+        new = self._watching.take_new()
+        for prefix, station in self._robots.items():
             self._look_for(station)
+            if prefix + EVENTS in new:
+                station.repeat_snapshot()
 
     def _look_for(self, station: ShownStation) -> None:
         state = station.state()
@@ -213,6 +219,6 @@ def _words(failure: str, host: str, port: int) -> KickctlError:
     if number == errno.EACCES:
         return WrongUse(f"port {port} is not for everybody", "take one above 1023: --port 8765")
     return WrongUse(
-        f"this computer cannot listen at {host}: {failure}",
+        f"this computer cannot listen at {host}: {os.strerror(number) if number else failure}",
         "--listen takes an address of this computer in its network, as `ip address` shows it",
     )

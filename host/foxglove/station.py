@@ -27,10 +27,15 @@ class ShownStation(LiveStation):
         self.publish: Callable[[Message], object] = lambda message: None
         self.on_params: Callable[[], object] = lambda: None
         self._messages = Messages(0.0)
+        self._snapshot_wanted = False
 
     def params(self) -> dict[str, Any]:
         """The parameters in force, by name; none before the robot has been found."""
         return dict(self.state().get("params", {}))
+
+    def repeat_snapshot(self) -> None:
+        """Have what is in force said as an event before the next record, for who comes late."""
+        self._snapshot_wanted = True
 
     def _meet(self, robot: Watcher) -> None:
         self._messages = Messages(robot.clock_zero_s)
@@ -38,6 +43,9 @@ class ShownStation(LiveStation):
 
     def take_records(self, records: list[Record]) -> None:
         super().take_records(records)
+        if records and self._snapshot_wanted:
+            self._snapshot_wanted = False
+            self._messages.take_event(self._follower.snapshot(records[0].tick))
         for record in records:
             for message in self._messages.take_record(record):
                 self.publish(message)

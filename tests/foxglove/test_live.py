@@ -115,7 +115,7 @@ def test_viewers_get_what_a_log_holds_to_the_byte(desk, observer, tmp_path):
         got = {
             (one.topic, one.json()["tick"], one.data)
             for one in viewer.messages
-            if one.json()["tick"] in ticks
+            if one.json()["tick"] in ticks and one.json().get("event") != "snapshot"
         }
         assert got == {one for one in written if one[1] in ticks}
         assert sorted(tick for topic, tick, _ in got if topic == TICKS) == list(ticks)
@@ -175,6 +175,22 @@ def test_parameters_follow_whoever_sets_them(desk, observer):
             assert "it is a number from 0 to 100" in viewer.statuses[0]["message"]
 
     with shown(desk.uri, desk.token, control=True) as viewers:
+        play(viewers, scenario)
+
+
+def test_who_comes_late_hears_what_is_in_force(desk, observer):
+    async def scenario():
+        async with viewer_of(viewers.url) as first:
+            await first.subscribe(TICKS)
+            await first.until(lambda: len(first.messages) > 3)
+            async with viewer_of(viewers.url) as viewer:
+                await viewer.subscribe(EVENTS)
+                await viewer.until(lambda: viewer.messages)
+                (event,) = viewer.of(EVENTS)
+                assert event["event"] == "snapshot"
+                assert event["params"] == observer.status()["params"]
+
+    with shown(desk.uri) as viewers:
         play(viewers, scenario)
 
 

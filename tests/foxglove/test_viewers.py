@@ -229,7 +229,7 @@ def test_a_port_that_is_taken_is_said_in_words(station):
         with pytest.raises(NotDone, match=f"port {port} is taken") as failed:
             Viewers([FakeStation()], port).__enter__()
         assert f"--port {port + 1}" in failed.value.hint
-        with pytest.raises(WrongUse, match=r"cannot listen at 192\.0\.2\.1"):
+        with pytest.raises(WrongUse, match=r"at 192\.0\.2\.1: Cannot assign"):
             Viewers([FakeStation()], 0, "192.0.2.1").__enter__()
 
     shown(scenario, station)
