@@ -28,6 +28,8 @@ KEEP_RECORDS = """
     };
 """
 PYODIDE = ROOT / "build/pyodide/node_modules/pyodide"
+# A busy machine takes its time to compile 10 MB of WebAssembly.
+PATIENCE_MS = 120_000
 SMALL = {"width": 640, "height": 400}
 ROLLS = "r && r.records > 60 && r.state === 'running'"
 
@@ -116,6 +118,7 @@ def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
         browser, served, served.drive_url + "?seed=1", script=KEEP_RECORDS, viewport=SMALL
     )
     page = visitor.page
+    page.set_default_timeout(PATIENCE_MS)
     visitor.until(ROLLS)
     assert visitor.robot()["name"] == "simulated"
     assert set(kick(visitor, "phase").values()) == {"reverses"}
