@@ -15,10 +15,17 @@ def _new() -> str:
 
 @dataclass(frozen=True)
 class Keys:
-    """New random keys, which hold as long as the server runs."""
+    """New random keys, which hold as long as the server runs.
+
+    Attributes:
+        drive: With it a page drives.
+        view: With it a page watches.
+        lab: No key, but the name of this run of the lab, which all pages get.
+    """
 
     drive: str = field(default_factory=_new, repr=False)
     view: str = field(default_factory=_new, repr=False)
+    lab: str = field(default_factory=_new, repr=False)
 
     def role(self, key: str) -> str | None:
         """The role that a key gives; None if it is no key of this lab.

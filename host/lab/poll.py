@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from host.errors import NotDone, WrongUse
+from host.errors import NotDone, RefusedByRobot, WrongUse
 from host.lab import requests
 from host.lab.baton import Baton
 from host.lab.guesses import came_true
-from host.lab.keys import VIEW
+from host.lab.keys import DRIVE, VIEW
 from host.lab.page_end import Page
 from host.lab.requests import GUESSES
 
@@ -65,7 +65,7 @@ class Poll:
 
     Args:
         pages: The pages that have joined, by number.
-        baton: Who drives: that page asks, others answer.
+        baton: Who drives. Pages with the drive key ask; who watches and does not drive answers.
 
     Attributes:
         changed: Whether pages have to be told.
@@ -78,8 +78,10 @@ class Poll:
         self._question: _Question | None = None
         self._score = ClassScore()
 
-    def take(self, page: Page, message: Message, robot: str, now: float) -> None:
-        """Take a `poll` of the driver about a robot, or an `answer` of another page.
+    def take(self, page: Page, message: Message, robot: str) -> None:
+        """Take a `poll` of the teacher about a robot, or an `answer` of another page.
+
+        A pupil who drives neither asks nor answers: the kick is theirs.
 
         Raises:
             KickctlError: The page may not, or not now.
@@ -88,10 +90,13 @@ class Poll:
         if message["type"] == "poll":
             kick = message.get("kick")
             asked = None if kick is None else _Question(robot, requests.kick_of(kick))
-            self._baton.need(page.number, page.role, now)
+            if page.role != DRIVE:
+                raise RefusedByRobot(
+                    "only a page with the drive key asks the class", "kick, or ask the teacher"
+                )
             self._question = asked
-        elif self._baton.driver == page.number:
-            raise NotDone("who drives does not answer the class's question", "guess under Kick")
+        elif page.role == DRIVE or self._baton.driver == page.number:
+            raise NotDone("who asks or drives does not answer", "guess under Kick")
         elif self._question is None or self._question.state != OPEN:
             raise NotDone("no question is open: answers count until the kick", "wait for the next")
         elif guess is None:

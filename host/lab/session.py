@@ -14,6 +14,7 @@ from typing import Any
 
 from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotable
 from host.lab import requests
+from host.lab.admission import MAX_PAGES, refusal
 from host.lab.basin_pictures import BasinPictures
 from host.lab.baton import Baton
 from host.lab.guesses import Guesses
@@ -27,8 +28,6 @@ from host.lab.presets import describe_presets, describe_primitives
 from host.lab.recording import describe_logs, find_log
 from host.lab.station import STOP, Station
 
-# How many pages there may be; some of the places are kept for those that may drive.
-MAX_PAGES, KEPT_FOR_DRIVERS = 64, 4
 MAX_STRANGERS = 64
 # How long a connection may take to join (s), and how often states are sent at least.
 JOIN_S = 5.0
@@ -196,7 +195,7 @@ class Session:
             self._hand(page, message, now)
         elif kind in ("poll", "answer"):
             robot = self._station(message).name if kind == "poll" else ""
-            self._poll.take(page, message, robot, now)
+            self._poll.take(page, message, robot)
             page.answer(request, {})
         else:
             self._inform(page, message, request)
@@ -222,25 +221,14 @@ class Session:
     def _join(self, page: Page, message: Message) -> None:
         if page.number:
             raise WrongUse("this page has joined already", requests.RELOAD)
-        role = self._keys.role(requests.text_of(message, "key"))
-        if role is None:
-            page.refuse(
-                "the key is missing or does not fit: the lab may have been started again since",
-                "scan the code again, ask your teacher, or use the lab's newest address",
-            )
-        elif role == DRIVE and not page.local:
-            page.refuse(
-                "the drive key works only on the computer on which the lab runs",
-                "use the address for watching",
-            )
-        elif len(self.pages) >= MAX_PAGES - (0 if role == DRIVE else KEPT_FOR_DRIVERS):
-            page.refuse(
-                f"all places for pages are taken: {len(self.pages)} pages are open",
-                "close one that nobody needs",
-            )
+        key = requests.text_of(message, "key")
+        role = self._keys.role(key)
+        why_not = refusal(key, role, len(self.pages), local=page.local)
+        if why_not is not None:
+            page.refuse(*why_not)
         else:
             self._strangers.remove(page)
-            self._admit(page, role, message.get("resume"))
+            self._admit(page, role or "", message.get("resume"))
 
     def _admit(self, page: Page, role: str, resume: object) -> None:
         before = None
@@ -266,7 +254,7 @@ class Session:
                 "robots": [station.description() for station in self.stations.values()],
                 "presets": describe_presets(),
                 "primitives": describe_primitives(),
-                "local_only": True,
+                "lab": self._keys.lab,
                 "unattended": {name: one.rule for name, one in self.stations.items()},
             }
         )

@@ -76,16 +76,23 @@ def test_a_kick_that_the_robot_refuses_opens_the_question_again(lab, teacher, pu
     assert "result" in pupils[0].ask("answer", guess="reverses")
 
 
-def test_who_drives_asks_and_all_others_answer(lab, teacher, pupils):
+def test_the_teacher_asks_whoever_drives_and_all_others_answer(lab, teacher, pupils):
     pupil = pupils[0]
-    assert "may only watch" in pupil.ask("poll", robot="anna", kick=KICK)["error"]["message"]
+    refused = pupil.ask("poll", robot="anna", kick=KICK)["error"]["message"]
+    assert "drive key asks the class" in refused
     assert "no question" in pupil.ask("answer", guess="stops")["error"]["message"]
     teacher.send("poll", request=1, robot="anna", kick=KICK)
-    assert "who drives" in teacher.ask("answer", guess="stops")["error"]["message"]
+    assert "who asks or drives" in teacher.ask("answer", guess="stops")["error"]["message"]
     assert "missing" in pupil.ask("answer", guess=None)["error"]["message"]
     assert "nobody can guess" in pupil.ask("answer", guess="explodes")["error"]["message"]
     assert "no 'noise'" in teacher.ask("poll", robot="anna", kick={"noise": 1})["error"]["message"]
+    teacher.send("take", request=2)
     pupil.send("ask", request=2)
-    teacher.send("give", request=2, page=pupil.page.number)
-    assert "result" in pupil.ask("poll", robot="anna", kick=None)
+    teacher.send("give", request=3, page=pupil.page.number)
+    assert pupil.drives
+    assert "result" in teacher.ask("poll", robot="anna", kick=KICK)
+    assert "who asks or drives" in pupil.ask("answer", guess="stops")["error"]["message"]
+    pupil.send("do", request=4, **DO)
+    assert poll(lab, teacher, pupil)["state"] == "locked"
+    assert "result" in teacher.ask("poll", robot="anna", kick=None)
     assert poll(lab, teacher, pupil)["state"] == "none"

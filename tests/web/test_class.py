@@ -29,3 +29,19 @@ def test_a_class_answers_before_the_kick_and_is_counted_after_it(visit, lab, sta
     teacher.reads("#class", "the majority in 1 of 1 kick")
     teacher.page.click("text=End the question")
     pupil.page.wait_for_selector("#class", state="hidden")
+
+    pupil.page.click("text=Ask to drive")  # a pupil who drives is asked no more, and asks nobody
+    number = pupil.state()["page"]
+    pupil.reads("#notices", f"You have asked to drive, as page {number}.")
+    pupil.reads("#baton", f"This is page {number}.")
+    teacher.page.click(f"text=Let page {number} drive")
+    pupil.until("s.baton.you")
+    assert pupil.page.is_hidden("#class-switch")
+    teacher.page.click("#class-switch")
+    teacher.page.click("#class >> text=Membrane kick")
+    pupil.page.wait_for_selector("text=Kick now")
+    assert pupil.page.is_hidden("#class .choices")
+    assert pupil.page.is_hidden("text=End the question")
+    assert teacher.page.is_hidden("text=Kick now")
+    pupil.page.click("text=Kick now")
+    teacher.until("s.poll.state === 'locked'")

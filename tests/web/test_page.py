@@ -190,7 +190,7 @@ def test_a_wrong_key_is_refused_in_words(browser, lab, visit):
     visitor = visit()
     page = visitor.context.new_page()
     page.goto(lab.drive_url.partition("=")[0] + "=wrong")
-    page.wait_for_selector("text=missing or does not fit")
+    page.wait_for_selector("text=the key in this address does not fit")
     assert page.is_visible("text=Try again")
 
 

@@ -21,7 +21,7 @@ export function createBaton(root, lab) {
     const send = (message) => lab.request(message).catch((no) => lab.tell(no));
 
     return () => {
-        const { baton, role, pages, canDrive } = lab.store;
+        const { baton, role, page, pages, canDrive } = lab.store;
         const mine = baton.you ? texts.youDrive : canDrive ? texts.youMay : "";
         const other = baton.driver === null ? texts.nobodyDrives : texts.pageDrives(baton.driver);
         setText(who, sentences(mine || other, baton.you ? "" : baton.why));
@@ -36,6 +36,6 @@ export function createBaton(root, lab) {
             );
         }
         show(leave, baton.you);
-        setText(count, role ? texts.pages(pages) : "");
+        setText(count, role ? texts.pages(page, pages) : "");
     };
 }

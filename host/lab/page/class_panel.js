@@ -5,7 +5,7 @@ import { button, choices, element, options, setText, show } from "./dom.js";
 
 /**
  * @param {HTMLElement} root
- * @param {HTMLButtonElement} opener Opens and closes the panel of who drives.
+ * @param {HTMLButtonElement} opener Opens and closes the panel of the teacher.
  * @param {import("./lab.js").Lab} lab
  * @param {{usual: object[], wheel: () => string}} kicks The kicks to ask about, and their wheels.
  * @returns {() => void} Brings the panel up to date.
@@ -58,17 +58,18 @@ export function createClass(root, opener, lab, kicks) {
     return () => {
         const { store } = lab;
         const { poll: now, baton, robot } = store;
-        const drives = baton.you || store.canDrive;
+        const [teaches, drives] = [store.role === "drive", baton.you || store.canDrive];
         const { state } = now;
-        show(opener, store.canDrive || store.role === "drive");
+        show(opener, teaches);
         opener.setAttribute("aria-pressed", String(open));
         show(root, open || state !== "none");
-        show(invitation.root, open || drives);
-        show(asks, drives && (state === "none" || state === "done"));
+        show(invitation.root, teaches);
+        show(asks, teaches && (state === "none" || state === "done"));
         asks.disabled = robot?.state !== "running";
         show(asked, state !== "none");
-        show(commands, drives && state !== "none");
-        show(kick, state === "open");
+        show(commands, (teaches || drives) && state !== "none");
+        show(kick, drives && state === "open");
+        show(end, teaches);
         kick.disabled = robot?.state !== "running" || robot?.name !== now.robot;
         setText(score, classTexts.score(now.score));
         if (state === "none") {
@@ -76,7 +77,7 @@ export function createClass(root, opener, lab, kicks) {
             return;
         }
         setText(question, classTexts.question(now, store.robots.length > 1));
-        show(answers, state === "open" && !drives);
+        show(answers, state === "open" && !teaches && !drives);
         const about = JSON.stringify([now.robot, now.kick, state]);
         if (about !== known) answers.choose(now.yours);
         known = about;

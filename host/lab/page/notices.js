@@ -37,7 +37,7 @@ export function createNotices(root, lab) {
         show(role.root, watching);
         const waits = asking.includes(store.page);
         const who = driver === null ? texts.nobodyDrives : texts.pageDrives(driver);
-        if (watching) setText(role.words, waits ? `${who} ${texts.asked}` : who);
+        if (watching) setText(role.words, waits ? `${who} ${texts.asked(store.page)}` : who);
         show(ask, !you && !waits);
         show(take, store.role === "drive" && driver !== null);
         show(note.root, Boolean(store.note));

@@ -219,11 +219,12 @@ export const texts = {
     youMay: "Nobody drives. Your first command takes the baton.",
     pageDrives: (page) => `Page ${page} drives. This page watches.`,
     nobodyDrives: "Nobody drives. This page watches.",
-    pages: ({ driving, watching }) =>
+    pages: (page, { driving, watching }) =>
+        `This is page ${page}. ` +
         (driving ? "One page drives, " : "No page drives, ") +
         `${counted(watching, "watches", "watch")}.`,
     ask: "Ask to drive",
-    asked: "You have asked to drive. The page that drives can say yes.",
+    asked: (page) => `You have asked to drive, as page ${page}. The page that drives can say yes.`,
     take: "Drive from here",
     leave: "Drive no more",
     give: (page) => `Let page ${page} drive`,
