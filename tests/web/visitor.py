@@ -15,11 +15,20 @@ class Visitor:
             **{"viewport": {"width": 1280, "height": 720}, **context}
         )
         self.context.add_init_script(script)
+        self._url = url
+        self._open()
+
+    def _open(self):
         self.page = self.context.new_page()
         self.page.on("console", self._hear)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", self._look)
-        self.page.goto(url)
+        self.page.goto(self._url)
+
+    def come_back(self):
+        """Close the tab, and open the same address in another one."""
+        self.page.close()
+        self._open()
 
     def _hear(self, message):
         if message.type in ("error", "warning"):

@@ -2,9 +2,7 @@
 
 import { keep, recall } from "./storage.js";
 
-const KEPT = "lab.exercise";
-const DONE = "lab.exercises-done";
-const LEFT = "lab.exercises-left";
+const KEPT = "lab.exercises";
 const FRESH = {
     guess: null,
     locked: false,
@@ -16,8 +14,10 @@ const FRESH = {
     done: false,
 };
 
-/** What this tab remembers of exercises, so that a reload changes nothing. */
+/** What this browser remembers of exercises: a reload or a closed tab changes nothing. */
 export class Lesson {
+    // Of which run of the lab it is; logs and runs of others are not known to this one.
+    #run = "";
     // What was asked for last, and how much of it is not done yet.
     #last = Promise.resolve();
     #waiting = 0;
@@ -30,15 +30,35 @@ export class Lesson {
         /** @type {?{name: string, guess: ?number, locked: boolean, logs: string[], runs: object[],
          *     own: ?number, hints: number, findings: object[], done: boolean}} The exercise that
          *     goes on; runs: those of its model wheel, own: the pupil's own number. */
-        this.state = JSON.parse(recall("sessionStorage", KEPT) ?? "null");
+        this.state = null;
         /** @type {string[]} The names of the exercises that are done. */
-        this.done = JSON.parse(recall("sessionStorage", DONE) ?? "[]");
+        this.done = [];
         /** @type {object} Exercises that were left after the prediction was locked, by name. */
-        this.left = JSON.parse(recall("sessionStorage", LEFT) ?? "{}");
+        this.left = {};
         this.checking = false;
         /** Whether the last thing went wrong; then the next one is a person's. */
         this.stuck = false;
-        this.#changed();
+        // Another tab of this browser has gone on.
+        addEventListener("storage", ({ key }) => key === KEPT && this.#recall());
+    }
+
+    /**
+     * Know what was done in this run of the lab, once the lab has said which one it is.
+     * @returns {boolean} Whether an exercise goes on that was not known before.
+     */
+    meet() {
+        const { welcome, role, canDrive } = this.lab.store;
+        if (!welcome || welcome.lab === this.#run || (role !== "drive" && !canDrive)) return false;
+        this.#run = welcome.lab;
+        this.#recall();
+        return this.state !== null;
+    }
+
+    #recall() {
+        const kept = JSON.parse(recall("localStorage", KEPT) ?? "null");
+        const { state = null, done = [], left = {} } = kept?.run === this.#run ? kept : {};
+        Object.assign(this, { state, done, left });
+        this.#show();
     }
 
     /** @returns {?object} The texts of the exercise that goes on. */
@@ -135,7 +155,6 @@ export class Lesson {
             Object.assign(state, found);
             if (!found.done) return;
             this.done = [...new Set([...this.done, name])];
-            keep("sessionStorage", DONE, JSON.stringify(this.done));
         });
     }
 
@@ -186,8 +205,13 @@ export class Lesson {
     }
 
     #changed() {
-        keep("sessionStorage", KEPT, JSON.stringify(this.state));
-        keep("sessionStorage", LEFT, JSON.stringify(this.left));
+        const { state, done, left } = this;
+        keep("localStorage", KEPT, JSON.stringify({ run: this.#run, state, done, left }));
+        this.#show();
+    }
+
+    /** Let the page know what the exercise allows. */
+    #show() {
         this.lab.store.held = Boolean(this.state && !this.state.locked);
         const goesOn = this.state?.locked && !this.state.done;
         this.lab.store.still = Boolean(goesOn && this.texts?.still);

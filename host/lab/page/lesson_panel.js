@@ -15,7 +15,7 @@ import { createModelBench } from "./model_bench.js";
 export function createLessons(root, opener, lab) {
     const lesson = new Lesson(lab);
     const bench = createModelBench(lesson);
-    let open = lesson.state !== null;
+    let open = false;
     let shown = "";
     setText(opener, lessonTexts.button);
     opener.setAttribute("aria-label", lessonTexts.buttonLabel);
@@ -27,6 +27,7 @@ export function createLessons(root, opener, lab) {
 
     const update = () => {
         const { robot, canDrive, role } = lab.store;
+        open = lesson.meet() || open;
         show(opener, canDrive || role === "drive");
         opener.setAttribute("aria-pressed", String(open));
         show(root, open && Boolean(robot));
