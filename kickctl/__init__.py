@@ -39,9 +39,9 @@ if TYPE_CHECKING:
         RobotFault,
         WrongUse,
     )
-    from host.logs.log import Log
     from host.logs.mcap_files import LogError
     from host.perform.run import perform as run_experiment
+    from kickctl.logs import Log
     from kickctl.robots import KickOutcome, Robot, connect
 
 __all__ = (
@@ -69,7 +69,7 @@ _PLACES = {
     "KickOutcome": "kickctl.robots",
     "Listener": "host.client.listeners",
     "Records": "host.client.listeners",
-    "Log": "host.logs.log",
+    "Log": "kickctl.logs",
     "LogError": "host.logs.mcap_files",
     "run_experiment": "host.perform.run:perform",
 }

@@ -1,8 +1,9 @@
-"""Robots for programs and notebooks: all that host.client.robot has, and kicks that are watched."""
+"""Robots for programs and notebooks: all that host.client.robot has, and what is to be watched."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
@@ -17,6 +18,8 @@ from host.kicking.outcome import (
     require_running,
     wait_settled,
 )
+from host.util.extras import need
+from kickctl.logs import Log
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,28 @@ class Robot(client.Robot):
                 delta=delta,
             )
         return KickOutcome(**outcome.as_dict(), brick=self.link.uri, seed=self.hello["seed"])
+
+    def record(self, seconds: float) -> Log:
+        return self._record(Log, seconds)
+
+    def recording(self) -> AbstractContextManager[Log]:
+        return self._recording(Log)
+
+    def show(self) -> None:
+        """Show the robot in a notebook as it moves: wheels, phase plane, strips, and STOP.
+
+        The cell's drawings follow this connection until the cell is run again or deleted, and the
+        robot goes on as it is. An embedded robot's seconds pass within calls such as `wait`, and
+        are then shown as seconds. It takes the extra `notebook`.
+
+        Raises:
+            WrongUse: This is no notebook, or anywidget is not installed.
+            KickctlError: The robot cannot be reached.
+        """
+        need("anywidget", "notebook")
+        from host.lab.widgets import show_robot
+
+        show_robot(self)
 
 
 connect = Robot.connect

@@ -79,6 +79,7 @@ REAL_TIME = (
     "tests/web/test_access.py",
     "tests/web/test_baton.py",
     "tests/web/test_hidden.py",
+    "tests/web/test_notebook.py",
     "tests/web/test_page.py",
     "tests/web/test_projector.py",
     "tests/web/test_stop.py",

@@ -106,6 +106,11 @@ class LastingLink:
             ).start()
 
     @property
+    def is_open(self) -> bool:
+        """Whether it has neither been closed nor given up."""
+        return self._broken is None
+
+    @property
     def trusted(self) -> bool:
         """Whether robot and host have shown each other the token."""
         return self._talk.trusted

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakMethod
 
 from host.client.connection import Connection
@@ -21,6 +21,8 @@ from robot.record import Record
 
 if TYPE_CHECKING:
     from host.logs.log import Log
+
+LogT = TypeVar("LogT", bound=Tap)
 
 
 class Watcher(Connection):
@@ -127,7 +129,11 @@ class Watcher(Connection):
         """
         from host.logs.log import Log
 
-        span = Span(need_seconds("seconds", seconds), log := Log(self.info()))
+        return self._record(Log, seconds)
+
+    def _record(self, make: Callable[[dict[str, Any]], LogT], seconds: float) -> LogT:
+        seconds = need_seconds("seconds", seconds)
+        span = Span(seconds, log := make(self.info()))
         try:
             self.add_tap(span)
             self.wait(inf, until=lambda: span.complete)
@@ -135,8 +141,7 @@ class Watcher(Connection):
             self.remove_tap(span)
         return log
 
-    @contextmanager
-    def recording(self) -> Iterator[Log]:
+    def recording(self) -> AbstractContextManager[Log]:
         """Record while other things are done: `with robot.recording() as log: ...`.
 
         Yields:
@@ -144,7 +149,11 @@ class Watcher(Connection):
         """
         from host.logs.log import Log
 
-        log = Log(self.info())
+        return self._recording(Log)
+
+    @contextmanager
+    def _recording(self, make: Callable[[dict[str, Any]], LogT]) -> Iterator[LogT]:
+        log = make(self.info())
         try:
             self.add_tap(log)
             yield log

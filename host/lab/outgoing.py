@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import json
-import struct
 from collections.abc import Iterator, Mapping
 
 from host.lab.observed import Observed
 from host.lab.page_end import Page
-
-_HEADER = struct.Struct("<BBHI")
-_KIND = 1
-_MOST_RECORDS = 256
+from host.lab.ring import MOST_RECORDS
 
 
 def outgoing(page: Page, robots: Mapping[str, Observed]) -> Iterator[str | bytes]:
@@ -31,8 +27,8 @@ def outgoing(page: Page, robots: Mapping[str, Observed]) -> Iterator[str | bytes
     for index, name in enumerate(page.places):
         ring = robots[name].ring
         while page.places[name] < ring.end:
-            portion = ring.read(page.places[name], _MOST_RECORDS)
+            portion = ring.read(page.places[name], MOST_RECORDS)
             page.places[name] = portion.place
             if portion.missed:
                 page.send({"type": "lost", "robot": name, "records": portion.missed})
-            yield _HEADER.pack(_KIND, index, portion.records, portion.missed) + portion.data
+            yield portion.message(index)

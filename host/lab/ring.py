@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import struct
 import threading
 from typing import NamedTuple
 
 # Half a minute at the usual control period of 30 ms. Who is further behind gets the present.
 CAPACITY = 1024
+# What stands before the records of a message, and how many there may be.
+_HEADER, _RECORDS_KIND = struct.Struct("<BBHI"), 1
+MOST_RECORDS = 256
 
 
 class Portion(NamedTuple):
@@ -19,6 +23,10 @@ class Portion(NamedTuple):
     records: int
     data: bytes
     place: int
+
+    def message(self, robot: int) -> bytes:
+        """The binary message of MESSAGES.md; `robot` is the index of the robot in the welcome."""
+        return _HEADER.pack(_RECORDS_KIND, robot, self.records, self.missed) + self.data
 
 
 class Ring:

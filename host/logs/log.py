@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from itertools import pairwise
 from operator import itemgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from host.errors import WrongUse
 from host.logs.tap import Event, Tap
@@ -263,7 +263,7 @@ class Log:
         return tap.path
 
     @classmethod
-    def load(cls, path: str | Path) -> Log:
+    def load(cls, path: str | Path) -> Self:
         """Read a log from an MCAP file, bit for bit.
 
         Args:

@@ -11,7 +11,19 @@ from host.errors import NotDone
 from host.kicking.outcome import Outcome
 from tests.lint.sources import ROOT
 
-HEAVY = {"matplotlib", "mcap", "numba", "numpy", "rich", "scipy", "serial", "sympy", "zeroconf"}
+HEAVY = {
+    "anywidget",
+    "IPython",
+    "matplotlib",
+    "mcap",
+    "numba",
+    "numpy",
+    "rich",
+    "scipy",
+    "serial",
+    "sympy",
+    "zeroconf",
+}
 
 
 def loaded_by(code):
