@@ -6,6 +6,8 @@ All of them go to build/screenshots; one of each size goes to docs/pictures, too
 import io
 import shutil
 import sys
+import tempfile
+from pathlib import Path
 
 from PIL import Image
 from playwright.sync_api import sync_playwright
@@ -19,6 +21,7 @@ from host.lab.stepped_station import SteppedStation
 from host.lab.tape import make_tape
 from host.lab.worker import Worker
 from tests.lint.sources import ROOT
+from tests.web.jupyter import Notebook, jupyter_lab
 
 SIZES = {"desk": (1280, 720), "phone": (390, 844), "projector": (1920, 1080)}
 ALL = ROOT / "build/screenshots"
@@ -53,14 +56,13 @@ def walk(page, station):
     yield "5-stopped"
 
 
-def save(png, name):
+def save(png, name, method=Image.Quantize.MAXCOVERAGE):
     """Write a picture with few colours. Returns its path."""
     ALL.mkdir(parents=True, exist_ok=True)
     path = ALL / f"{name}.png"
     picture = Image.open(io.BytesIO(png)).convert("RGB")
-    # A small mark keeps its colour.
-    how = {"method": Image.Quantize.MAXCOVERAGE, "dither": Image.Dither.NONE}
-    picture.quantize(COLOURS, **how).save(path, optimize=True)
+    # By MAXCOVERAGE a small mark keeps its colour.
+    picture.quantize(COLOURS, method=method, dither=Image.Dither.NONE).save(path, optimize=True)
     return path
 
 
@@ -79,6 +81,7 @@ def main():
         forecasts.close()
         basins.close()
         take_replay(browser)
+        take_notebook(browser)
         browser.close()
     return 0
 
@@ -118,6 +121,28 @@ def take_replay(browser):
     path = save(page.screenshot(), "replay")
     shutil.copy(path, BEST / "lab-replay.png")
     page.close()
+
+
+def take_notebook(browser):
+    """Take a picture of a robot in a notebook, some time after a kick has reversed its wheels."""
+    cells = [
+        'from kickctl import connect\n\nrobot = connect("sim://?seed=3")\nrobot.show()',
+        'robot.wait(5)\nprint(robot.kick_and_watch("phase", ticks=4, wheel="left"))',
+    ]
+    with tempfile.TemporaryDirectory() as folder, jupyter_lab(Path(folder), cells) as url:
+        notebook = Notebook(browser, url)
+        notebook.page.set_viewport_size({"width": 1040, "height": 880})
+        notebook.command("application:toggle-left-area")
+        for number in range(2):
+            notebook.run(number)
+            notebook.ended(number)
+        notebook.until(0, "s.shown_s === s.record.t_s")
+        notebook.page.evaluate("document.querySelector('.jp-WindowedPanel-outer').scrollTop = 0")
+        notebook.page.wait_for_timeout(400)
+        png = notebook.page.locator(".jp-WindowedPanel-outer").screenshot()
+        path = save(png, "notebook", Image.Quantize.MEDIANCUT)
+        shutil.copy(path, BEST / "notebook.png")
+        notebook.page.close()
 
 
 if __name__ == "__main__":

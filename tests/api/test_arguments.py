@@ -108,6 +108,8 @@ TABLE = [
     ("Log.take_event", "event", (5, "x", None, [], {}, {"event": 5}, Odd())),
     ("Log.play", "tap", (*NO_TEXT, "tap")),
     ("Log.column", "name", (*NO_TEXT, "", "nosuch")),
+    ("Log.show", "from_s", NO_SECONDS),
+    ("Log.show", "to_s", NO_SECONDS),
     ("Log.omega", "side", (*NO_TEXT, "", "middle", "both")),
     *(
         (f"Log.{name}", "path", (*NO_PATH, None))

@@ -1,19 +1,11 @@
 """robot.show() and log.show() in a real JupyterLab, as a person uses them."""
 
-import json
-import os
-import socket
-import subprocess
-import sys
-from contextlib import closing
-
 import pytest
 
 import kickctl
 from robot.record import STATES
 from tests.link.machines import TcpRobot
-from tests.lint.sources import ROOT
-from tests.live import wait_until
+from tests.web.jupyter import Notebook, jupyter_lab
 
 CELLS = (
     'from kickctl import connect\nrobot = connect("tcp://127.0.0.1:{port}", observe=True)',
@@ -27,87 +19,12 @@ with connect("sim://?seed=1") as embedded:
         embedded.kick_and_watch("phase", ticks=4)""",
     "log.show()",
     """\
-import threading
-print("showing", [t.name for t in threading.enumerate()].count("kickctl notebook"), "robots")""",
+import threading, time
+while (count := [t.name for t in threading.enumerate()].count("kickctl notebook")) > 2:
+    time.sleep(0.1)
+print("showing", count, "robots")""",
 )
 ROBOT, BUSY, EMBEDDED, LOG, COUNT = 1, 2, 3, 4, 5
-# What a page without a terminal says by itself.
-HARMLESS = "Disabling terminals plugin"
-
-
-class Notebook:
-    """A notebook in a browser's JupyterLab.
-
-    Attributes:
-        page: The page, of playwright.
-    """
-
-    def __init__(self, browser, url):
-        self.complaints = []
-        self.page = browser.new_page(viewport={"width": 1280, "height": 1000})
-        self.page.on("console", self._hear)
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.goto(url)
-        self._until("window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel")
-        self._until("window.jupyterapp.shell.currentWidget.content?.widgets.length > 1")
-
-    def _hear(self, message):
-        if message.type in ("error", "warning") and not message.text.startswith(HARMLESS):
-            self.complaints.append(f"{message.text} {message.location['url']}")
-
-    def _until(self, expression, **values):
-        self.page.wait_for_function(expression, **values)
-
-    def run(self, number):
-        """Run a cell, and look at it."""
-        self.page.evaluate(
-            """number => {
-                const notebook = jupyterapp.shell.currentWidget.content;
-                notebook.deselectAll();
-                notebook.activeCellIndex = number;
-                jupyterapp.commands.execute("notebook:run-cell");
-            }""",
-            number,
-        )
-
-    def command(self, name):
-        """Have JupyterLab do one of its commands."""
-        self.page.evaluate("name => void jupyterapp.commands.execute(name)", name)
-
-    def busy(self, number):
-        """Whether a cell still runs, or waits to run."""
-        prompt = f".jp-Cell >> nth={number} >> .jp-InputPrompt"
-        return self.page.locator(prompt).inner_text() == "[*]:"
-
-    def ended(self, number):
-        """Wait until a cell has run."""
-        self._until(
-            "number => /\\d/.test(document.querySelectorAll('.jp-Cell')[number]"
-            ".querySelector('.jp-InputPrompt').innerText)",
-            arg=number,
-        )
-
-    def cell(self, number):
-        """A cell's widget."""
-        return self.page.locator(f".jp-Cell >> nth={number} >> .kickctl")
-
-    def state(self, number):
-        """What a cell's widget knows."""
-        return self.cell(number).evaluate("root => root.kickctl()")
-
-    def until(self, number, condition):
-        """Wait until a condition on `s`, the state of a cell's widget, holds. Returns the state."""
-        self._until(
-            "number => { const root = document.querySelectorAll('.jp-Cell')[number]"
-            ".querySelector('.kickctl'), s = root?.kickctl?.();"
-            f" return s && ({condition}); }}",
-            arg=number,
-        )
-        return self.state(number)
-
-    def words(self, number):
-        """What a cell has printed."""
-        return self.page.locator(f".jp-Cell >> nth={number} >> .jp-OutputArea").inner_text()
 
 
 @pytest.fixture(scope="module")
@@ -121,56 +38,9 @@ def robot():
 @pytest.fixture(scope="module")
 def jupyter(robot, tmp_path_factory):
     """The address of a notebook in a JupyterLab of its own."""
-    folder = tmp_path_factory.mktemp("jupyter")
-    cells = [
-        {
-            "cell_type": "code",
-            "id": f"cell-{n}",
-            "metadata": {},
-            "execution_count": None,
-            "outputs": [],
-            "source": source.replace("{port}", str(robot.port)),
-        }
-        for n, source in enumerate(CELLS)
-    ]
-    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
-    notebook = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4}
-    (folder / "a.ipynb").write_text(json.dumps({**notebook, "nbformat_minor": 5}))
-    with closing(socket.create_server(("127.0.0.1", 0))) as place:
-        port = place.getsockname()[1]
-    own = {f"JUPYTER_{name}_DIR": str(folder / name) for name in ("CONFIG", "DATA", "RUNTIME")}
-    extensions = {"jupyter_server_terminals": False}
-    options = {
-        "ServerApp.port": port,
-        "ServerApp.port_retries": 0,
-        "ServerApp.root_dir": folder,
-        "ServerApp.jpserver_extensions": extensions,
-        "IdentityProvider.token": "secret",
-        "LabApp.expose_app_in_browser": True,
-        "LabApp.news_url": None,
-    }
-    said = (folder / "said").open("w+")
-    server = subprocess.Popen(
-        [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root"]
-        + [f"--{name}={value}" for name, value in options.items()],
-        cwd=folder,
-        env={**os.environ, **own, "IPYTHONDIR": str(folder), "PYTHONPATH": str(ROOT)},
-        stdout=said,
-        stderr=subprocess.STDOUT,
-    )
-
-    def listens():
-        assert server.poll() is None, (folder / "said").read_text()
-        with socket.socket() as caller:
-            return caller.connect_ex(("127.0.0.1", port)) == 0
-
-    try:
-        wait_until(listens, "JupyterLab listens", (folder / "said").read_text)
-        yield f"http://127.0.0.1:{port}/lab/tree/a.ipynb?token=secret"
-    finally:
-        server.terminate()
-        server.wait()
-        said.close()
+    cells = [source.replace("{port}", str(robot.port)) for source in CELLS]
+    with jupyter_lab(tmp_path_factory.mktemp("jupyter"), cells) as url:
+        yield url
 
 
 @pytest.fixture(scope="module")
@@ -245,10 +115,7 @@ def test_a_cell_that_runs_again_leaves_nothing_behind(notebook):
         notebook.run(ROBOT)
         notebook.until(ROBOT, "s.records > 0")
 
-    def shown():
-        notebook.run(COUNT)
-        notebook.ended(COUNT)
-        return notebook.words(COUNT)
-
+    notebook.run(COUNT)
+    notebook.ended(COUNT)
     # The one of this cell, and the embedded robot's.
-    wait_until(lambda: shown().strip() == "showing 2 robots", "the others are forgotten", shown)
+    assert notebook.words(COUNT).strip() == "showing 2 robots"

@@ -26,7 +26,7 @@ export default () => {
             slider.setAttribute("aria-label", words.slider);
             const board = new Board(
                 el,
-                [element("div", { className: "top" }, state, name)],
+                [element("div", { className: "facts" }, state, name)],
                 [element("div", { className: "player" }, marks, slider, part("div", "player"))],
             );
             const reel = new Reel(log, board, board.find, board.root);

@@ -119,9 +119,9 @@ class View {
         // A pointer stops when it goes down, not when it comes up.
         stop.onpointerdown = () => this.#stop();
         stop.onclick = (event) => event.detail === 0 && this.#stop();
-        const top = element("div", { className: "top" }, this.state, this.name, this.reason);
-        top.append(this.words, stop);
-        this.board = new Board(el, [top], []);
+        const said = [this.state, this.name, this.reason, this.words];
+        const facts = element("div", { className: "facts" }, ...said);
+        this.board = new Board(el, [element("div", { className: "top" }, facts, stop)], []);
         this.board.root.onkeydown = (event) => this.#key(event);
         this.frames = new Frames(
             () => this.#update(),
