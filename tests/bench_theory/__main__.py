@@ -28,31 +28,7 @@ DRAWN, POINTS, SEED, REGULAR = 2560, 1024, 1, 1e-8
 # The reference takes long, so only some points have one.
 JUDGED = 4
 RUNS = 3
-FINENESSES = (
-    0.25,
-    0.3,
-    0.35,
-    0.4,
-    0.45,
-    0.5,
-    0.55,
-    0.6,
-    0.65,
-    0.7,
-    0.75,
-    0.8,
-    0.9,
-    1.0,
-    1.05,
-    1.1,
-    1.2,
-    1.3,
-    1.4,
-    1.5,
-    1.6,
-    1.8,
-    2.0,
-)
+FINENESSES = (0.4, 0.45, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2)
 GOALS = {"scipy solve_ivp": 200.0}
 
 

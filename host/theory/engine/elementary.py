@@ -72,6 +72,11 @@ def _polynomial(coefficients: Any, x: Any) -> Any:
 
 
 @inlined
+def _chosen(condition: Any, one: Any, other: Any) -> Any:
+    return one if condition else other
+
+
+@inlined
 def exp(x: Any) -> Any:
     """e to the power of x."""
     rounded = x * _LOG2_E + _ROUNDER
@@ -88,7 +93,7 @@ def _sin_of_quarters(rounded: Any, x: Any, more: int) -> Any:
     square = rest * rest
     sine, cosine = rest * _polynomial(_SIN, square), _polynomial(_COS, square)
     quarter = _bits(rounded) + more
-    return _float(_bits(cosine if quarter & 1 else sine) ^ ((quarter & 2) << 62))
+    return _float(_bits(_chosen(quarter & 1, cosine, sine)) ^ ((quarter & 2) << 62))
 
 
 @inlined

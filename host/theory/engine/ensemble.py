@@ -1,4 +1,7 @@
-"""Many wheels of the analytic model at once, with fixed steps, over all cores and vector units.
+"""Many wheels of the analytic model at once, over all cores and vector units.
+
+`averages` are by Taylor's method (host.theory.engine.taylor), all else by Runge and Kutta's with
+fixed steps.
 
 The rates are those of host.theory.model.wheel, and so of robot/controller.py, compiled with sin,
 cos and exp of host.theory.engine.elementary. Wheels stand side by side in memory, so that the
@@ -16,10 +19,11 @@ from numba import get_num_threads
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from host.theory.engine import adams, runge_kutta, sliding
+from host.theory.engine import runge_kutta, series, sliding, taylor
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
+from host.theory.engine.taylor import AROUND, SQUARE
 from host.theory.model.laws import PAPER, Law, law_of, under
-from host.theory.model.wheel import OMEGA, PHI, Array, Wheel, rates
+from host.theory.model.wheel import OMEGA, PHI, Array, rates
 from sim_motor.compiled import on_one_core, parallel_jit, prange
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
@@ -28,18 +32,12 @@ LANES, FEWEST, ALIKE = 64, 16, 0.75
 # Steps per unit of a wheel's rate (see `rate_per_s`): at FINE, averages of regular motion have nine
 # digits.
 FINE = 1.0
-# Beyond that averages are by Adams's method, which then needs less work for the same error. Its
-# steps are shorter; with less than five for one of Runge and Kutta's it would not be stable.
-_ADAMS_STEPS = 5
 # A wheel that needs more is stiff: an explicit method is the wrong one.
 MOST_STEPS = 20_000_000
 # A wheel without friction gets faster and faster; for so long its steps are short enough.
 _SPINNING_UP_S = 1000.0
 
 Whole = NDArray[np.int64]
-
-# Parameters that are no constants of a wheel stand below them.
-_BESIDE = len(Wheel._fields)
 
 
 @cache
@@ -84,7 +82,7 @@ def _averaged_rates(law: Law) -> Any:
     def averaged_rates(states: Array, parameters: Array, out: Array) -> None:
         own_rates(states, parameters, out)
         for i in range(states.shape[1]):
-            out[4, i] = (states[3, i] - parameters[_BESIDE, i]) ** 2
+            out[SQUARE, i] = (states[OMEGA, i] - parameters[AROUND, i]) ** 2
 
     return vectorised(averaged_rates)
 
@@ -221,14 +219,10 @@ def advance(
 def _advanced(
     method: Any, states: Array, parameters: Array, seconds: float, fineness: float, rates_of: Any
 ) -> Array:
-    """The same by any method, `runge_kutta` or `adams`; with dry friction always by `sliding`."""
+    """The same by `runge_kutta`; with dry friction by `sliding`."""
     if parameters[sliding.DRY].any():
         method = sliding
-    rate = rate_per_s(parameters)
-    order = np.argsort(rate, kind="stable")
-    needed = np.ceil(seconds * fineness * rate[order])
-    if len(order) and not needed[-1] <= MOST_STEPS:
-        raise too_stiff(seconds, parameters[:, order[-1]], needed[-1])
+    order, needed = _ordered(parameters, seconds, fineness)
     edges = _edges(needed)
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
@@ -242,6 +236,29 @@ def _advanced(
             edges,
             *_shares(counts * np.diff(edges)),
         )
+    return _back(found, order, parameters)
+
+
+def _ordered(parameters: Array, seconds: float, fineness: float) -> tuple[Whole, Array]:
+    """The numbers of wheels, slow ones first, and how many steps each then needs.
+
+    Raises:
+        WrongUse: One is too stiff.
+    """
+    rate = rate_per_s(parameters)
+    order = np.argsort(rate, kind="stable")
+    needed = np.ceil(seconds * fineness * rate[order])
+    if len(order) and not needed[-1] <= MOST_STEPS:
+        raise too_stiff(seconds, parameters[:, order[-1]], needed[-1])
+    return order, needed
+
+
+def _back(found: Array, order: Whole, parameters: Array) -> Array:
+    """States of wheels that stand in some order as they stood before.
+
+    Raises:
+        WrongUse: One is not finite.
+    """
     found = found[:, np.argsort(order)]
     if not np.isfinite(found).all():
         lost = int(np.flatnonzero(~np.isfinite(found).all(axis=0))[0])
@@ -250,6 +267,21 @@ def _advanced(
             "choose a larger tau or I, a smaller k",
         )
     return found
+
+
+def _by_series(
+    states: Array, parameters: Array, seconds: float, fineness: float, law: Law
+) -> Array:
+    """The states (5, wheels) after some time by Taylor's method."""
+    order, _ = _ordered(parameters, seconds, fineness)
+    order = order[::-1]
+    found = np.ascontiguousarray(states[:, order], dtype=np.float64)
+    own = np.ascontiguousarray(parameters[:, order])
+    # To wake the other cores takes longer than most steps of a few wheels.
+    with on_one_core() if len(order) <= series.LANES else nullcontext():
+        accuracy = taylor.accuracy_of(fineness)
+        taylor.follow(found, own, seconds, 1.0 / rate_per_s(own), law, accuracy)
+    return _back(found, order, parameters)
 
 
 class Averages(NamedTuple):
@@ -265,28 +297,28 @@ def averages(
 ) -> Averages:
     """Mean and standard deviation of omega over measured_s, after transient_s.
 
-    With a fineness beyond FINE they are by another method, so that a finer run checks more than the
-    step.
+    They are by Taylor's method; with dry friction or the user's functions, which have no series,
+    by Runge and Kutta's. Twice the fineness takes another order, too, so that a finer run checks
+    more than the step.
 
     Raises:
         WrongUse: A wheel is too stiff, or cannot be followed.
     """
-    method, fineness = (
-        (adams, _ADAMS_STEPS * fineness) if fineness > FINE else (runge_kutta, fineness)
-    )
-
-    own_rates = _averaged_rates(law_of(parameters))
+    law = law_of(parameters)
+    smooth = not law.own and not parameters[sliding.DRY].any()
 
     def after(seconds: float, start: Array) -> Array:
         given = np.vstack([start, np.zeros(start.shape[1])]), np.vstack([parameters, start[OMEGA]])
-        return _advanced(method, *given, seconds, fineness, own_rates)
+        if smooth and start.shape[1]:
+            return _by_series(*given, seconds, fineness, law)
+        return _advanced(runge_kutta, *given, seconds, fineness, _averaged_rates(law))
 
     start = np.asarray(states, dtype=np.float64)
-    if start.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != _BESIDE:
+    if start.shape != (OMEGA + 1, parameters.shape[1]) or len(parameters) != AROUND:
         shapes = f"{start.shape} and {parameters.shape}"
         raise WrongUse(
             f"states and parameters cannot be of shapes {shapes}",
-            f"give (4, wheels) and ({_BESIDE}, wheels), as Wheel.columns does",
+            f"give (4, wheels) and ({AROUND}, wheels), as Wheel.columns does",
         )
     if not np.isfinite(start).all():
         raise WrongUse(
@@ -299,5 +331,5 @@ def averages(
         start = after(transient_s, start)[: OMEGA + 1]
     last = after(measured_s, start)
     mean = (last[PHI] - start[PHI]) / measured_s
-    variance = last[4] / measured_s - (mean - start[OMEGA]) ** 2
+    variance = last[SQUARE] / measured_s - (mean - start[OMEGA]) ** 2
     return Averages(mean, np.sqrt(np.maximum(variance, 0.0)), last[: OMEGA + 1])
