@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 from host.errors import WrongUse
+from host.perform.catalogue import find
 from host.runs.registry import complete_options
 from host.theory.analysis.branches import rotation, turning_state
 from host.theory.analysis.cycles import ROTATION, Shooting
@@ -26,7 +27,6 @@ from host.theory.engine.sampled import Clock
 from host.theory.model.laws import has_symmetries
 from host.theory.model.symbolic import jacobian_at
 from host.theory.model.wheel import PHI, Wheel
-from host.theory.studies import basins, branch, lyapunov_line, portrait, tick
 from host.theory.studies.registry import TABLE
 from robot.kicks import POSITION
 from tests.lint.sources import ROOT
@@ -246,15 +246,24 @@ def test_what_a_law_cannot_do_is_refused_before_work_begins(papers):
     for wrong in ({"rods": 3}, {"bounded": 0.0}):
         with pytest.raises(WrongUse, match=next(iter(wrong))):
             Wheel(**wrong).checked()
-    for name, study in {
-        "branch": branch,
-        "portrait": portrait,
-        "basins": basins,
-        "tick": tick,
-        "lyapunov-line": lyapunov_line,
-    }.items():
-        with pytest.raises(WrongUse, match="quarter turn"):
-            study.cells(complete_options(name, TABLE[name], {"rods": 1}))
+
+
+def test_every_study_takes_one_rod_or_refuses_it_before_work():
+    """Its cells are what it is going to do. The words of the refusal name who takes one rod."""
+    taken, hints = set(), set()
+    for name in TABLE:
+        try:
+            assert find(name).work.cells(
+                complete_options(name, TABLE[name], {"rods": 1}), batch=True
+            )
+        except WrongUse as refused:
+            assert "quarter turn" in str(refused)
+            hints.add(refused.hint)
+        else:
+            taken.add(name)
+    (hint,) = hints
+    named = hint.partition(";")[2].replace(" and ", ", ").replace(" take one rod", "")
+    assert taken == {name.strip() for name in named.split(",")}
 
 
 def test_crossings_of_a_bounded_wheel_are_scipys():
