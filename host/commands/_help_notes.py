@@ -105,7 +105,7 @@ _RUNS = {
     "theory branch": ("--along tau --to 2", "8 s"),
     "theory portrait": ("--k 1.65", "7 s"),
     "theory phase-diagram": ("--points 40", "3 minutes"),
-    "theory lines": ("--x tau --y a", "a minute"),
+    "theory lines": ("--x tau --y a", "2 minutes"),
     "theory lyapunov": ("--k 8 --tau 1", "8 s"),
     "theory lyapunov-line": ("--k-to 10", "half a minute"),
     "theory lyapunov-plane": ("--k-to 10 --tau-to 1", "a minute"),

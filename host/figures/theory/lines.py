@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
-from host.theory.analysis.chaos_edges import LASTING_S
+from host.theory.analysis.chaos_edges import LIFE_S
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.phases import PHASES
 from host.theory.model.wheel import Wheel
@@ -44,6 +44,10 @@ _LINES: dict[tuple[str, str], tuple[str, Any, str]] = {
     ("FB", "neimark-sacker"): (COLOURS[3], ":", "Neimark-Sacker, forth and back"),
     ("LLM", "pitchfork"): (COLOURS[4], "-.", "pitchforks, rotations"),
     ("FB", "pitchfork"): (COLOURS[4], ":", "pitchforks, forth and back"),
+    ("windows", "period-doubling"): (COLOURS[1], (0, (1, 1)), "period doublings, windows"),
+    ("windows", "fold"): (COLOURS[0], "-", "folds, windows"),
+    ("windows", "neimark-sacker"): (COLOURS[3], "-", "Neimark-Sacker, windows"),
+    ("windows", "pitchfork"): (COLOURS[4], "--", "pitchforks, windows"),
 }
 _MARKERS = {
     "Bautin": ("o", "Bautin point"),
@@ -79,13 +83,16 @@ def draw(rows: list[LinesRow], findings: Findings) -> Figure:
         figure = Figure(**SIZE)
         plane, close = figure.subplots(1, 2)
         x_to, y_to = _draw_phases(plane, rows)
-        for axes, x_of in ((plane, _x), (close, above)):
-            _draw_lines(axes, rows, x_of)
-            _draw_specials(axes, rows, x_of)
+        beside = [row for row in rows if row["part"] != "windows"]
+        for axes, own, x_of in ((plane, rows, _x), (close, beside, above)):
+            _draw_lines(axes, own, x_of)
+            _draw_specials(axes, own, x_of)
             axes.set_ylabel(_LABELS[letters[1]])
         _draw_chaos(plane, chaos_edges_of(rows))
         plane.set(xlabel=_LABELS[letters[0]], xlim=(0.0, x_to), ylim=(0.0, y_to))
-        near = [above(row) for row in points_of(rows) if row["type"] in ("Hopf", "merging", "fold")]
+        near = [
+            above(row) for row in points_of(beside) if row["type"] in ("Hopf", "merging", "fold")
+        ]
         close.set(
             xlabel="$k$, relative to the Hopf line",
             xlim=(min(near) - 0.01, min(max(near), _CLOSE) + 0.01),
@@ -123,17 +130,23 @@ def _draw_phases(axes: Axes, rows: list[LinesRow]) -> tuple[float, float]:
 
 
 def _draw_chaos(axes: Axes, edges: list[ChaosEdgeRow]) -> None:
-    """Each edge with its uncertainty."""
-    if edges:
-        axes.hlines(
-            [row["y"] for row in edges],
-            [row["few"] for row in edges],
-            [row["most"] for row in edges],
+    """The crises of each side, with their intervals."""
+    for side in ("lower", "upper"):
+        own = sorted((row for row in edges if row["side"] == side), key=lambda row: row["y"])
+        if not own:
+            continue
+        xs = np.array([[row["x"], row["leaves"], row["stays"]] for row in own]).T
+        axes.errorbar(
+            xs[0],
+            [row["y"] for row in own],
+            xerr=np.abs(xs[1:] - xs[0]).max(axis=0),
             color=COLOURS[4],
-            linewidth=4.0,
-            label=f"edge of chaos that lasts {LASTING_S:g} s",
+            ecolor="black",
+            capsize=3.0,
+            marker="D",
+            markersize=4.5,
+            label=f"crisis: chaos lives {LIFE_S:g} s",
         )
-        axes.plot([row["x"] for row in edges], [row["y"] for row in edges], "|", color="black")
 
 
 def _draw_lines(

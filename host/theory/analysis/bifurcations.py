@@ -1,8 +1,9 @@
 """A curve of cycles followed to its ends, and the bifurcations on it.
 
-Folds, pitchforks and Neimark-Sacker bifurcations. A multiplier -1 of the reduced map is +1 for the
-whole period: there the cycle loses its symmetry in a pitchfork. For the same reason a cycle with
-its symmetry has no period doubling: the multipliers of its period are squares, or fourth powers.
+Folds, pitchforks, period doublings and Neimark-Sacker bifurcations. For a cycle with a symmetry, a
+multiplier -1 of the reduced map is +1 for the whole period: there the cycle loses its symmetry in a
+pitchfork. For the same reason it has no period doubling: the multipliers of its period are squares,
+or fourth powers. A cycle without symmetry has one there.
 """
 
 from __future__ import annotations
@@ -15,14 +16,15 @@ import numpy as np
 
 from host.errors import NotDone
 from host.theory.analysis.continuation import Curve, Point
-from host.theory.analysis.cycles import Shooting
+from host.theory.analysis.cycles import FORTH_AND_BACK, Shooting
 from host.theory.analysis.fixpoints import NDComplex
 from host.theory.analysis.merging import saddle
 from host.theory.model.wheel import Array
 
-BifurcationType = Literal["fold", "pitchfork", "neimark-sacker"]
+BifurcationType = Literal["fold", "pitchfork", "period-doubling", "neimark-sacker"]
 FOLD: BifurcationType = "fold"
 PITCHFORK: BifurcationType = "pitchfork"
+PERIOD_DOUBLING: BifurcationType = "period-doubling"
 NEIMARK_SACKER: BifurcationType = "neimark-sacker"
 # Where a curve ends: at a merging; at the end of the range; at a Hopf bifurcation; where a wheel
 # with dry friction stops; where it cannot be followed further; after too many points.
@@ -47,7 +49,7 @@ class Bifurcation(NamedTuple):
     """A bifurcation of cycles.
 
     Attributes:
-        type: fold, pitchfork or Neimark-Sacker.
+        type: fold, pitchfork, period doubling or Neimark-Sacker.
         point: the cycle at which it happens.
         before: its place on the curve, between the points number `before` - 1 and `before`.
         off_by: relative difference of the followed constant if located with shorter time steps.
@@ -83,23 +85,25 @@ def vanishing(type_: BifurcationType, derivative: Array) -> float:
         derivative = np.array(
             [np.cross(second, third), np.cross(third, first), np.cross(first, second)]
         )
-    return float(np.linalg.det(derivative + np.eye(3) * (1.0 if type_ == PITCHFORK else -1.0)))
+    flips = type_ in (PITCHFORK, PERIOD_DOUBLING)
+    return float(np.linalg.det(derivative + np.eye(3) * (1.0 if flips else -1.0)))
 
 
-def _tests(shooting: Shooting) -> dict[BifurcationType, Callable[[Point], float]]:
+def tests_of(shooting: Shooting) -> dict[BifurcationType, Callable[[Point], float]]:
     """The function that vanishes at each type of bifurcation."""
 
     def of(type_: BifurcationType) -> Callable[[Point], float]:
         return lambda point: vanishing(type_, shooting.map_derivative(point.unknowns))
 
+    flip = PERIOD_DOUBLING if shooting.family.power == 1.0 else PITCHFORK
     return {
         FOLD: lambda point: float(point.tangent[-1]),
-        PITCHFORK: of(PITCHFORK),
+        flip: of(flip),
         NEIMARK_SACKER: of(NEIMARK_SACKER),
     }
 
 
-def _is_bifurcation(type_: BifurcationType, multipliers: NDComplex) -> bool:
+def is_bifurcation(type_: BifurcationType, multipliers: NDComplex) -> bool:
     """Whether a multiplier is where this type has it."""
     if type_ == NEIMARK_SACKER:  # two real multipliers of product 1 are no such pair
         on_circle = np.abs(np.abs(multipliers) - 1) < _SURE
@@ -115,7 +119,8 @@ def _end(shooting: Shooting, point: Point, low: float, high: float, smallest: fl
         return RANGE
     wheel = shooting.wheel_at(point.unknowns)
     left = saddle(wheel)
-    if left is not None and seconds * left.eigenvalues[0].real > _LONGEST:
+    longest = _LONGEST * shooting.family.crossings
+    if left is not None and seconds * left.eigenvalues[0].real > longest:
         return MERGING
     if wheel.dry_friction > 0.0 and shooting.least_omega(point) < 0.0:
         return STICKS
@@ -137,12 +142,12 @@ def follow(shooting: Shooting, curve: Curve, first: Point, low: float, high: flo
     Returns:
         The curve and the bifurcations on it.
     """
-    tests, finer = _tests(shooting), shooting.with_finer_steps(_FINER)
+    tests, finer = tests_of(shooting), shooting.with_finer_steps(_FINER)
     points: list[Point] = []
     found: list[Bifurcation] = []
     values: dict[BifurcationType, float] = {}
     # Smaller forth-and-back cycles have come back to the fixpoint.
-    smallest = 0.0 if shooting.family.turn else abs(first.unknowns[2]) / 2
+    smallest = abs(first.unknowns[2]) / 2 if shooting.family is FORTH_AND_BACK else 0.0
     try:
         for point in curve.follow(first, _SHORTEST_STEP, _LONGEST_STEP):
             before, values = values, {type_: test(point) for type_, test in tests.items()}
@@ -150,9 +155,9 @@ def follow(shooting: Shooting, curve: Curve, first: Point, low: float, high: flo
                 if before[type_] * values[type_] >= 0.0:
                     continue
                 there = curve.locate(points[-1], point, tests[type_])
-                if _is_bifurcation(type_, shooting.multipliers(there.unknowns)):
+                if is_bifurcation(type_, shooting.multipliers(there.unknowns)):
                     finer_curve = Curve(finer, curve.scales)
-                    again = finer_curve.locate(points[-1], point, _tests(finer)[type_])
+                    again = finer_curve.locate(points[-1], point, tests_of(finer)[type_])
                     off_by = abs(float(again.unknowns[4] / there.unknowns[4]) - 1)
                     found.append(Bifurcation(type_, there, len(points), off_by))
             end = _end(shooting, point, low, high, smallest)

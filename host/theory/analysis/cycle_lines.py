@@ -17,7 +17,7 @@ import numpy as np
 from host.errors import NotDone
 from host.theory.analysis.bifurcations import FOLD, NEIMARK_SACKER, BifurcationType, vanishing
 from host.theory.analysis.continuation import Curve, Point
-from host.theory.analysis.cycles import Family, Shooting
+from host.theory.analysis.cycles import FORTH_AND_BACK, Family, Shooting
 from host.theory.analysis.hopf import above_hopf
 from host.theory.analysis.merging import saddle
 from host.theory.engine.flow import FINENESS
@@ -28,8 +28,10 @@ from host.theory.model.wheel import Array, Wheel
 Mark = Literal["cusp", "crosses Hopf", "resonance 1:3", "resonance 1:4"]
 # Where a line ends: at the edge of the range; on the Hopf line, where its cycles vanish; on the
 # merging line; where its multipliers are 1 twice, or -1 twice; where it cannot be followed further;
-# after too many points.
-LineEnd = Literal["range", "Hopf line", "merging", "resonance 1:1", "resonance 1:2", "lost", "long"]
+# after too many points. One that runs beside the merging line is not followed at all.
+LineEnd = Literal[
+    "range", "Hopf line", "merging", "resonance 1:1", "resonance 1:2", "lost", "long", "beside"
+]
 # The step, relative to an unknown's scale, of the derivatives of the function that vanishes.
 _DIFFERENCE = 1e-8
 _SHORTEST_STEP, _LONGEST_STEP, _MOST_POINTS = 2e-3, 0.1, 60
@@ -187,7 +189,7 @@ def trace(line: CycleLine, first: Point, window: Window) -> Traced:
 def _lost(line: CycleLine, unknowns: Array) -> LineEnd:
     """Where a line ends that is lost after a cycle, (6,)."""
     amplitude = abs(unknowns[2]) * unknowns[3] / pi
-    if not line.family.turn and amplitude < _SMALL:
+    if line.family is FORTH_AND_BACK and amplitude < _SMALL:
         return "Hopf line"
     return "merging" if _growths(line, unknowns) > _LONG else "lost"
 
@@ -210,10 +212,10 @@ def _marks(line: CycleLine, before: Point) -> dict[Mark, Callable[[Point], float
 
 
 def _growths(line: CycleLine, unknowns: Array) -> float:
-    """How many times of the saddle's growth the reduced map of a cycle, (6,), takes."""
+    """How many times of the saddle's growth a cycle, (6,), takes from crossing to crossing."""
     left = saddle(line.wheel_at(unknowns))
     assert left is not None  # there is no dry friction
-    return float(unknowns[3] * left.eigenvalues[0].real)
+    return float(unknowns[3] * left.eigenvalues[0].real) / line.family.crossings
 
 
 def joined(line: CycleLine, unknowns: Array) -> bool:
@@ -232,7 +234,7 @@ def _ended(
         ("range", lambda point: 1.0 - point.unknowns[_X] / window.x_to),
         ("merging", lambda point: _LONGEST - _growths(line, point.unknowns)),
     ]
-    if not line.family.turn:
+    if line.family is FORTH_AND_BACK:
         sign = np.sign(before.unknowns[2])
         ends.append(("Hopf line", lambda point: float(sign * point.unknowns[2])))
     if line.type == NEIMARK_SACKER:

@@ -41,12 +41,14 @@ class Family(NamedTuple):
         back: the symmetry that closes the reduced map, (4, 4).
         turn: how far the wheel has turned before `back` is applied, rad.
         power: how many reduced maps make a period.
+        crossings: how often the reduced map comes to a multiple of a quarter turn.
     """
 
     name: str
     back: Array
     turn: float
     power: float
+    crossings: int = 1
 
 
 FORTH_AND_BACK = Family("FB", np.diag([1.0, -1.0, -1.0, -1.0]), 0.0, 2.0)

@@ -1,7 +1,7 @@
 """The study `lines`: bifurcations in the plane of two constants.
 
-The plane is cut into bands of y. In each band, lines are followed from where they cross its edges:
-a line that lies within a band altogether is not seen.
+The plane is cut into bands of y. In each band, lines are followed from where they cross its edges,
+or, in windows of attracting cycles, its middle: a line that does not come there is not seen.
 """
 
 from __future__ import annotations
@@ -25,20 +25,21 @@ from host.theory.studies.lines_cycles import cycle_rows
 from host.theory.studies.lines_plane import Plane, plane_of
 from host.theory.studies.lines_report import report
 from host.theory.studies.lines_rows import PARTS, ChaosEdgePoint, LinesCell, Measured, PhasePoint
+from host.theory.studies.lines_windows import WINDOW_BANDS, window_rows
 from host.theory.studies.variants import require_two_rods
 
 __all__ = ["cells", "report", "simulate"]
 
 BANDS = 12
-# Values of y at which the edges of lasting chaos are looked for.
-CHAOS_YS = 10
+# Values of y at which crises are looked for.
+CHAOS_YS = 12
 # Phases: points of each axis, values of y in a cell; the push (rad), and times (s).
 GRID, ROWS = 60, 15
 _PUSH, _TRANSIENT_S, _MEASURED_S = 1e-3, 60.0, 40.0
 
 
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
-    """Phases, edges of lasting chaos, and the lines of each kind in each band.
+    """Phases, crises, windows, and the lines of each kind in each band.
 
     Raises WrongUse for a wheel with one rod, if the axes are the same, if no resting wheel begins
     to swing, or if a wheel is too stiff to be followed.
@@ -58,18 +59,23 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[LinesCell]:
         require_loose(wheel.columns(1), LASTING_S)
     phases: list[LinesCell] = [{"part": "phases", "first": first} for first in range(0, GRID, ROWS)]
     chaos: list[LinesCell] = [{"part": "chaos", "number": number} for number in range(CHAOS_YS)]
-    return (
-        phases + chaos + [{"part": part, "band": band} for band in range(BANDS) for part in PARTS]
-    )
+    windows: list[LinesCell] = [{"part": "windows", "band": band} for band in range(WINDOW_BANDS)]
+    lines: list[LinesCell] = [
+        {"part": part, "band": band} for band in range(BANDS) for part in PARTS
+    ]
+    return phases + chaos + windows + lines
 
 
 def simulate(cell: LinesCell, setting: Setting) -> Sequence[Measured | PhasePoint | ChaosEdgePoint]:
-    """The phases, edges of chaos, or lines of one cell."""
+    """The phases, crises, or lines of one cell."""
     plane = plane_of(setting.options)
     if cell["part"] == "phases":
         return _phases(cell["first"], plane)
     if cell["part"] == "chaos":
         return _chaos(cell["number"], plane, np.random.default_rng(setting.seed_of(cell)))
+    if cell["part"] == "windows":
+        rng = np.random.default_rng(setting.seed_of(cell))
+        return window_rows(cell["band"], plane, rng)
     band = plane.band(cell["band"], BANDS)
     match cell["part"]:
         case "Hopf" | "merging" as part:
@@ -100,10 +106,17 @@ def _phases(first: int, plane: Plane) -> list[PhasePoint]:
 
 
 def _chaos(number: int, plane: Plane, rng: np.random.Generator) -> list[ChaosEdgePoint]:
-    """The edges of lasting chaos along x."""
+    """The crises along x."""
     y = plane.window.y_to * (number + 0.5) / CHAOS_YS
     found = chaos_edges(plane.at(plane.window.x_to, y), plane.x, plane.window.x_to, rng)
     return [
-        {"kind": "chaos", "x": edge.value, "y": y, "few": edge.few, "most": edge.most}
+        {
+            "kind": "chaos",
+            "side": edge.side,
+            "x": edge.value,
+            "y": y,
+            "leaves": edge.leaves,
+            "stays": edge.stays,
+        }
         for edge in found
     ]

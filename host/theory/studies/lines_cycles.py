@@ -15,7 +15,7 @@ from host.theory.analysis.bifurcations import BifurcationType
 from host.theory.analysis.branches import rotations, swings
 from host.theory.analysis.continuation import Point
 from host.theory.analysis.cycle_lines import CycleLine, Traced, Window, joined, trace
-from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION
+from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Family
 from host.theory.analysis.hopf import above_hopf
 from host.theory.analysis.merging import passes
 from host.theory.model.wheel import Array, Wheel
@@ -74,22 +74,36 @@ def cycle_rows(part: CyclePart, plane: Plane) -> list[Measured]:
     for y, direction in ((window.y_to, -1.0), (window.y_from, 1.0)):
         wheel = plane.at(window.x_to, y)
         for crossing in _crossings(part, wheel, axes, window.x_from, window.x_to):
-            scales = np.maximum(np.abs(crossing.unknowns), [1.0, 1.0, 0.0, 0.0, 0.0, 0.0])
-            line = CycleLine(wheel, family, crossing.type, axes, scales)
-            if joined(line, crossing.unknowns) or any(_same(crossing, one) for one in reached):
+            line = line_through(wheel, family, crossing.type, axes, crossing.unknowns)
+            if any(_same(crossing, one) for one in reached):
                 continue
-            traced = _traced(line, crossing, direction, window)
+            if joined(line, crossing.unknowns):
+                x = float(crossing.unknowns[4])
+                gap = relative_gap(plane, x, y, _NEAREST, _FARTHEST)
+                rows.append(
+                    {"kind": "end", "type": "beside", "on": line.type, "x": x, "y": y, "gap": gap}
+                )
+                continue
+            traced = traced_from(line, crossing.unknowns, direction, window)
             reached.append(_Crossing(crossing.type, traced.points[-1].unknowns))
-            rows += _rows_of(line, plane, traced, next(pieces))
+            rows += rows_of(line, plane, traced, next(pieces))
     return rows
 
 
-def _traced(line: CycleLine, crossing: _Crossing, direction: float, window: Window) -> Traced:
-    """The line from a crossing on, up or down."""
+def line_through(
+    wheel: Wheel, family: Family, type_: BifurcationType, axes: tuple[str, str], unknowns: Array
+) -> CycleLine:
+    """The line through a cycle, (6,), that bifurcates."""
+    scales = np.maximum(np.abs(unknowns), [1.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    return CycleLine(wheel, family, type_, axes, scales)
+
+
+def traced_from(line: CycleLine, unknowns: Array, direction: float, window: Window) -> Traced:
+    """The line from a cycle, (6,), on, up or down."""
     try:
-        first = line.at(crossing.unknowns)
+        first = line.at(unknowns)
     except NotDone:
-        return Traced([Point(crossing.unknowns, np.zeros(6))], [], "lost")
+        return Traced([Point(unknowns, np.zeros(6))], [], "lost")
     tangent = first.tangent * np.sign(direction * first.tangent[-1])
     return trace(line, first._replace(tangent=tangent), window)
 
@@ -99,7 +113,7 @@ def _same(one: _Crossing, other: _Crossing) -> bool:
     return one.type == other.type and bool(close)
 
 
-def _rows_of(line: CycleLine, plane: Plane, traced: Traced, piece: int) -> Iterator[Measured]:
+def rows_of(line: CycleLine, plane: Plane, traced: Traced, piece: int) -> Iterator[Measured]:
     """The rows of a piece of a line."""
     type_, x, y = line.type, 0.0, 0.0
     for point in traced.points:
@@ -114,6 +128,8 @@ def _rows_of(line: CycleLine, plane: Plane, traced: Traced, piece: int) -> Itera
             "x1": x1,
             "x2": x2,
             "omega": omega,
+            "crossings": line.family.crossings,
+            "quarters": round(line.family.turn / ROTATION.turn),
         }
     if traced.end != "range":
         gap = None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from collections.abc import Iterator
+from typing import TypedDict, cast
 
 from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
-from host.theory.analysis.chaos_edges import LASTING_S
+from host.theory.analysis.chaos_edges import LASTING_S, LIFE_S, MANY, WHEELS
 from host.theory.studies.lines_rows import (
     ChaosEdgeRow,
     CyclePointRow,
@@ -22,12 +23,17 @@ from host.theory.studies.lines_rows import (
 from host.theory.studies.registry import LETTERS
 
 _UNITS = {"tau": "s", "f": "s", "I": "s^2"}
-_CYCLES = {"FB": " of forth-and-back cycles", "LLM": " of rotations"}
+_CYCLES = {
+    "FB": " of forth-and-back cycles",
+    "LLM": " of rotations",
+    "windows": " of cycles in windows",
+}
 _NAMES = {
     "Hopf": "Hopf line",
     "merging": "merging line",
     "fold": "folds",
     "pitchfork": "pitchforks",
+    "period-doubling": "period doublings",
     "neimark-sacker": "Neimark-Sacker line",
 }
 _ENDS = {
@@ -37,14 +43,20 @@ _ENDS = {
     "resonance 1:2": "ends where two multipliers are -1",
     "lost": "could not be followed further",
     "long": "was not followed further",
+    "beside": "so close to the merging line that they are not followed",
 }
 
 
 class LineNumbers(TypedDict):
-    """A line: how many points it has, and their least and greatest x and y."""
+    """A line: how many points it has, and their least and greatest x and y.
+
+    Attributes:
+        crossings: after how many crossings its cycles repeat themselves, up to the symmetries.
+    """
 
     line: str
     points: int
+    crossings: list[int]
     x: list[float]
     y: list[float]
 
@@ -58,9 +70,9 @@ class Numbers(TypedDict):
         special_points: with x and y, and the relative difference with shorter time steps.
         ends: where lines end, with x and y.
         lines: the lines that were found.
-        chaos_edges: where half of the wheels are still chaotic after chaos_lasts_s; few and most
-            are the values of x at which a tenth and nine tenths of them are.
-        chaos_lasts_s: how long lasting chaos lasts at least (s).
+        crises: where chaos has a mean life of crisis_life_s, with x halfway between leaves and
+            stays: the closest values at which its life is shorter and longer, with 95 % confidence.
+        crisis_life_s: this life (s).
         greatest_off_by: the greatest relative difference with shorter time steps.
     """
 
@@ -69,8 +81,8 @@ class Numbers(TypedDict):
     special_points: list[dict[str, object]]
     ends: list[dict[str, object]]
     lines: list[LineNumbers]
-    chaos_edges: list[dict[str, float]]
-    chaos_lasts_s: float
+    crises: list[dict[str, object]]
+    crisis_life_s: float
     greatest_off_by: float | None
 
 
@@ -104,24 +116,71 @@ def report(rows: list[LinesRow], setting: Setting) -> Findings:
             for row in ends
         ],
         "lines": lines,
-        "chaos_edges": [
-            {"x": row["x"], "y": row["y"], "few": row["few"], "most": row["most"]} for row in chaos
+        "crises": [
+            {
+                "side": row["side"],
+                "x": row["x"],
+                "y": row["y"],
+                "leaves": row["leaves"],
+                "stays": row["stays"],
+            }
+            for row in chaos
         ],
-        "chaos_lasts_s": LASTING_S,
+        "crisis_life_s": LIFE_S,
         "greatest_off_by": max(differences, default=None),
     }
     answers = [
-        *(_special_answer(row, axes) for row in specials),
-        *(_end_answer(row, axes) for row in ends),
+        *(_special_answer(row, axes) for row in specials if row["part"] != "windows"),
         *(
-            Answer(one["line"], _range(axes["x"], one["x"]) + ", " + _range(axes["y"], one["y"]))
-            for one in lines
+            _end_answer(row, axes)
+            for row in ends
+            if row["part"] != "windows" and row["type"] != "beside"
         ),
+        *_beside_answers(ends, axes),
+        *(_line_answer(one, axes) for one in lines),
+        *_missing(lines),
     ]
+    if chaos:
+        what = f"{MANY} of {WHEELS} wheels leave chaos in {LASTING_S:g} s, to where none does"
+        answers.append(Answer(f"crisis: chaos lives {LIFE_S:g} s; in brackets, from where", what))
     answers += [_chaos_answer(row, axes) for row in chaos]
-    if not any(row["type"] == "pitchfork" for row in points_of(rows)):
-        answers.append(Answer("pitchforks, period doublings", "none of symmetric cycles"))
     return Findings([], numbers, answers=answers)
+
+
+def _line_answer(line: LineNumbers, axes: dict[str, str]) -> Answer:
+    words = _range(axes["x"], line["x"]) + ", " + _range(axes["y"], line["y"])
+    if line["line"].endswith(_CYCLES["windows"]):
+        words += ", period " + ", ".join(map(str, line["crossings"]))
+    return Answer(line["line"], words)
+
+
+def _missing(lines: list[LineNumbers]) -> Iterator[Answer]:
+    """What is said of flips that were not found."""
+    names = [line["line"] for line in lines]
+    flips = [_name(part, "pitchfork") for part in ("FB", "LLM")]
+    if not any(name in flips for name in names):
+        yield Answer("pitchforks of symmetric cycles", "none; they cannot double their period")
+    if _name("windows", "period-doubling") not in names:
+        yield Answer(_name("windows", "period-doubling"), "none found")
+
+
+def _beside_answers(ends: list[EndRow], axes: dict[str, str]) -> Iterator[Answer]:
+    """Lines that run beside the merging line, each with the range in which they were seen."""
+    found: dict[str, list[EndRow]] = {}
+    for row in ends:
+        if row["type"] == "beside":
+            found.setdefault(_name(row["part"], row["on"]), []).append(row)
+    for name, own in found.items():
+        places = ", ".join(
+            _range(letter, [min(values), max(values)])
+            for letter, values in (
+                (axes["x"], [row["x"] for row in own]),
+                (axes["y"], [row["y"] for row in own]),
+            )
+        )
+        gap = max((row["gap"] for row in own if row["gap"] is not None), default=None)
+        words = places if gap is None else f"{places}, closer than {gap:.1e} of it"
+        yield Answer(f"{name}: {_ENDS['beside']}", words)
 
 
 def _lines(points: list[PointRow | CyclePointRow]) -> list[LineNumbers]:
@@ -132,6 +191,9 @@ def _lines(points: list[PointRow | CyclePointRow]) -> list[LineNumbers]:
         {
             "line": name,
             "points": len(own),
+            "crossings": sorted(
+                {cast("CyclePointRow", row)["crossings"] for row in own if "crossings" in row}
+            ),
             "x": [min(row["x"] for row in own), max(row["x"] for row in own)],
             "y": [min(row["y"] for row in own), max(row["y"] for row in own)],
         }
@@ -158,10 +220,11 @@ def _end_answer(row: EndRow, axes: dict[str, str]) -> Answer:
 
 
 def _chaos_answer(row: ChaosEdgeRow, axes: dict[str, str]) -> Answer:
-    (x, y), (low, high) = axes.values(), sorted((row["few"], row["most"]))
+    (x, y), (low, high) = axes.values(), sorted((row["leaves"], row["stays"]))
+    lasts = "above" if row["side"] == "lower" else "below"
     return Answer(
-        f"edge of chaos that lasts {LASTING_S:g} s, {y} = {row['y']:g}{_unit(y)}",
-        f"{x} = {row['x']:.4g}{_unit(x)} ({low:.4g} to {high:.4g})",
+        f"chaos lasts {lasts}, {y} = {row['y']:g}{_unit(y)}",
+        f"{x} = {row['x']:.5g}{_unit(x)} ({low:.5g} to {high:.5g})",
     )
 
 

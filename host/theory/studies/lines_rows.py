@@ -6,13 +6,14 @@ from collections.abc import Iterable
 from typing import Literal, TypedDict
 
 from host.theory.analysis.bifurcations import BifurcationType
+from host.theory.analysis.chaos_edges import Side
 from host.theory.analysis.cycle_lines import LineEnd, Mark
 from host.theory.analysis.phases import Phase
 
 CyclePart = Literal["FB", "LLM"]
 BoundaryPart = Literal["Hopf", "merging"]
-Part = BoundaryPart | CyclePart
-PARTS: tuple[Part, ...] = ("Hopf", "merging", "FB", "LLM")
+Part = BoundaryPart | CyclePart | Literal["windows"]
+PARTS: tuple[BoundaryPart | CyclePart, ...] = ("Hopf", "merging", "FB", "LLM")
 LineType = BoundaryPart | BifurcationType
 SpecialType = Literal["Bautin", "neutral saddle"] | Mark
 
@@ -32,8 +33,10 @@ class BandCell(TypedDict):
     """The lines of one kind in a band of the plane.
 
     Attributes:
-        part: Hopf; merging; FB and LLM, bifurcations of forth-and-back cycles and of rotations.
-        band: number of the band, from the top.
+        part: Hopf; merging; FB and LLM, bifurcations of forth-and-back cycles and of rotations;
+            windows, those of attracting cycles of several crossings.
+        band: number of the band, from the top. Bands of windows are equally high, those of the
+            other lines have equal ratios of y.
     """
 
     part: Part
@@ -41,7 +44,7 @@ class BandCell(TypedDict):
 
 
 class ChaosCell(TypedDict):
-    """The edges of lasting chaos at one y.
+    """The crises at one y.
 
     Attributes:
         number: number of this y, from the bottom.
@@ -52,20 +55,22 @@ class ChaosCell(TypedDict):
 
 
 class ChaosEdgePoint(TypedDict):
-    """Where half of the wheels are still chaotic after LASTING_S s.
+    """A crisis, by bisection (see host.theory.analysis.chaos_edges).
 
     Attributes:
-        x: the constant on the axis x (in its unit).
+        side: lower if chaos lasts at greater x, upper if at less.
+        x: the constant on the axis x, halfway between the other two (in its unit).
         y: the constant on the axis y (in its unit).
-        few: where FEW of them are, x (in its unit).
-        most: where MOST of them are, x (in its unit).
+        leaves: the closest x at which a wheel leaves chaos (in its unit).
+        stays: the closest x at which none does (in its unit).
     """
 
     kind: Literal["chaos"]
+    side: Side
     x: float
     y: float
-    few: float
-    most: float
+    leaves: float
+    stays: float
 
 
 class PhasePoint(TypedDict):
@@ -109,11 +114,16 @@ class CycleLinePoint(LinePoint):
         x1: potential at phi = 0 (1).
         x2: potential at phi = 0 (1).
         omega: angular velocity at phi = 0 (rad/s).
+        crossings: how often it comes to a multiple of a quarter turn until it repeats itself, up to
+            the symmetries.
+        quarters: the quarter turns that it has then made.
     """
 
     x1: float
     x2: float
     omega: float
+    crossings: int
+    quarters: int
 
 
 class SpecialPoint(TypedDict):
@@ -163,7 +173,7 @@ class PhaseRow(PhasesCell, PhasePoint):
 
 
 class ChaosEdgeRow(ChaosCell, ChaosEdgePoint):
-    """A row for an edge of lasting chaos."""
+    """A row for a crisis."""
 
 
 class PointRow(BandCell, LinePoint):
@@ -193,7 +203,7 @@ def phases_of(rows: Iterable[LinesRow]) -> list[PhaseRow]:
 
 
 def chaos_edges_of(rows: Iterable[LinesRow]) -> list[ChaosEdgeRow]:
-    """The edges of lasting chaos."""
+    """The crises."""
     return [row for row in rows if row["kind"] == "chaos"]
 
 

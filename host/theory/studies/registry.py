@@ -136,9 +136,9 @@ TABLE = {
     ),
     "lines": Entry(
         "two-parameter diagram: Hopf and merging lines, folds, pitchforks and Neimark-Sacker lines"
-        " in the plane of two constants, with their special points, and the edge of lasting chaos."
-        " Takes one to two minutes. The axes begin at a hundredth of their"
-        " greatest values",
+        " in the plane of two constants, with their special points; period doublings and the other"
+        " lines of attracting cycles in windows; and the crisis of chaos, with its uncertainty."
+        " Takes two to three minutes. The axes begin at a hundredth of their greatest values",
         (
             A,
             TAU,

@@ -7,14 +7,17 @@ from host.errors import NotDone
 from host.figures.theory import lines as figure
 from host.runs.contract import Setting
 from host.runs.registry import complete_options
+from host.theory.analysis import windows
 from host.theory.analysis.attractors import random_starts
 from host.theory.analysis.boundaries import Boundary
-from host.theory.analysis.chaos_edges import chaos_edges
+from host.theory.analysis.chaos_edges import MANY, chaos_edges, crisis_beside
 from host.theory.analysis.cycle_lines import Window
 from host.theory.analysis.hopf import above_hopf
+from host.theory.analysis.sections import points, repeat
 from host.theory.analysis.transients import lives
+from host.theory.engine.crossings import crossings
 from host.theory.model.wheel import Wheel
-from host.theory.studies import lines, lines_boundaries
+from host.theory.studies import lines, lines_boundaries, lines_cycles, lines_windows
 from host.theory.studies.lines_boundaries import boundary_rows
 from host.theory.studies.lines_cycles import cycle_rows
 from host.theory.studies.lines_plane import Plane, plane_of
@@ -140,26 +143,136 @@ def test_the_folds_of_swinging_end_where_cycles_cease_to_be_born_stable():
 
 
 @pytest.fixture(scope="module")
+def window_lines():
+    """The lines of a window between tau = 1.19 and 1.27 s, from a cycle in it."""
+    plane = Plane(PAPER, "k", "tau", Window(15.5, 18.5, 0.5, 1.27))
+    cycle = np.array([-0.055878, -0.321172, 15.124829, 2.461785, 17.33871])
+    with pytest.MonkeyPatch.context() as patch:
+        known = [(windows.family_of(10, -4, False), cycle)]
+        patch.setattr(windows, "attracting_cycles", lambda *_: known)
+        return lines_windows.window_rows(0, plane, np.random.default_rng(1))
+
+
+def test_wheels_come_to_a_cycle_of_six_crossings_that_the_mirror_closes():
+    found = windows.attracting_cycles(
+        PAPER._replace(tau=1.5), "k", np.array([9.3, 9.5, 9.7]), np.random.default_rng(1)
+    )
+    assert {family.name for family, _ in found} == {"6 crossings, -3 quarter turns, mirrored"}
+    for family, (x1, x2, omega, seconds, k) in found:
+        start = np.array([x1, x2, 0.0, omega])
+        end = independent.follow(start, PAPER._replace(tau=1.5, k=k), seconds).y[:, -1]
+        assert family.back @ (end - [0.0, 0.0, family.turn, 0.0]) == pytest.approx(start, abs=1e-4)
+
+
+def doublings(rows, y):
+    """The period doublings of the cycles of ten crossings at an y, in ascending order of k."""
+    return sorted(
+        {
+            row["x"]: row for row in at_edge(rows, "period-doubling", y) if row["crossings"] == 10
+        }.items()
+    )
+
+
+@pytest.mark.parametrize("y", [1.27 * 31 / 32, 1.27 * 15 / 16])
+def test_scipy_has_the_cycle_of_ten_crossings_and_a_multiplier_minus_1(window_lines, y):
+    found = doublings(window_lines, y)
+    assert len(found) == 2
+    for k, row in found:
+        wheel = PAPER._replace(k=k, tau=y)
+        start = np.array([row["x1"], row["x2"], 0.0, row["omega"]])
+        end = independent.follow(start, wheel, row["period"]).y[:, -1]
+        end[2] -= row["quarters"] * np.pi / 2
+        assert row["quarters"] % 4 == 0
+        assert end == pytest.approx(start, abs=1e-7)
+        leading = independent.multipliers(start, row["period"], wheel, np.eye(4))[0]
+        assert leading == pytest.approx(-1.0, abs=1e-6)
+
+
+def test_a_cycle_and_its_images_are_one_cycle(window_lines):
+    y = 1.27 * 31 / 32
+    k, row = doublings(window_lines, y)[-1]
+    wheel = PAPER._replace(k=k, tau=y)
+    start = np.array([row["x1"], row["x2"], 0.0, row["omega"]])
+    quarter_behind = independent.UNDO_QUARTER @ start - [0.0, 0.0, np.pi / 2, 0.0]
+    images = np.array([start, MIRROR @ start, quarter_behind]).T
+    found = crossings(images, wheel.columns(3), 3 * row["period"])
+    cycles = [
+        windows.cycle_of(points(times_s, states, wheel, "phi"), 10, k)
+        for times_s, states in zip(found.times_s, found.states, strict=True)
+    ]
+    for family, unknowns in cycles:
+        assert (family.name, family.power) == (f"10 crossings, {row['quarters']} quarter turns", 1)
+        assert unknowns == pytest.approx(cycles[0][1], abs=1e-6)
+        assert unknowns[3] == pytest.approx(row["period"], abs=1e-6)
+
+
+def test_a_wheel_doubles_its_period_where_the_line_says_so(window_lines):
+    y = 1.27 * 31 / 32
+    k, row = doublings(window_lines, y)[-1]
+    wheels = PAPER._replace(tau=y).columns(2, k=np.array([0.999 * k, 1.001 * k]))
+    starts = np.array([row["x1"], row["x2"], 0.0, row["omega"]])[:, None] * [1.001, 1.001]
+    found = crossings(starts, wheels, 400.0)
+    lengths = []
+    for times_s, states in zip(found.times_s, found.states, strict=True):
+        own = points(times_s[-200:], states[-200:], PAPER._replace(tau=y), "phi")
+        lengths.append(repeat(own).crossings)
+    assert lengths == [10, 20]
+
+
+def test_a_fold_beside_the_merging_line_is_reported_with_its_distance(monkeypatch):
+    plane = Plane(PAPER, "a", "k", Window(0.8, 0.9, 4.9, 5.0))
+    cycle = np.array([0.99080039, -0.09852007, 0.41285559, 21.62581847, 0.83902268, 5.0])
+
+    def found(part, wheel, *_):
+        return [lines_cycles._Crossing("fold", cycle)] if wheel.k == 5.0 else []
+
+    monkeypatch.setattr(lines_cycles, "_crossings", found)
+    (row,) = cycle_rows("FB", plane)
+    assert (row["kind"], row["type"], row["on"]) == ("end", "beside", "fold")
+    assert 0.0 < row["gap"] < 1e-8
+    rows = [{"part": "FB", "band": 0, **row}]
+    answer = lines.report(rows, Setting(1, options(x="a", y="k"))).answers[0]
+    assert answer.name.startswith("folds of forth-and-back cycles: so close to the merging line")
+    assert answer.value.endswith(f"closer than {row['gap']:.1e} of it")
+
+
+@pytest.fixture(scope="module")
 def edges():
     return chaos_edges(PAPER._replace(tau=1.0), "k", 6.0, np.random.default_rng(1))
 
 
-def test_below_the_edge_of_chaos_wheels_stop_turning_round_and_above_it_they_do_not(edges):
+def test_below_the_crisis_wheels_stop_turning_round_and_above_it_they_do_not(edges):
     (edge,) = edges
-    assert edge.few < edge.value < edge.most
-    assert edge.most - edge.few < 0.1 * edge.value
-    ks = np.repeat([0.9 * edge.few, 1.1 * edge.most], 8)
+    assert edge.side == "lower"
+    assert edge.leaves < edge.value < edge.stays < 1.01 * edge.leaves
+    ks = np.repeat([0.95 * edge.leaves, 1.01 * edge.stays], 8)
     parameters = PAPER._replace(tau=1.0).columns(16, k=ks)
     ended = lives(random_starts(16, np.random.default_rng(2)), parameters, 400.0, 1.0).ended
     assert ended[:8].all()
     assert not ended[8:].all()
 
 
+def test_the_upper_crisis_mirrors_the_lower_one():
+    """Wheels leave below 0.3 and above 0.7; only the way of the bisection matters."""
+
+    def leaving(value):
+        return MANY if not 0.3 < value < 0.7 else 1 if not 0.31 < value < 0.69 else 0
+
+    values = np.linspace(0.05, 1.0, 20).tolist()
+    for side, place, leaves, stays in (("lower", 6, 0.3, 0.31), ("upper", 12, 0.7, 0.69)):
+        found = crisis_beside(side, leaving, values, place)
+        assert found.side == side
+        assert (found.leaves, found.stays) == pytest.approx((leaves, stays), abs=1e-3)
+        assert found.value == pytest.approx((leaves + stays) / 2, abs=1e-3)
+    assert crisis_beside("upper", leaving, values[:12], 11) is None
+    assert crisis_beside("lower", lambda _: 1, values, 6) is None
+
+
 def test_there_is_no_edge_where_there_is_no_chaos():
     assert chaos_edges(PAPER, "k", 4.0, np.random.default_rng(1)) == []
 
 
-def test_the_lines_are_reported_and_drawn(cycles, edges, tmp_path):
+def test_the_lines_are_reported_and_drawn(cycles, window_lines, edges, tmp_path):
     setting = Setting(1, options(y_to=0.83))
     plane = plane_of(setting.options)
     rows = [{"part": part, "band": 0, **row} for part, own in cycles.items() for row in own]
@@ -167,12 +280,14 @@ def test_the_lines_are_reported_and_drawn(cycles, edges, tmp_path):
     rows += [{"part": "Hopf", "band": 0, **row} for row in hopf]
     cell = {"part": "phases", "first": 0}
     rows += [{**cell, **row} for row in lines.simulate(cell, setting)]
-    chaos = {"part": "chaos", "number": 0, "kind": "chaos", "y": 0.5}
-    few, most = edges[0].few, edges[0].most
-    rows.append({**chaos, "x": edges[0].value, "few": few, "most": most})
+    rows += [{"part": "windows", "band": 0, **row} for row in window_lines]
+    crisis = dict(zip(("side", "x", "leaves", "stays"), edges[0], strict=True))
+    rows.append({"part": "chaos", "number": 0, "kind": "chaos", "y": 0.5, **crisis})
     found = lines.report(rows, setting)
     names = [one["line"] for one in found.numbers["lines"]]
     assert "Neimark-Sacker line of rotations" in names
+    assert "period doublings of cycles in windows" in names
+    assert any(one.name == "chaos lasts above, tau = 0.5 s" for one in found.answers)
     assert found.numbers["axes"] == {"x": "k", "y": "tau"}
     figure.draw(rows, found).savefig(tmp_path / "lines.png")
     # Another way to the Hopf line: the greatest growth of rest vanishes.
