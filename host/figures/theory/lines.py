@@ -44,10 +44,10 @@ _LINES: dict[tuple[str, str], tuple[str, Any, str]] = {
     ("FB", "neimark-sacker"): (COLOURS[3], ":", "Neimark-Sacker, forth and back"),
     ("LLM", "pitchfork"): (COLOURS[4], "-.", "pitchforks, rotations"),
     ("FB", "pitchfork"): (COLOURS[4], ":", "pitchforks, forth and back"),
-    ("windows", "period-doubling"): (COLOURS[1], (0, (1, 1)), "period doublings, windows"),
+    ("windows", "period-doubling"): (COLOURS[6], (0, (1, 1)), "period doublings, windows"),
     ("windows", "fold"): (COLOURS[0], "-", "folds, windows"),
-    ("windows", "neimark-sacker"): (COLOURS[3], "-", "Neimark-Sacker, windows"),
-    ("windows", "pitchfork"): (COLOURS[4], "--", "pitchforks, windows"),
+    ("windows", "neimark-sacker"): (COLOURS[3], (0, (4, 1, 1, 1)), "Neimark-Sacker, windows"),
+    ("windows", "pitchfork"): (COLOURS[2], (0, (3, 1)), "pitchforks, windows"),
 }
 _MARKERS = {
     "Bautin": ("o", "Bautin point"),
@@ -144,7 +144,8 @@ def _draw_chaos(axes: Axes, edges: list[ChaosEdgeRow]) -> None:
             ecolor="black",
             capsize=3.0,
             marker="D",
-            markersize=4.5,
+            markersize=5.0,
+            markeredgecolor="black",
             label=f"crisis: chaos lives {LIFE_S:g} s",
         )
 
