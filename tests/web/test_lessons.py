@@ -14,6 +14,7 @@ from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
 from sim_motor.hand import pull
 from tests.lab.pupils import WALLS
+from tests.web.test_access import assert_no_findings
 from tests.web.test_page import wait_for
 
 LESSONS = {lesson["name"]: lesson for lesson in lessons()}
@@ -196,6 +197,17 @@ DO = {
     "wall": wait_at_the_walls,
     "twins": find_slope,
 }
+
+
+def test_the_model_wheel_is_for_everybody_and_for_a_phone(pupil, station):
+    page = pupil.page
+    begin(pupil, station, "twins", 0)
+    for number in (1, 2):
+        page.click("text=Let a pair of twins go")
+        pupil.reads("#lessons", f"pair {number}: ln d")
+    assert_no_findings(page)
+    page.set_viewport_size({"width": 320, "height": 640})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
 
 
 @pytest.mark.parametrize("name", LESSONS)

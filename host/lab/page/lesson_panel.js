@@ -93,7 +93,7 @@ function predict(lesson, robot) {
 }
 
 function play(lesson, bench) {
-    const { texts, state, checking } = lesson;
+    const { texts, state, busy, checking } = lesson;
     const { ok, missing } = lessonTexts;
     const parts = [
         element("p", { className: "locked" }, lessonTexts.locked(texts.answers[state.guess])),
@@ -108,6 +108,7 @@ function play(lesson, bench) {
     }
     const verdict = element("p", { role: "status" });
     if (checking) verdict.append(lessonTexts.checking);
+    else if (busy && texts.model) verdict.append(lessonTexts.computing);
     else if (state.findings.length) verdict.append(lessonTexts[state.done ? "done" : "notYet"]);
     const findings = state.findings.map((one) =>
         element("li", {}, element("b", {}, one.ok ? ok : missing), ` ${one.words}`),
