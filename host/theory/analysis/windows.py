@@ -27,7 +27,7 @@ from host.theory.model.wheel import OMEGA, Array, Wheel
 _STARTS, _SETTLE_S, _PART_S, _CROSS_S = 4, 350.0, 50.0, 40.0
 _FINENESS = 0.6
 # Longer cycles are left out: their windows are narrow.
-MOST_CROSSINGS = 24
+MOST_CROSSINGS = 20
 _SHORTEST_STEP, _LONGEST_STEP, _MOST_POINTS = 1e-6, 0.02, 200
 _ALONG = np.array([0.0, 0.0, 0.0, 0.0, 1.0])
 
