@@ -89,6 +89,13 @@ def test_nothing_scrolls_sideways(visit, width):
     assert wide <= width
 
 
+def test_on_a_tablet_nothing_lies_over_start_after_a_stop(visit):
+    visitor = visit(viewport={"width": 900, "height": 600})
+    visitor.page.keyboard.press("Escape")
+    visitor.reads("#stop-words", "Stopped.")
+    visitor.page.click(".remedy", trial=True)
+
+
 def test_the_first_screen_has_what_is_needed_most(visit):
     visitor = visit()
     for name in ("#left-wheel", "#right-wheel", "#lag-plane", "#strips", "#kick-phase", "#stop"):
