@@ -61,6 +61,13 @@ def shown(robot, page):
     return ShownRobot(robot, page.take, lambda: None)
 
 
+def test_an_embedded_robot_whose_time_stands_still_is_not_lost(robot, shown, monkeypatch):
+    robot.wait(1)
+    later = shown.clock() + 10.0
+    monkeypatch.setattr(shown, "clock", lambda: later)
+    assert shown.state()["link"] == "up"
+
+
 def test_who_joins_gets_what_was_and_then_what_comes_with_the_robots_own_bits(robot, shown, page):
     robot.wait(1)
     shown.tell()
@@ -74,7 +81,7 @@ def test_who_joins_gets_what_was_and_then_what_comes_with_the_robots_own_bits(ro
     welcome, _, state, event, _ = page.got
     assert (welcome["embedded"], welcome["robot"]["name"]) == (True, "sim://")
     assert event["event"]["kick"]["mode"] == "phase"
-    assert (state["state"], state["link"]) == ("running", "up")  # its time stood still
+    assert (state["state"], state["link"]) == ("running", "up")
     size = len(page.records) // shown.ring.end
     packed = [page.records[at : at + STRUCT.size] for at in range(0, len(page.records), size)]
     assert packed == [STRUCT.pack(*record) for record in robot.recent()[-shown.ring.end :]]

@@ -148,7 +148,11 @@ def jupyter_lab(folder, sources):
         yield f"http://127.0.0.1:{port}/lab/tree/a.ipynb?token=secret"
     finally:
         server.terminate()
-        server.wait()
+        try:
+            server.wait(20.0)
+        except subprocess.TimeoutExpired:  # it waits for a kernel, which ends after it
+            server.kill()
+            server.wait()
 
 
 def _listens(port):

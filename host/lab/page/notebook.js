@@ -57,11 +57,16 @@ export class Board {
             part("ul", "key", { className: "key" }),
             ...below,
         );
-        // Else JupyterLab takes keys that are pressed here for its own commands.
-        this.root.dataset.lmSuppressShortcuts = "true";
         el.append(this.root);
         /** Finds one of its parts by name. */
         this.find = (id) => this.root.querySelector(`[data-part="${id}"]`);
+    }
+
+    /** Keep JupyterLab from taking keys that are pressed on the controls for its own commands. */
+    keepKeys() {
+        for (const control of this.root.querySelectorAll("button, input")) {
+            control.dataset.lmSuppressShortcuts = "true";
+        }
     }
 
     /** @returns {object} The theme of the notebook, which may be dark on a light system. */

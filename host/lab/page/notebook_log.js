@@ -30,6 +30,7 @@ export default () => {
                 [element("div", { className: "player" }, marks, slider, part("div", "player"))],
             );
             const reel = new Reel(log, board, board.find, board.root);
+            board.keepKeys();
             const { cursor, views, robot } = reel;
             const stateNow = () => STATES[robot.ring.columns.state[cursor.place]];
             reel.onframe = () => {

@@ -122,6 +122,7 @@ class View {
         const said = [this.state, this.name, this.reason, this.words];
         const facts = element("div", { className: "facts" }, ...said);
         this.board = new Board(el, [element("div", { className: "top" }, facts, stop)], []);
+        this.board.keepKeys();
         this.board.root.onkeydown = (event) => this.#key(event);
         this.frames = new Frames(
             () => this.#update(),
