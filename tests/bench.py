@@ -1,10 +1,21 @@
-"""`make bench`: how fast the things are that have to be fast, as ratios and rates of one run."""
+"""`make bench`: how fast the things are that have to be fast, as ratios and rates of one run.
 
+With --page it also writes what it has measured, and on which machine, to docs/benchmarks.md.
+"""
+
+import io
 import os
+import platform
+import re
 import socket
 import sys
+import textwrap
 import time
+from contextlib import redirect_stdout
+from datetime import UTC, datetime
+from importlib.metadata import version
 from math import cos, exp, sin, tanh
+from pathlib import Path
 
 from tests.bench_drawings import drawings
 from tests.bench_io import reads_and_writes
@@ -15,28 +26,68 @@ from tests.bench_static_page import page_without_a_server
 from tests.bench_stop import stop_beside_a_blocked_request, stop_from_a_shell, stop_of_all
 from tests.bench_storm import many_hosts
 
+PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
+INTRODUCTION = """# Benchmarks
+
+`make bench` measures what has to be fast. This page is its output of one run, as
+`.venv/bin/python -m tests.bench --page` has written it; nothing of it is typed by hand. Ratios of
+one run say more than times: times are those of this machine, and whatever else it does adds to
+them. What ticks cost on a real brick's processor is on [another page](arm.md).
+"""
+
+
+class Both(io.StringIO):
+    """Keeps what is printed, and prints it."""
+
+    def write(self, text: str) -> int:
+        sys.__stdout__.write(text)
+        sys.__stdout__.flush()
+        return super().write(text)
+
 
 def main() -> None:
     """Print everything."""
-    print(f"Python {sys.version.split()[0]}, {os.cpu_count()} cores", flush=True)
-    for measure in (
-        starts,
-        reads_and_writes,
-        controller_tick,
-        virtual_time,
-        batch,
-        bodies,
-        schedules,
-        collector,
-        stop_beside_a_blocked_request,
-        stop_from_a_shell,
-        stop_of_all,
-        many_hosts,
-        drawings,
-        lab_page,
-        page_without_a_server,
-    ):
-        measure()
+    measures = {
+        "The first and the second start of commands": starts,
+        "Reading angles and writing duty cycles": reads_and_writes,
+        "The controller": controller_tick,
+        "Virtual time": virtual_time,
+        "Many wheels at once": batch,
+        "Cars and trains": bodies,
+        "How late ticks begin": schedules,
+        "Python's garbage collector": collector,
+        "A stop beside a request that waits": stop_beside_a_blocked_request,
+        "A stop from a shell": stop_from_a_shell,
+        "A stop of three robots": stop_of_all,
+        "Many hosts": many_hosts,
+        "The drawings of the lab page": drawings,
+        "The lab page": lab_page,
+        "The lab page without a server": page_without_a_server,
+    }
+    machine = (
+        f"{processor()}, {os.cpu_count()} cores; Linux {platform.release()};"
+        f" Python {platform.python_version()}, numpy {version('numpy')}, numba {version('numba')},"
+        f" MuJoCo {version('mujoco-core')}"
+    )
+    print(machine, flush=True)
+    page = [INTRODUCTION, textwrap.fill(f"{datetime.now(UTC):%Y-%m-%d}: {machine}.", 98)]
+    for title, measure in measures.items():
+        with redirect_stdout(Both()) as heard:
+            measure()
+        lines = [
+            textwrap.fill(line, 98, subsequent_indent="  ")
+            for line in heard.getvalue().splitlines()
+        ]
+        page.append("\n".join([f"\n## {title}\n", "```text", *lines, "```"]))
+    if "--page" in sys.argv[1:]:
+        PAGE.write_text("\n".join(page) + "\n", encoding="utf-8")
+
+
+def processor() -> str:
+    """What this machine's processor calls itself."""
+    text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    found = re.search(r"^model name\s*: (.*)$", text, re.MULTILINE)
+    return found[1] if found else platform.machine()
 
 
 def best_of(repeats, function):
