@@ -15,7 +15,7 @@ from host.logs.log import Log
 from host.perform.catalogue import find
 from host.runs.answers import Answer
 from host.runs.columns import Column, Kind, columns_of
-from host.runs.contract import POINT, Cell, Findings, Options, Part, Parts, Row, Setting
+from host.runs.contract import OWN, POINT, Cell, Findings, Options, Part, Parts, Row, Setting
 from host.runs.runner import Outcome, Work
 from host.runs.sweep import (
     Axis,
@@ -31,8 +31,8 @@ from host.runs.sweep import (
 
 # How a point may fail: it makes no sense, the robot does not do it, or its numbers overflow.
 FAILURES = (WrongUse, NotDone, RobotFault, ArithmeticError, ValueError)
-# The keys of a cell beside POINT, of a row of a cell, and of a point that has none.
-_CELL, _ROW, _FAILED = "cell", "row", "failed"
+# The keys of a row of a cell, and of a point that has none.
+_ROW, _FAILED = "row", "failed"
 
 
 class Sweep:
@@ -73,7 +73,7 @@ class Sweep:
         for point in points(self._swept):
             try:
                 own = self._found.cells({**options, **point}, batch=batch)
-                found += [{POINT: point, _CELL: cell} for cell in own]
+                found += [{POINT: point, OWN: cell} for cell in own]
             except WrongUse as error:
                 refusals.append(error)
                 found.append({POINT: point, _FAILED: _reason(error)})
@@ -83,11 +83,11 @@ class Sweep:
 
     def world(self, cell: Cell) -> dict[str, str]:
         """What surrounds the robot in this cell."""
-        return self._work.world(cell[_CELL])
+        return self._work.world(cell[OWN])
 
     def trial(self, cell: Cell, robot: Robot, log: Log, setting: Setting) -> list[Row]:
         """Do one cell on a robot."""
-        rows = self._work.trial(cell[_CELL], robot, log, setting.at(cell))
+        rows = self._work.trial(cell[OWN], robot, log, setting.at(cell))
         return [{_ROW: row} for row in rows]
 
     def table(self, rows: list[Row], setting: Setting) -> list[Row]:
@@ -106,7 +106,7 @@ class Sweep:
             if _FAILED in row:
                 return [failure(row[_FAILED])]
         try:
-            own = [{**row[_CELL], **row[_ROW]} for row in rows]
+            own = [{**row[OWN], **row[_ROW]} for row in rows]
             return quantities(self._work.report(own, setting.at({POINT: point})), point)
         except FAILURES as error:
             return [failure(_reason(error))]
@@ -136,7 +136,7 @@ def _simulate(name: str, cell: Cell, setting: Setting) -> list[Row]:
     def compute(cell: Cell) -> Outcome:
         simulate = find(name).work.simulate
         assert simulate is not None
-        return [{_ROW: row} for row in simulate(cell[_CELL], setting.at(cell))], []
+        return [{_ROW: row} for row in simulate(cell[OWN], setting.at(cell))], []
 
     return forgiving(compute)(cell)[0]
 
@@ -148,7 +148,7 @@ def _parts(parts: Parts, cell: Cell, setting: Setting, begun: Part | None) -> It
         return
     own = begun and begun._replace(rows=[row[_ROW] for row in begun.rows])
     try:
-        for part in parts(cell[_CELL], setting.at(cell), own):
+        for part in parts(cell[OWN], setting.at(cell), own):
             yield part._replace(rows=[{_ROW: row} for row in part.rows])
     except FAILURES as error:
         yield Part([{_FAILED: _reason(error)}])

@@ -27,8 +27,8 @@ from sim_motor.constants import Constants, load
 Cell = dict[str, Any]
 Row = dict[str, Any]
 Options = dict[str, Any]
-# Where a cell of a sweep says at which options it is.
-POINT = "at"
+# Where a cell of a sweep says at which options it is, and which cell of the experiment.
+POINT, OWN = "at", "cell"
 
 
 class Part(NamedTuple):
@@ -102,8 +102,12 @@ class Setting:
         return params_with(**self.own_params())
 
     def seed_of(self, cell: Mapping[str, Any]) -> int:
-        """The random seed of a cell. It does not depend on other cells or on the machine."""
-        text = json.dumps([self.seed, cell], allow_nan=False, sort_keys=True)
+        """The random seed of a cell. It does not depend on other cells or on the machine.
+
+        A cell of a sweep has that of the same cell in a run of its own.
+        """
+        own = cell[OWN] if POINT in cell else cell
+        text = json.dumps([self.seed, own], allow_nan=False, sort_keys=True)
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], "big")
 
     def elsewhere(self, **own: Any) -> str:

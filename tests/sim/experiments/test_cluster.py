@@ -55,6 +55,16 @@ def test_a_study_of_the_model_has_the_same_numbers_from_a_cluster(cluster, tmp_p
         assert Path(table).read_bytes() == Path(other).read_bytes()
 
 
+def test_a_sweep_has_the_same_table_from_a_cluster(cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr("host.figures.sweep.draw", lambda rows, findings: Figure())
+    swept = {"tau": [0.25, 1.0], "f": [0.0, 0.5]}  # without friction there is no bifurcation
+    there = perform("hopf", out=tmp_path / "there", scheduler=cluster.scheduler_address, **swept)
+    here = perform("hopf", out=tmp_path / "here", **swept)
+    assert [row["f"] for row in there["numbers"]["rows"] if row["failed"]] == [0.0, 0.0]
+    table, other = Path(there["tables"][0]), Path(here["tables"][0])
+    assert table.read_bytes() == other.read_bytes()
+
+
 @pytest.fixture
 def scramble():
     """A simulation that takes a while, which no compiler shortens.

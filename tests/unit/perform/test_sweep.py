@@ -22,7 +22,7 @@ from host.theory.studies import hopf
 
 @pytest.fixture(autouse=True)
 def _no_figure(monkeypatch):
-    monkeypatch.setattr("host.perform.run.drawing", lambda *_: lambda *_: [])
+    monkeypatch.setattr("host.perform.run.drawing", lambda *_: lambda *_: ([], ""))
 
 
 def test_each_point_has_the_numbers_of_a_run_of_its_own(tmp_path):
@@ -63,6 +63,16 @@ def test_a_point_that_fails_is_a_row_with_the_reason(tmp_path, monkeypatch):
     assert "Hopf" in failed[1.0, 0.0]
     assert failed[2.0, 0.5] == "OverflowError: too large"
     assert found["answers"][-1]["value"].startswith("3, the first at tau = 1 s, f = 0 s: ")
+
+
+def test_a_sweep_on_a_simulated_robot_has_the_numbers_of_single_runs(tmp_path):
+    """An experiment that runs the robot's whole loop. It has no tick of more than tau / 3."""
+    swept = perform("timeline", trials=1, tick=[0.03, 0.09], out=tmp_path)
+    alone = perform("timeline", trials=1, tick=0.03, out=tmp_path)["answers"]
+    *own, failed = swept["numbers"]["rows"]
+    assert [row["value"] for row in own] == [answer["value"] for answer in alone]
+    assert [row["tick"] for row in own] == [0.03] * len(alone)
+    assert (failed["tick"], failed["quantity"]) == (0.09, None)
 
 
 def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
