@@ -34,7 +34,8 @@ def add_run(names: Any, name: str, entry: Entry, used: Sequence[str]) -> argpars
     parser.add_argument(
         "--panel",
         metavar="NAME",
-        help="draw this panel of the figure alone, into a file of its own; a wrong name lists them",
+        help="draw this panel of the figure alone, into a file of its own; a wrong name lists them"
+        " (a sweep's are its quantities, known after the run: it draws them all)",
     )
     return parser
 

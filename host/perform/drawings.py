@@ -86,25 +86,29 @@ def drawing(wanted: Files, found: Found, setting: Setting, settings: Mapping[str
         settings: As in the run's settings.json.
     """
 
-    def draw(rows: list[Row], findings: Findings, stem: Path) -> list[Path]:
+    def draw(rows: list[Row], findings: Findings, stem: Path) -> tuple[list[Path], str]:
         from host.figures.caption import of_run
         from host.figures.panels import keep_panel
         from host.figures.style import save
 
         module = importlib.import_module(wanted.figures)
         figure = module.draw(rows, findings)
-        name = str(stem)
-        if wanted.panel is not None:
-            keep_panel(figure, wanted.panel, getattr(module, "PANELS", ()))
-            name += f"-{wanted.panel.replace(' ', '-').replace('/', '-')}"
+        name, panel, other = str(stem), wanted.panel, ""
+        if panel is not None:
+            try:
+                keep_panel(figure, panel, getattr(module, "PANELS", ()))
+                name += f"-{panel.replace(' ', '-').replace('/', '-')}"
+            except WrongUse as error:
+                panel, other = None, f"{error.message}, so all are drawn: {error.hint}"
         caption = of_run(
             "theory" if found.kind == STUDY else "experiment",
             found.entry,
             settings,
             parameters(found, setting, settings["experiment"]),
-            wanted.panel,
+            panel,
         )
-        return [save(figure, f"{name}.{ending}", caption) for ending in wanted.formats]
+        written = [save(figure, f"{name}.{ending}", caption) for ending in wanted.formats]
+        return written, other
 
     return draw
 

@@ -100,7 +100,6 @@ def perform(
     swept = axes(found.entry, options)
     sweep = Sweep(name, swept) if swept else None
     experiment = sweep or found.work
-    wanted = files("host.figures.sweep" if swept else found.figures, formats, panel, options)
     settings: dict[str, Any] = {
         "experiment": name,
         "options": options,
@@ -124,6 +123,7 @@ def perform(
     if scheduler:
         _require_cluster(scheduler, batch=batch)
     cells = (sweep or found).cells(options, batch=batch)
+    wanted = files("host.figures.sweep" if swept else found.figures, formats, panel, options)
     if swept:
         say(f"{name}: {len(points(swept))} points, {in_all(swept)}")
     with open_study(out, settings, cells, say) as study:

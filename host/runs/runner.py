@@ -22,8 +22,9 @@ T = TypeVar("T")
 Outcome = tuple[list[Row], list[str]]
 Result = tuple[Cell, Part, list[str]]
 Work = Callable[[Cell], Outcome]
-# Draws the figure of rows and findings, and writes it to STEM.png and others. Returns the paths.
-Draw = Callable[[list[Row], Findings, Path], list[Path]]
+# Draws the figure of rows and findings, and writes it to STEM.png and others. Returns the
+# paths, and why they show all panels instead of the one that was wanted; else an empty text.
+Draw = Callable[[list[Row], Findings, Path], tuple[list[Path], str]]
 
 
 @contextmanager
@@ -183,12 +184,16 @@ def finish(
     kept = [attempt(file, partial(study.write, file, text), None) for file, text in texts]
     tables = attempt("table", lambda: _write_tables(name, rows, kinds, study), none)
     interrupted = False
-    figures = none
+    figures, other = none, ""
     try:
-        figures = attempt("figure", lambda: draw(rows, findings, study.folder / name), none)
+        figures, other = attempt(
+            "figure", lambda: draw(rows, findings, study.folder / name), (none, "")
+        )
     except KeyboardInterrupt:
         interrupted = True
         unwritten["figure"] = "figure: interrupted while it was drawn"
+    if other:
+        unwritten["panel"] = other
     path = study.folder / "summary.json"
     summary = Results(
         rows,

@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from host.experiments.bodies.car_slope import (
+    ANGLES,
     AngleNumbers,
     DriveRow,
     Numbers,
@@ -22,6 +23,8 @@ from host.experiments.bodies.car_slope import (
 from host.figures.bodies.from_above import draw_scene, scene_data
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
+
+PANELS = tuple(f"{angle:g}" for angle in ANGLES)
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -42,7 +45,6 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             ]
             lines = _draw_path(axes, path, angle["angle"])
             axes.set_title(_title(angle, shown), fontsize=12)
-            axes.set_label(f"{angle['angle']:g}")
         figure.colorbar(lines, ax=panels, shrink=0.6, label="time (min)")
         figure.suptitle(
             f"A car between four slopes (dashed: their feet), for {minutes:.2g} min; dot: where it"

@@ -5,6 +5,7 @@ Their paths from above, beside trains with random kicks, and how many have arriv
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import ceil
 from typing import Any
 
@@ -44,6 +45,16 @@ _ACROSS, _DOWN = 3, 2
 _SEEN_X_M, _SEEN_Y_M = 6.2, 7.4
 
 
+def panels(options: Mapping[str, Any]) -> list[str]:
+    """The names of the panels."""
+    shown = min(_ACROSS * _DOWN, options["goals"])
+    return [*(_goal_label(number) for number in range(1, shown + 1)), "reached"]
+
+
+def _goal_label(number: int) -> str:
+    return f"goal-{number}"
+
+
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""
     numbers: Numbers = findings.numbers
@@ -59,7 +70,7 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             .subplots(sharex=True, sharey=True, squeeze=False)
         )
         for number, axes in enumerate(panels.flat, start=1):
-            axes.set_label(f"goal-{number}")
+            axes.set_label(_goal_label(number))
         for axes, planned, by_chance in zip(
             panels.flat, by_way[PLANNED][:shown], by_way[RANDOM][:shown], strict=False
         ):

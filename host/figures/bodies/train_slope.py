@@ -27,6 +27,8 @@ from host.figures.heat_map import draw_heat_map
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 
+PANELS = ("reversals", "path-1", "path-2", "coherent")
+
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
     """The figure of the experiment's rows."""

@@ -7,11 +7,12 @@ from itertools import groupby
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from host.experiments.bodies.simulation import ORDERED
+from host.experiments.bodies.simulation import ORDERED, PRESETS
 from host.experiments.bodies.train_start import Numbers, Row
 from host.figures.style import COLOURS, SIZE, share_legend, styled
 from host.runs.contract import Findings
 
+PANELS = tuple(f"{what}-{preset}" for preset in PRESETS for what in ("order", "speed"))
 _FORWARD = ("forward", COLOURS[0], "-")
 _BACKWARD = ("backward", COLOURS[1], "--")
 
@@ -32,8 +33,6 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
             speed.set_title(
                 f"{count['forward']} forward, {count['backward']} backward", loc="left", fontsize=13
             )
-            order.set_label(f"order-{name}")
-            speed.set_label(f"speed-{name}")
         for axes in grid[-1]:
             axes.set_xlabel("time (s)")
             axes.margins(x=0)

@@ -21,6 +21,7 @@ from robot.kicks import WHEELS
 from sim_motor.arrays import Array
 from sim_motor.constants import Constants, load
 
+PANELS = ("speeds-1", "speeds-2", "errors-1", "errors-2")
 _STRETCHES = 4
 _SIZES = (6.0, 3.0)  # of marks, so that both wheels show where they agree
 _REACH = 2  # a speed is measured from this many ticks before to as many after

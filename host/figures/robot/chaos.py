@@ -7,7 +7,7 @@ a series of the model.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from textwrap import wrap
 from typing import Any
@@ -50,11 +50,17 @@ _SETTLES_S = 60.0
 _SMALL = 11
 
 
+def panels(options: Mapping[str, Any]) -> list[str]:
+    """The names of the panels that there may be; the rows decide which."""
+    lower = ("return-map", "intervals", "lives", "twins", "map")
+    return ["torque-1", "torque-2", "model", *lower]
+
+
 def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
     """Draw the rows of a simulated brick, or of a robot, which has its two wheels alone."""
     wheels = series_of_wheels(rows)
     params = findings.numbers["parameters"]
-    panels = _explanations(rows, params)
+    explanations = _explanations(rows, params)
     with styled():
         figure = Figure(**SIZE)
         halves = figure.add_gridspec(2, 1, height_ratios=(1, 1.35))
@@ -65,8 +71,8 @@ def draw(rows: list[ChaosRow], findings: Findings) -> Figure:
             _draw_torque(axes, series, title, _BEGINS_S.get(condition, 0.0))
         figure.axes[0].set_ylabel("torque $M$")
         _draw_model(figure.add_subplot(courses[-1], label="model"), params)
-        places = halves[1].subgridspec(1, len(panels))
-        for place, (name, drawn) in enumerate(panels.items()):
+        places = halves[1].subgridspec(1, len(explanations))
+        for place, (name, drawn) in enumerate(explanations.items()):
             drawn(figure.add_subplot(places[place], label=name))
         figure.suptitle("Do the wheels switch irregularly? (grey: the motor stalls)", fontsize=16)
     return figure

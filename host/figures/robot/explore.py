@@ -20,6 +20,7 @@ from host.experiments.robot.explore import (
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 
+PANELS = ("area", *(way.replace(" ", "-") for way in WAYS))
 _TRAIL_S = 120.0
 
 
@@ -28,12 +29,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
     with styled():
         figure = Figure(**SIZE)
         grid = figure.add_gridspec(2, len(WAYS))
-        areas = figure.add_subplot(grid[1, :], label="area")
+        areas = figure.add_subplot(grid[1, :])
         for at, (way, colour) in enumerate(zip(WAYS, COLOURS, strict=False)):
             paths = paths_of(rows, way)
-            _draw_trail(
-                figure.add_subplot(grid[0, at], label=way.replace(" ", "-")), paths[0], way, colour
-            )
+            _draw_trail(figure.add_subplot(grid[0, at]), paths[0], way, colour)
             _draw_area(areas, paths, way, colour)
         areas.set_xlabel("time (min)")
         areas.set_ylabel("cells visited (%)")

@@ -13,6 +13,7 @@ from host.figures.style import COLOURS, SIZE, styled
 from host.kicking.outcome import REVERSES
 from host.runs.contract import Findings
 
+PANELS = ("reliability", "scores", "shares")
 _SHARES = np.linspace(0.0, 1.0, 21)
 
 

@@ -14,6 +14,7 @@ from host.runs.contract import Findings
 from host.util.intervals import wilson
 from robot.kicks import WHEELS
 
+PANELS = ("counts", "shares", "offsets")
 # The name, colour and hatch of each way.
 _WAYS = {
     1: ("forward", COLOURS[0], ""),

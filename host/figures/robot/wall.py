@@ -7,6 +7,7 @@ field is framed unless its 95 % interval says that fewer reverse than the claim 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,6 +83,12 @@ _SHOWN = (
 )
 _REGION: Any = {"color": COLOURS[1], "linewidth": 3.5, "solid_capstyle": "projecting"}
 _KNOWN: Any = {"color": COLOURS[2], "linewidth": 6, "clip_on": False, "solid_capstyle": "butt"}
+
+
+def panels(options: Mapping[str, Any]) -> list[str]:
+    """The names of the panels: of a simulated robot, and then of another one."""
+    torques = [f"torque-{place + 1}" for place in range(len(_SHOWN))]
+    return [*torques, *(plane.name for plane in _PLANES), "hits"]
 
 
 def draw(rows: list[WallRow], findings: Findings) -> Figure:

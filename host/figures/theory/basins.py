@@ -17,6 +17,7 @@ from matplotlib.patches import Patch
 from host.figures.style import COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from host.theory.analysis.outcomes import BACK, BACKWARD, FORWARD, OTHER, REST, Outcome
+from host.theory.studies.basins import rolls
 from host.theory.studies.basins_report import Numbers, reversals
 from host.theory.studies.basins_rows import (
     CONTINUOUS,
@@ -57,8 +58,11 @@ _SLICE = (
 
 def panels(options: Mapping[str, Any]) -> list[str]:
     """The names of the panels; those of kicks are missing if no wheel rolls."""
+    starts = [_starts_label(model) for model in MODEL_NAMES]
+    if not rolls(options):
+        return starts
     return [
-        *(_starts_label(model) for model in MODEL_NAMES),
+        *starts,
         *(_kicks_label(kind, model) for model in MODEL_NAMES for kind in _LABELS),
         *(_reversed_label(kind) for kind in _LABELS),
     ]

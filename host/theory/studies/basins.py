@@ -7,6 +7,7 @@ are kicked roll forward.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import degrees, pi
 from typing import Any
 
@@ -102,6 +103,12 @@ def require_settling(wheel: Wheel) -> None:
             " settles too slowly",
             "choose more friction f, another tau, or a moment of inertia I nearer to f tau",
         )
+
+
+def rolls(options: Mapping[str, Any]) -> bool:
+    """Whether a wheel of either model rolls, so that it can be kicked; for options with cells."""
+    wheel = wheel_of(options)
+    return any(rolling_states(model, wheel, 1) is not None for model in MODELS.values())
 
 
 def simulate(cell: BasinsCell, setting: Setting) -> Measured:

@@ -36,6 +36,18 @@ def test_a_panel_has_a_file_of_its_own(tmp_path):
     assert json.loads(Path(found["summary"]).read_text(encoding="utf-8"))["unwritten"] == {}
 
 
+def test_a_panel_that_only_the_results_rule_out_costs_no_results(tmp_path):
+    found = perform("hopf", tau=[0.5, 1.0], panel="x", formats="svg", out=tmp_path)
+    assert [Path(path).name for path in found["figures"]] == ["sweep.svg"]
+    assert list(found["unwritten"]) == ["panel"]
+    words = "no panel 'x', so all are drawn: its panels are Hopf bifurcation at k, the paper's"
+    assert words in found["unwritten"]["panel"]
+    assert "--panel" not in Path(found["figures"][0]).read_text(encoding="utf-8")
+    again = perform("hopf", tau=[0.5, 1.0], panel="wheels swing with", formats="svg", out=tmp_path)
+    assert [Path(path).name for path in again["figures"]] == ["sweep-wheels-swing-with.svg"]
+    assert again["unwritten"] == {}
+
+
 @pytest.mark.parametrize(
     ("name", "options", "words"),
     [
@@ -84,3 +96,10 @@ def test_a_panel_that_depends_on_the_run_is_refused_before_it(name, options, the
     assert files(found.figures, "png", there, complete).panel == there
     with pytest.raises(WrongUse, match="no panel 'k=3'"):
         files(found.figures, "png", "k=3", complete)
+
+
+def test_panels_of_kicks_are_refused_before_the_run_if_no_wheel_rolls(tmp_path):
+    with pytest.raises(WrongUse, match="no panel 'kicks-position-sampled'") as caught:
+        perform("basins", k=1.0, panel="kicks-position-sampled", out=tmp_path)
+    assert caught.value.hint == "its panels are starts-continuous, starts-sampled"
+    assert not list(tmp_path.iterdir())
