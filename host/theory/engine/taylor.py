@@ -56,7 +56,7 @@ def accuracy_of(fineness: float) -> Accuracy:
     At 1 averages of regular motion have nine digits. The order is the one that then takes the
     least time.
     """
-    tolerance = min(1e-3, max(1e-16, 3e-10 * fineness**-12.0))
+    tolerance = min(1e-3, max(1e-16, 3e-11 * fineness**-12.0))
     return Accuracy(2 * round(0.5 - 0.6 * log10(tolerance)), tolerance)
 
 
