@@ -30,6 +30,8 @@ CACHES = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # n
 os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
 # Without a list of fonts each program that draws makes one first, and says so after five seconds.
 os.environ.setdefault("MPLCONFIGDIR", os.path.join(CACHES, "matplotlib"))  # noqa: PTH118
+# Whoever draws with OpenGL first in a process would make it in a test's own folder.
+os.environ.setdefault("MESA_SHADER_CACHE_DIR", CACHES)
 
 # The tests make and remove ten thousand folders, and a disk's journal has them wait for each.
 MEMORY = "/dev/shm"  # noqa: S108 - each run has a folder of its own in there
