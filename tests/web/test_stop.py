@@ -48,6 +48,10 @@ def test_space_does_what_a_control_does_if_the_keyboard_led_there(visit, station
 def test_who_only_watches_stops_too(visit, lab, station):
     visitor = visit(lab.view_url)
     rolls(visitor, station)
+    colour = "getComputedStyle(document.querySelector('#stop')).backgroundColor"
+    seen = visitor.page.evaluate(colour)
+    visitor.page.hover("#stop")
+    assert visitor.page.evaluate(colour) == seen  # red, also under the mouse
     visitor.page.click("#stop")
     visitor.until("r.state === 'stopped'")
 
