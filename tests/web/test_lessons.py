@@ -165,10 +165,11 @@ def find_k(pupil, station):
     """Let the model wheel ring at some k, and take the middle of dying and growing."""
     page = pupil.page
     sizes = {}
-    for k in (1.4, 1.5, 1.55, 1.6, 1.65):
+    for k in (1.5, 1.4, 1.55, 1.6, 1.65):
         page.fill("#model-value", str(k))
         page.click("text=Turn it by 0.1 rad")
         pupil.reads("#lessons", f"k = {k:.2f}: it rings")
+        assert float(page.input_value("#model-value")) == k
         line = page.inner_text(f"#lessons li:has-text('k = {k:.2f}')")
         sizes[k] = int(re.search(r"have (\d+) %", line)[1])
     dying = max(k for k, size in sizes.items() if size < 100)

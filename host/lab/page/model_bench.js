@@ -34,6 +34,7 @@ export function createModelBench(lesson) {
     root.append(element("h3", {}, modelTexts.label), note, controls, figures, list, all, found);
 
     let name = "";
+    let known = null;
     /** The runs of this exercise since the page was loaded, and when the last one began, ms. */
     let shown = [];
     let began = 0;
@@ -56,13 +57,15 @@ export function createModelBench(lesson) {
     function update() {
         const { texts: exercise, state } = lesson;
         const { model } = exercise;
-        if (name !== exercise.name || !state.runs.length) {
+        // A run takes a while; until it is there, the pupil's own k stays.
+        if (name !== exercise.name || (known !== state && !state.runs.length)) {
             name = exercise.name;
             shown = [];
             Object.assign(choice.input, { min: model.least, max: model.most, step: model.step });
             choice.input.value = model.least;
             own.input.value = state.own ?? "";
         }
+        known = state;
         const words = modelTexts[name];
         setText(note, modelTexts.note(model));
         setText(choice.label, model.choose ?? "");
