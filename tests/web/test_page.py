@@ -69,7 +69,8 @@ def test_a_kick_of_ones_own_reverses_one_wheel(visit, station):
 
 def test_a_parameter_is_sent_and_a_wrong_one_goes_back(visit, station):
     visitor = visit()
-    visitor.page.fill("#param-k", "3.5")
+    visitor.page.fill("#param-k", "")
+    visitor.page.type("#param-k", "3,5")  # as on a keyboard in German
     visitor.page.keyboard.press("Enter")
     visitor.until("r.status.params.k === 3.5")
     visitor.page.fill("#param-tau_s", "0.05")

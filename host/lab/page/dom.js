@@ -84,6 +84,24 @@ export function choices(name, legend, options, chosen, onchoice = () => {}) {
 }
 
 /**
+ * A field for a number. It takes a decimal comma, too, which browsers in English leave out: 2,5
+ * would become 25.
+ * @param {object} properties
+ * @returns {HTMLInputElement}
+ */
+export function numberInput(properties) {
+    const input = element("input", { type: "number", ...properties });
+    input.addEventListener("beforeinput", (event) => {
+        const given = event.data ?? event.dataTransfer?.getData("text/plain") ?? "";
+        if (!/^[^.,]*,[^.,]*$/.test(given)) return;
+        event.preventDefault();
+        // The only way into a number field at the cursor.
+        document.execCommand("insertText", false, given.replace(",", "."));
+    });
+    return input;
+}
+
+/**
  * A labelled number with a place for what it means.
  * @param {string} id
  * @param {string} text The label.
@@ -91,7 +109,7 @@ export function choices(name, legend, options, chosen, onchoice = () => {}) {
  * @returns {{root: HTMLElement, input: HTMLInputElement, label: HTMLElement, output: HTMLElement}}
  */
 export function numberField(id, text, properties) {
-    const input = element("input", { type: "number", id, ...properties });
+    const input = numberInput({ id, ...properties });
     const label = element("label", { htmlFor: id }, text);
     const output = element("output", { className: "meaning" });
     output.htmlFor.add(id);

@@ -1,6 +1,6 @@
 /** The robot's parameters, from its own table. A change is sent at once. */
 
-import { choices, element } from "./dom.js";
+import { choices, element, numberInput } from "./dom.js";
 import { texts } from "./texts.js";
 import { sentences } from "./words.js";
 
@@ -65,7 +65,7 @@ function number(param, send) {
     const { name, minimum, maximum } = param;
     const row = { name, value: undefined, pending: false };
     const id = `param-${name}`;
-    const field = element("input", { type: "number", id, min: minimum, max: maximum, step: "any" });
+    const field = numberInput({ id, min: minimum, max: maximum, step: "any" });
     const slider = element("input", { type: "range", min: 0, max: SLIDER_STEPS, step: 1 });
     slider.setAttribute("aria-label", name);
     const scale = scaleOf(minimum, maximum);
