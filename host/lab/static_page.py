@@ -63,7 +63,7 @@ def build(folder: Path, pyodide: Path) -> int:
     digest = hashlib.sha256()
     for name, content in sorted(files.items()):
         digest.update(f"{name}\0{len(content)}\0".encode() + content)
-    cache, names = f"kickctl-{digest.hexdigest()[:16]}", ["./", *sorted(files)]
+    cache, names = digest.hexdigest()[:16], ["./", *sorted(files)]
     head = f"const CACHE = {_text(cache)};\nconst FILES = {_text(names)};\n"
     files["offline.js"] = head.encode() + (PAGE_FOLDER / "offline.js").read_bytes()
     shutil.rmtree(folder, ignore_errors=True)
