@@ -27,6 +27,12 @@ KEEP_RECORDS = """
         }
     };
 """
+# An earlier release of this page, and another folder's page.
+OTHER_CACHES = """
+    for (const place of [".", "../other/"]) {
+        caches.open(`kickctl ${new URL(place, location)} old`);
+    }
+"""
 PYODIDE = ROOT / "build/pyodide/node_modules/pyodide"
 # A busy machine takes its time to compile 10 MB of WebAssembly.
 PATIENCE_MS = 120_000
@@ -114,9 +120,8 @@ def same_ticks(records, kick, until):
 
 
 def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
-    visitor = Visitor(
-        browser, served, served.drive_url + "?seed=1", script=KEEP_RECORDS, viewport=SMALL
-    )
+    url, script = served.drive_url + "?seed=1", KEEP_RECORDS + OTHER_CACHES
+    visitor = Visitor(browser, served, url, script=script, viewport=SMALL)
     page = visitor.page
     page.set_default_timeout(PATIENCE_MS)
     visitor.until(ROLLS)
@@ -132,11 +137,17 @@ def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
     page.keyboard.press("Enter")
     visitor.until("r.status.params.k === 5")
     page.evaluate("navigator.serviceWorker.ready.then(() => true)")
-    (kept,) = page.evaluate("caches.keys()")
-    assert kept.startswith("kickctl-")
+    page.wait_for_function("navigator.serviceWorker.controller?.state === 'activated'")
+    other, own = sorted(page.evaluate("caches.keys()"))
+    assert other == f"kickctl {served.drive_url.replace('/page/', '/other/')} old"
+    assert own.startswith(f"kickctl {served.drive_url} ")
+    assert not own.endswith(" old")
     served.end()
     page.reload()
     visitor.until(ROLLS)
     assert visitor.robot()["status"]["params"]["k"] == 8.0  # another robot begins
+    visitor.reads("#state", "sim://?seed=1\n")  # with the same seed
+    page.goto(served.drive_url + "?seed=abc")
+    visitor.until("s.note?.message.includes('abc')")
     assert visitor.complaints == []
     visitor.context.close()

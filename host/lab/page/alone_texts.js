@@ -9,6 +9,10 @@ export const aloneTexts = {
             "try again, or in a newer browser: Chrome 115, Edge 115, Firefox 115, Safari 16.4. If" +
             " that does not help, tell your teacher",
     }),
+    noSeed: (seed) => ({
+        message: `'${seed}' is no seed, so the robot has one by chance`,
+        hint: "a seed is a whole number from 0 to 4294967295, as in ?seed=1",
+    }),
     note:
         "The robot is simulated in this page: nothing is installed, and nothing leaves it. After" +
         " a reload another robot begins. Logs, basins, predictions, guided exercises and a class" +

@@ -35,7 +35,7 @@ const alone = Boolean(document.querySelector("meta[name=alone]"));
 document.body.classList.toggle("alone", alone);
 setText(byId("alone-note"), alone ? aloneTexts.note : "");
 const source = alone
-    ? new WorkerSource(`robot_worker.js${location.search}`)
+    ? new WorkerSource(new URLSearchParams(location.search).get("seed"))
     : new WebSocketSource(messagesAddress());
 const lab = new Lab(source);
 const stop = new Stop(lab);
@@ -105,4 +105,5 @@ for (const [canvas, draw, view, letters, lines] of lessons.drawings) {
 }
 
 window.lab = { state: () => snapshot(lab, stop, frames, views, kTrace, sound) };
+if (source.note) lab.tell(source.note);
 source.open();

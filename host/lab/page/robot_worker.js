@@ -4,14 +4,11 @@ import { loadPyodide } from "./pyodide/pyodide.js";
 
 const EVERY_MS = 15;
 const FOLDER = "/lab";
-const LARGEST_SEED = 2 ** 32;
 const now = () => performance.now() / 1000;
 
-/** The seed in the page's address, or one by chance. */
+/** The seed that the page gives as this worker's name, or one by chance. */
 function seed() {
-    const given = Number(new URLSearchParams(self.location.search).get("seed") ?? NaN);
-    const chosen = Number.isInteger(given) && given >= 0 && given < LARGEST_SEED;
-    return chosen ? given : crypto.getRandomValues(new Uint32Array(1))[0];
+    return self.name ? Number(self.name) : crypto.getRandomValues(new Uint32Array(1))[0];
 }
 
 /** Send the page a message of Python: text, or bytes. */

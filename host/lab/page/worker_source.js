@@ -4,13 +4,19 @@
 
 import { aloneTexts } from "./alone_texts.js";
 
+const SEEDS = 2 ** 32;
+
 export class WorkerSource {
     #worker = null;
     #welcome = false;
 
-    /** @param {string} url The worker's script. */
-    constructor(url) {
-        this.url = url;
+    /** @param {?string} seed The seed in the page's address; null for one by chance. */
+    constructor(seed) {
+        const whole = seed !== null && /^\d+$/.test(seed) && Number(seed) < SEEDS;
+        /** What a person should know, null for nothing. */
+        this.note = seed === null || whole ? null : aloneTexts.noSeed(seed);
+        // As a name: a worker that comes out of the cache does not know its address.
+        this.name = whole ? seed : "";
         /** What a person waits for before the first message. */
         this.waiting = aloneTexts.loading;
         /** @type {(message: object) => void} */
@@ -21,7 +27,7 @@ export class WorkerSource {
     open() {
         this.#worker?.terminate();
         this.#welcome = false;
-        this.#worker = new Worker(this.url, { type: "module" });
+        this.#worker = new Worker("robot_worker.js", { type: "module", name: this.name });
         this.#worker.onmessage = ({ data }) => this.#take(data);
         this.#worker.onerror = ({ message }) => this.#fail(message);
         // Where pages may not keep files, this one needs the network again.
