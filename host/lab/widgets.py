@@ -84,6 +84,13 @@ def show_robot(robot: Watcher) -> None:
 def show_log(log: Log, cut: Cut) -> None:
     """Show a part of a log in the notebook's present cell. Raises WrongUse."""
     _need_notebook("log.save(FILE), and `kickctl lab --replay FILE` shows it in a browser")
+    if not len(log):
+        raise WrongUse("this log is empty", "robot.record(3) records three seconds")
+    if cut.from_s > cut.to_s:
+        raise WrongUse(
+            f"from_s={cut.from_s:g} lies behind to_s={cut.to_s:g}",
+            "exchange them: both count from the log's start",
+        )
     name = str(log.info.get("robot") or log.info.get("brick") or "log")
     try:
         tape = make_tape(log, name, cut)

@@ -179,7 +179,7 @@ class View {
     #why(shown, { state, reason, closed }) {
         const { robot, embedded } = this.known;
         if (robot.lost) return words.lost(robot.lostFor(), closed);
-        if (!robot.ring.length) return words.waiting;
+        if (!robot.ring.length) return embedded ? words.embeddedWaits : words.waiting;
         if (reason && state === shown && state !== "running") return words.reason(reason);
         return embedded ? words.embedded : "";
     }

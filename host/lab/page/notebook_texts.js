@@ -8,6 +8,7 @@ export const words = {
     stopButton: "STOP",
     stopLabel: (robot) => `Stop ${robot}`,
     embedded: "Its time passes while Python waits for it, and is shown in seconds.",
+    embeddedWaits: "Its time passes only while Python waits: run robot.wait(3).",
     lost: (seconds, closed) => sentences(closed || texts.lostFor(seconds)),
     reason: (why) => sentences(why),
     waiting: "Waiting for the robot's first records …",
