@@ -79,6 +79,8 @@ def _honest(name: str, runs: Sequence[Shown]) -> Finding:
             )
     if not runs:
         return Finding(False, "the model wheel has not moved yet")
+    if len(runs) == 1:
+        return Finding(True, "1 run computed again: it follows the paper's equations")
     return Finding(True, f"{len(runs)} runs computed again: all follow the paper's equations")
 
 
