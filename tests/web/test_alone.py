@@ -126,6 +126,7 @@ def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
     page.set_default_timeout(PATIENCE_MS)
     visitor.until(ROLLS)
     assert visitor.robot()["name"] == "simulated"
+    assert page.is_hidden("#state .identify")  # there is one robot only
     assert set(kick(visitor, "phase").values()) == {"reverses"}
     kept = page.evaluate("kept")
     records = [one for message in kept for one in records_of(base64.b64decode(message))]
@@ -136,6 +137,7 @@ def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
     page.fill("#param-k", "5")
     page.keyboard.press("Enter")
     visitor.until("r.status.params.k === 5")
+    visitor.reads("#state", "Controlled by\nthis page")
     page.evaluate("navigator.serviceWorker.ready.then(() => true)")
     page.wait_for_function("navigator.serviceWorker.controller?.state === 'activated'")
     other, own = sorted(page.evaluate("caches.keys()"))

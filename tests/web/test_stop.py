@@ -123,7 +123,7 @@ def test_it_says_who_has_stopped_the_robot(visit, lab, station):
     one, two = visit(), visit(lab.view_url)
     rolls(one, station)
     two.page.keyboard.press("Escape")
-    two.reads("#now .reason", "You stopped it.")
+    two.reads("#now .reason", "This page stopped it.")
     one.reads("#now .reason", "Another page of this lab (2) stopped it.")
     one.page.get_by_role("button", name="Start", exact=True).first.click()
     rolls(one, station)

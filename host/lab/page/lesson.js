@@ -85,6 +85,7 @@ export class Lesson {
      */
     choose(name) {
         this.lab.send({ type: "stop", robot: this.lab.store.robot.name });
+        this.lab.tell(null); // what was said of another exercise
         this.state = this.left[name] ?? { name, ...structuredClone(FRESH) };
         delete this.left[name];
         this.#changed();
@@ -168,6 +169,7 @@ export class Lesson {
             this.left[name] = this.state;
         }
         this.state = null;
+        this.lab.tell(null);
         this.#changed();
         if (records) this.#alone(() => this.lab.do("record", { on: false }));
     }

@@ -35,7 +35,7 @@ const MOVED = (times) => `shown ${times} times as fast`;
 export const modelTexts = {
     label: "Model wheel",
     note: ({ speed }) =>
-        `Label: model. It is computed from the paper's equations, and ${MOVED(speed)}.`,
+        `It is computed from the paper's equations, and ${MOVED(speed)}.`,
     rest: {
         symbol: "φ",
         unit: "rad",

@@ -28,6 +28,7 @@ try {
     if (!answer.ok) throw new Error(`python.zip: ${answer.status}`);
     python.unpackArchive(await answer.arrayBuffer(), "zip", { extractDir: FOLDER });
     python.runPython(`import sys; sys.path.insert(0, "${FOLDER}")`);
+    python.pyimport("host.util.own_name").choose("this page");
     const { BrowserLab } = python.pyimport("host.lab.browser_lab");
     const lab = BrowserLab(seed(), now(), say);
     const attempt = (work) => {

@@ -17,9 +17,10 @@ export function createState(root, lab) {
         list.append(element("div", {}, element("dt", {}, text), values[name]));
     }
     values.unattended.parentElement.classList.add("unattended");
-    const identify = button(texts.identify, async () => {
+    const ask = async () => {
         if (await lab.try("identify")) lab.tell(texts.identified);
-    });
+    };
+    const identify = button(texts.identify, ask, "identify");
     const takeOver = button("", () => lab.try("take_over"));
     show(takeOver, false);
     root.append(list, takeOver, identify);

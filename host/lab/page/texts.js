@@ -280,7 +280,7 @@ export const texts = {
     reason: ({ reason, stopped_by: by = null }, page) => {
         if (by === null) return reason;
         if (by === 0) return "the lab stopped it, since nobody attended to it";
-        return by === page ? "you stopped it" : `another page of this lab (${by}) stopped it`;
+        return by === page ? "this page stopped it" : `another page of this lab (${by}) stopped it`;
     },
     said: {
         kick: (kick) => `Kick: ${texts.kickLine(kick)}.`,
