@@ -29,6 +29,8 @@ def desk():
 def observer(desk):
     with connect(desk.uri, observe=True) as robot:
         robot.stop()
+        # The lab of the test before may have been killed just now.
+        robot.wait(20.0, until=lambda: robot.status()["controller"] is None)
         yield robot
 
 

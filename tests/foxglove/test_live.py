@@ -101,6 +101,7 @@ def test_viewers_get_what_a_log_holds_to_the_byte(desk, observer, tmp_path):
     async def scenario():
         async with driver_of(viewers) as viewer:
             await viewer.subscribe(EVENTS)
+            await viewer.until(lambda: viewer.of(TICKS))
             with McapTap(path, observer.info()) as tap:
                 observer.add_tap(tap)
                 await viewer.call("/start")
