@@ -113,7 +113,8 @@ def test_a_stop_waits_for_no_other_call(station):
             await viewer.send(op="setParameters", parameters=[{"name": "k", "value": 2}])
             assert (await viewer.call("/stop"))["said"].startswith("motors stopped")
             assert "stop" in station.asked
-            await viewer.until(lambda: len(station.waiting) == len(kicks) + 1)
+            number = len(kicks) + 1
+            await asyncio.to_thread(wait_until, lambda: len(station.waiting) == number, "they wait")
             for answer in station.waiting:
                 answer({"tick": 9})
             for kick in kicks:
