@@ -108,7 +108,7 @@ def test_viewers_get_what_a_log_holds_to_the_byte(desk, observer, tmp_path):
                 await viewer.call("/kick", {"mode": "phase", "ticks": 4})
                 last = (await viewer.call("/stop"))["tick"]
                 await viewer.until(lambda: viewer.of(TICKS)[-1]["tick"] > last)
-                observer.wait(100.0, until=lambda: observer.newest.tick > last)
+                observer.wait(100.0, until=lambda: observer.newest and observer.newest.tick > last)
                 observer.remove_tap(tap)
         log = Log.load(path)
         ticks = range(log.records[0].tick + 1, last + 1)
