@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from host.theory.analysis.attractors import random_starts, settle
 from host.theory.analysis.bisection import last_alike
-from host.theory.analysis.deciding import parted, with_close
+from host.theory.analysis.deciding import settle_beside_close
 from host.theory.model.wheel import Array, Wheel
 
 Side = Literal["lower", "upper"]
@@ -37,8 +37,8 @@ _ENTRY_S, _MORE = 100.0, 2
 _VALUES, _STARTS, _SEARCH_S = 40, 8, 200.0
 # At this share of random states chaos is taken for found.
 _FOUND = 0.25
-# Lasting chaos is looked for at so many values further inside; wheels begin in chaotic states that
-# were found at values this close.
+# How many values further inside are tried for lasting chaos, and from how close values, in steps
+# of the search, wheels take their first chaotic states.
 _INWARD, _NEAR = 8, 3.5
 _FINENESS = 0.6
 _DISTURBANCE = 1e-3
@@ -65,8 +65,7 @@ def _chaotic(states: Array, parameters: Array) -> tuple[NDArray[np.bool_], Array
     found, ended = np.zeros(states.shape[1], dtype=bool), states.copy()
     left = np.arange(states.shape[1])
     for seconds in _PART_S:
-        pairs = np.tile(parameters[:, left], (1, 2))
-        own, apart = parted(settle(with_close(ended[:, left]), pairs, seconds, _FINENESS))
+        own, apart = settle_beside_close(ended[:, left], parameters[:, left], seconds)
         ended[:, left], found[left] = own, apart
         left = left[~apart]
         if not len(left):

@@ -48,6 +48,14 @@ def parted(ended: Array) -> tuple[Array, NDArray[np.bool_]]:
     return states, np.abs(states - others).max(axis=0) > APART
 
 
+def settle_beside_close(
+    states: Array, parameters: Array, seconds: float
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Follow wheels for some time (s), each beside a close one. Returns what `parted` does."""
+    pairs = np.tile(parameters, (1, 2))
+    return parted(settle(with_close(states), pairs, seconds, _FINENESS))
+
+
 def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
     """The attractors of wheels.
 
@@ -66,8 +74,7 @@ def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
         states, left, sizes = states[:, quick], left[quick], sizes[quick]
         if not len(left):
             break
-        pairs = np.tile(parameters[:, left], (1, 2))
-        states, chaotic = parted(settle(with_close(states), pairs, seconds, _FINENESS))
+        states, chaotic = settle_beside_close(states, parameters[:, left], seconds)
         kinds[left[chaotic]] = CHAOS
         states, left, sizes = states[:, ~chaotic], left[~chaotic], sizes[~chaotic]
         if not len(left):

@@ -17,7 +17,7 @@ from host.theory.analysis.attractors import random_starts, settle
 from host.theory.analysis.bifurcations import BifurcationType, is_bifurcation, tests_of
 from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, SECTION, Family, Shooting
-from host.theory.analysis.deciding import parted, with_close
+from host.theory.analysis.deciding import settle_beside_close
 from host.theory.analysis.sections import Points, points, repeat
 from host.theory.engine.crossings import crossings
 from host.theory.model.wheel import OMEGA, Array, Wheel
@@ -84,8 +84,7 @@ def attracting_cycles(
     every = np.repeat(values, _STARTS)
     parameters = wheel.columns(len(every), **{field: every})
     states = settle(random_starts(len(every), rng), parameters, _SETTLE_S, _FINENESS)
-    pairs = np.tile(parameters, (1, 2))
-    states, chaotic = parted(settle(with_close(states), pairs, _PART_S, _FINENESS))
+    states, chaotic = settle_beside_close(states, parameters, _PART_S)
     every, states = every[~chaotic], states[:, ~chaotic]
     if not len(every):
         return []
