@@ -30,6 +30,11 @@ class KickctlError(Exception):
         if hint:
             self.add_note(hint)  # so that a notebook, which shows a traceback, shows it too
 
+    @property
+    def in_a_line(self) -> str:
+        """The message and the hint in one line."""
+        return f"{self.message}; {self.hint}" if self.hint else self.message
+
 
 def mark_kept(error: BaseException, path: object) -> None:
     """Note in an error, or an interrupt, where what was done until then is kept."""

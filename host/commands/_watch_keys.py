@@ -168,4 +168,4 @@ class KeyActions:
 
 def in_a_line(error: KickctlError) -> str:
     """What happened and what to do, as typed on this command line."""
-    return as_typed(f"{error.message}; {error.hint}" if error.hint else error.message)
+    return as_typed(error.in_a_line)

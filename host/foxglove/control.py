@@ -211,7 +211,7 @@ class Control(Watching):
                 arguments = self._changes(prefix, changes)
                 self._robots[prefix].do("set", arguments, self._hear_of_set)
         except KickctlError as error:
-            self.tell(_words(error))
+            self.tell(error.in_a_line)
         return self.values([one.name for one in parameters])
 
     def _by_robot(self, parameters: list[Parameter]) -> dict[str, dict[str, Any]]:
@@ -228,7 +228,7 @@ class Control(Watching):
 
     def _hear_of_set(self, result: dict[str, Any] | KickctlError) -> None:
         if isinstance(result, KickctlError):
-            self.tell(_words(result))
+            self.tell(result.in_a_line)
 
     def _changes(self, prefix: str, changes: dict[str, Any]) -> dict[str, Any]:
         """What a station takes to set parameters. Raises RefusedByRobot."""
@@ -255,10 +255,6 @@ def _fields(payload: bytes) -> dict[str, Any]:
     return fields
 
 
-def _words(error: KickctlError) -> str:
-    return f"{error.message}; {error.hint}" if error.hint else error.message
-
-
 def _service(
     name: str, schema: dict[str, Any], work: Callable[[ServiceRequest], dict[str, Any]]
 ) -> Service:
@@ -266,7 +262,7 @@ def _service(
         try:
             return json.dumps(work(request), allow_nan=False).encode()
         except KickctlError as error:
-            raise Refused(_words(error)) from error
+            raise Refused(error.in_a_line) from error
 
     kind = name.rpartition("/")[2]
     return Service(

@@ -120,7 +120,7 @@ class Site:
             try:
                 text = await self._replays.read(self._recorded(request))
             except KickctlError as error:
-                raise web.HTTPConflict(text=f"{error.message}; {error.hint}\n") from error
+                raise web.HTTPConflict(text=f"{error.in_a_line}\n") from error
         return web.Response(text=text, content_type="application/json")
 
     def _recorded(self, request: web.Request) -> Path:

@@ -173,7 +173,7 @@ def finish(
         except OSError as error:
             unwritten[file] = f"{error.filename or file} cannot be written: {error.strerror}"
         except KickctlError as error:
-            unwritten[file] = f"no {file}: {error.message}; {error.hint}"
+            unwritten[file] = f"no {file}: {error.in_a_line}"
         except Exception as error:  # noqa: BLE001 - drawing may fail in any way
             unwritten[file] = f"{file} failed with {type(error).__name__}: {error}"
         return otherwise
