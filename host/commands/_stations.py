@@ -12,6 +12,7 @@ from host.errors import WrongUse
 from host.link.addresses import SIM, sim_options, with_params
 from host.link.names import Chosen, chosen, is_several, named, several
 from host.util.interrupts import uninterrupted
+from host.util.numbers import Number
 
 if TYPE_CHECKING:
     from host.lab.live_station import LiveStation
@@ -34,6 +35,24 @@ def network_address(text: str) -> str:
             " `ip address` shows them"
         )
     return str(address)
+
+
+def add_port(parser: argparse.ArgumentParser, served: str, usual: int) -> None:
+    """Add --port.
+
+    Args:
+        parser: Gets the option.
+        served: What is served there, in words.
+        usual: The port without the option.
+    """
+    parser.add_argument(
+        "--port",
+        type=Number(least=0, most=65535, whole=True),
+        default=usual,
+        metavar="N",
+        help=f"TCP port of the {served}, a whole number; 0 for any that is free"
+        " (default %(default)s)",
+    )
 
 
 def add_unattended(parser: argparse.ArgumentParser, left_alone: str) -> None:

@@ -8,11 +8,10 @@ from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING
 
 from host.commands._outputs import add_force, answer_beside, path_argument, require_place
-from host.commands._stations import add_unattended, network_address, robots_of, station_of
+from host.commands._stations import add_port, add_unattended, network_address, robots_of, station_of
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
 from host.util.extras import need
-from host.util.numbers import Number
 from host.util.whole_files import write_text
 
 if TYPE_CHECKING:
@@ -28,13 +27,7 @@ _LOOK_S = 0.1
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Where to serve, what viewers may do, and the layout."""
-    parser.add_argument(
-        "--port",
-        type=Number(least=0, most=65535, whole=True),
-        default=8765,
-        metavar="N",
-        help="TCP port of the server, a whole number; 0 for any that is free (default %(default)s)",
-    )
+    add_port(parser, "server", 8765)
     parser.add_argument(
         "--listen",
         type=network_address,

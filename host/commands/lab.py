@@ -11,7 +11,7 @@ from ipaddress import ip_address
 from typing import TYPE_CHECKING, Any
 
 from host.commands import _lab_replay
-from host.commands._stations import add_unattended, network_address, robots_of, station_of
+from host.commands._stations import add_port, add_unattended, network_address, robots_of, station_of
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
 from host.link.addresses import sim_options
@@ -34,13 +34,7 @@ _FIND_S = 3.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Where to serve, and what happens to a robot to which nobody attends."""
-    parser.add_argument(
-        "--port",
-        type=Number(least=0, most=65535, whole=True),
-        default=5426,
-        metavar="N",
-        help="TCP port of the page, a whole number; 0 for any that is free (default %(default)s)",
-    )
+    add_port(parser, "page", 5426)
     network = parser.add_mutually_exclusive_group()
     network.add_argument(
         "--host",
