@@ -117,6 +117,27 @@ def pytest_collection_modifyitems(items):
             item.add_marker("realtime")
 
 
+@pytest.fixture(scope="module")
+def desk():
+    """A simulated robot in a process of its own, which waits for a start."""
+    from host.lab.desk_robot import DeskRobot, child_options
+
+    with DeskRobot(child_options("sim://?seed=1&idle=1")) as desk:
+        yield desk
+
+
+@pytest.fixture
+def observer(desk):
+    """Who watches that robot, once it stands and nobody holds it any more."""
+    from host.client.robot import connect
+
+    with connect(desk.uri, observe=True) as robot:
+        robot.stop()
+        # Who held it in the test before may have been killed just now.
+        robot.wait(20.0, until=lambda: robot.status()["controller"] is None)
+        yield robot
+
+
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

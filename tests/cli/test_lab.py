@@ -19,21 +19,6 @@ from tests.live import wait_until
 from tests.sysfs.mount import ROOT
 
 
-@pytest.fixture(scope="module")
-def desk():
-    with DeskRobot(child_options("sim://?seed=1&idle=1")) as desk:
-        yield desk
-
-
-@pytest.fixture
-def observer(desk):
-    with connect(desk.uri, observe=True) as robot:
-        robot.stop()
-        # The lab of the test before may have been killed just now.
-        robot.wait(20.0, until=lambda: robot.status()["controller"] is None)
-        yield robot
-
-
 @contextmanager
 def lab(*arguments):
     """The process of the verb, and what it says of itself."""

@@ -3,13 +3,10 @@
 import asyncio
 from contextlib import contextmanager
 
-import pytest
 from mcap.reader import make_reader
 
-from host.client.robot import connect
 from host.foxglove.server import Viewers
 from host.foxglove.station import ShownStation
-from host.lab.desk_robot import DeskRobot, child_options
 from host.lab.station import STOP
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
@@ -18,19 +15,6 @@ from robot.record import KICK_NAMES, STATES, STRUCT, Record
 from tests.foxglove.stations import driver_of
 from tests.foxglove.viewer import viewer_of
 from tests.live import Relay
-
-
-@pytest.fixture(scope="module")
-def desk():
-    with DeskRobot(child_options("sim://?seed=1&idle=1")) as desk:
-        yield desk
-
-
-@pytest.fixture
-def observer(desk):
-    with connect(desk.uri, observe=True) as robot:
-        robot.stop()
-        yield robot
 
 
 @contextmanager

@@ -52,19 +52,6 @@ class Answers:
         return self._come.pop(0)
 
 
-@pytest.fixture(scope="module")
-def desk():
-    with DeskRobot(child_options("sim://?seed=1&idle=1")) as desk:
-        yield desk
-
-
-@pytest.fixture
-def observer(desk):
-    with connect(desk.uri, observe=True) as robot:
-        robot.stop()
-        yield robot
-
-
 def state(observer):
     return observer.status()["state"]
 
