@@ -102,7 +102,7 @@ class Observed:
         self.verdicts: deque[dict[str, Any]] = deque(maxlen=VERDICTS_KEPT)
         self._kicks = Kicks()
 
-    # What pages are told.
+    # What pages hear.
 
     def description(self) -> dict[str, Any]:
         """The robot's entry in the welcome."""

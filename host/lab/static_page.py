@@ -46,7 +46,7 @@ _SAME_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def build(folder: Path, pyodide: Path) -> int:
-    """Write the page's folder anew.
+    """Write the page's folder.
 
     Args:
         folder: Where it goes; what is there is removed.

@@ -10,7 +10,7 @@ HEADER = struct.Struct("<BBHI")
 
 
 def records_of(message):
-    """The robot's records in a binary message for its page, of which none are missing."""
+    """The robot's records in a binary message for its page, with none missing."""
     kind, robot, count, missed = HEADER.unpack_from(message)
     assert (kind, robot, missed) == (1, 0, 0)
     size = (len(message) - HEADER.size) // count

@@ -10,8 +10,8 @@ from host.lab.lessons.checks import Finding
 from host.lab.lessons.model import RUNS, exact_k, exact_slope
 
 KS, K_OFF = 4, 0.05
-# The mean of so many pairs is at most this far from the exponent, in 1/s: single pairs differ by
-# 0.24/s (standard deviation), and the slope of this mean by 0.08/s.
+# The number of pairs, and how far the slope of their mean may be from the exponent, 1/s. The
+# standard deviation of single slopes is 0.24/s, that of the mean of eight 0.08/s.
 PAIRS, SLOPE_OFF = 8, 0.25
 # Numbers that pages show are rounded.
 _ROUNDING = 1e-3

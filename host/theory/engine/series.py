@@ -1,9 +1,8 @@
 """Power series in time, as compiled code for eight wheels at a time.
 
 `Lanes` is a number of eight wheels at once: what is done with it becomes instructions of the
-compiler LLVM. `Series` is a function of time: a list of Taylor coefficients, each of which is
-computed when it is asked for. The plain functions of host.theory.model take both, as they take
-floats (sim_motor.mathematics).
+compiler LLVM. `Series` is a function of time: it computes its Taylor coefficients on demand. The
+plain functions of host.theory.model take both, as they take floats (sim_motor.mathematics).
 """
 
 from __future__ import annotations
