@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from host.client import neighbours
 from host.client.lasting_link import HEARTBEAT_S, LastingLink
@@ -19,9 +19,6 @@ from host.link.transport import LinkLost
 from host.util.installation import deploy_command
 from host.util.interrupts import uninterrupted
 from robot.token import default_path
-
-if TYPE_CHECKING:
-    from types import TracebackType
 
 # How long an open link that carries other things may take to confirm a stop, and how often to look.
 THROUGH_S = 1.0
@@ -42,12 +39,7 @@ class Connection(LastingLink):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:

@@ -11,7 +11,6 @@ import logging
 import os
 import re
 from collections.abc import Callable, Sequence
-from types import TracebackType
 from typing import Any, Self
 
 import foxglove
@@ -94,12 +93,7 @@ class Viewers:
             self._show(prefix, station)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for station in self._robots.values():
             station.pages = None
             station.publish = lambda message: None
