@@ -1,7 +1,6 @@
 """`python -m docs.site`: build the site in build/docs. Each warning is an error."""
 
 import argparse
-import shutil
 import sys
 from pathlib import Path
 
@@ -13,7 +12,7 @@ def build(folder: Path, notebooks: str) -> int:
     """Build the site.
 
     Args:
-        folder: Where it goes: `html` in it. What stays there saves time in the next build.
+        folder: Where it goes: `html` in it. Notebooks that have run stay there for the next build.
         notebooks: Whether they are run: 'off', or 'cache' for those that have changed.
 
     Returns:
@@ -21,20 +20,17 @@ def build(folder: Path, notebooks: str) -> int:
     """
     from sphinx.cmd.build import build_main
 
-    pages, read = folder / "pages", folder / "doctrees"
+    pages = folder / "pages"
     lay_out(pages)
-    status = build_main(
+    # Sphinx would not warn of pages that it does not read again, and forget their index entries.
+    return build_main(
         [
-            *("-b", "html", "-c", str(ROOT / "docs" / "site"), "-d", str(read)),
-            *("-D", f"nb_execution_mode={notebooks}", "--fail-on-warning"),
+            *("-b", "html", "-c", str(ROOT / "docs" / "site"), "-d", str(folder / "doctrees")),
+            *("-D", f"nb_execution_mode={notebooks}", "--fail-on-warning", "--fresh-env"),
             *(["--quiet"] if notebooks == "off" else []),
             *(str(pages), str(folder / "html")),
         ]
     )
-    if status:
-        # A page that was read is not read a second time, and would not warn.
-        shutil.rmtree(read, ignore_errors=True)
-    return status
 
 
 def main() -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -16,6 +17,10 @@ from robot import __version__
 
 INDEX = "docs/README.md"
 _LINK = re.compile(r"(?<=\]\()(?!\w+:|#)[^)#\s]+(?=[)#])|(?<=src=\")(?!\w+:)[^\"]+")
+# Words by which people look for what stands below them, in a comment that pages do not show.
+_SOUGHT = re.compile(r"^<!-- search: ([^>]+) -->$", re.MULTILINE)
+# The first column of a table of words.
+_GLOSSARY = re.compile(r"^\| word \|.*\n\|[-|]+\n(?:\|.*\n)+", re.MULTILINE)
 _RUN = re.compile(r"(?<=^\| )`([-\w]+)`(?= \|)", re.MULTILINE)
 # What stands above the first picture of the first page.
 _BEGIN = f"""\
@@ -31,23 +36,17 @@ _SECTION = re.compile(r"^## (.+)\n", re.MULTILINE)
 def lay_out(target: Path) -> None:
     """Write all pages, and the files that they show or lead to, below a folder.
 
-    A file that is there already with the same content is not touched, so that Sphinx reads only
-    what has changed.
-
     Args:
         target: The folder. What else is in it is removed.
     """
     files = {path: text.encode() for path, text in {**_written(), **reference()}.items()}
     for path in tuple(files):
         files |= _linked(path, files)
+    shutil.rmtree(target, ignore_errors=True)
     for path, content in files.items():
         file = target / path
-        if not file.is_file() or file.read_bytes() != content:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(content)
-    for file in target.rglob("*"):
-        if file.is_file() and str(file.relative_to(target)) not in files:
-            file.unlink()
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(content)
 
 
 def _written() -> dict[str, str]:
@@ -55,7 +54,10 @@ def _written() -> dict[str, str]:
     index = (ROOT / INDEX).read_text(encoding="utf-8")
     sections = dict(_sections(index))
     listed = [path for rows in sections.values() for path in _targets(INDEX, rows)]
-    pages = {path: _with_runs((ROOT / path).read_text(encoding="utf-8")) for path in listed}
+    pages = {
+        path: _with_entries(_with_runs((ROOT / path).read_text(encoding="utf-8")))
+        for path in listed
+    }
     folders = {
         _slug(title): _section(title, _moved(INDEX, rows)) for title, rows in sections.items()
     }
@@ -79,6 +81,22 @@ def _with_runs(page: str) -> str:
         return found[0]
 
     return _RUN.sub(link, page)
+
+
+def _with_entries(page: str) -> str:
+    """A page whose words the search shows first: those of comments, and those of its glossary."""
+
+    def with_words(found: re.Match[str]) -> str:
+        words = ",".join(row.split("|")[1] for row in found[0].splitlines()[2:])
+        return f"{_entries(words)}\n{found[0]}"
+
+    page = _SOUGHT.sub(lambda found: _entries(found[1]), page)
+    return _GLOSSARY.sub(with_words, page)
+
+
+def _entries(words: str) -> str:
+    """Main entries of the index, which the search counts most, for words between commas."""
+    return f"```{{index}} {', '.join(f'! {word.strip()}' for word in words.split(','))}\n```\n"
 
 
 def _sections(index: str) -> Iterator[tuple[str, str]]:
