@@ -10,6 +10,8 @@ from typing import Any
 from host.client import robot as client
 from host.errors import NotDone
 from host.kicking.outcome import (
+    OTHER_PARAMETERS,
+    UNSETTLED,
     Outcome,
     advice,
     describe,
@@ -123,8 +125,8 @@ class Robot(client.Robot):
         with self.recording() as log:
             if not now and not wait_settled(self):
                 raise NotDone(
-                    "the wheels did not settle",
-                    "now=True kicks all the same; are the parameters those of a steady motion?",
+                    f"{UNSETTLED}, so the kick was not sent",
+                    f"{OTHER_PARAMETERS}; now=True kicks without waiting",
                 )
             outcome = kick_and_watch(
                 self,

@@ -244,7 +244,7 @@ class Params(object):
                 raise Refused(
                     "state",
                     "{} cannot change while the robot runs".format(name),
-                    "stop the robot first",
+                    "stop the robot first: kickctl stop",
                 )
         tick_s = checked.get("tick_s", self.tick_s)
         check_step(tick_s, checked.get("tau_s", self.tau_s))

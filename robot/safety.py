@@ -95,7 +95,7 @@ class Safety(object):
             Refused: There is no fault.
         """
         if self.state != FAULT:
-            raise Refused("state", "there is no fault to clear")
+            raise Refused("state", "there is no fault to clear", "kickctl status shows its state")
         self._enter(STOPPED, "fault cleared")
 
     def _enter(self, state, reason):

@@ -233,7 +233,7 @@ class Connection(LastingLink):
                 if now > until:
                     raise NoLink(
                         f"the robot does not answer to '{what}'",
-                        "is its program alive? Look at its screen",
+                        "is its program alive? `kickctl doctor` looks closer",
                     )
                 self.pump(HEARTBEAT_S)
                 now = self.link.now()

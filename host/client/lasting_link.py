@@ -273,7 +273,7 @@ class LastingLink:
         # A robot that lets everybody in and says nothing more is as lost as one that is not there.
         if self._give_up_at is None:
             self._give_up_at = self.link.now() + self._pause_s + self.reconnect_s
-        failure = NoLink(why, "is its program alive? Look at its screen")
+        failure = NoLink(why, "is its program alive? `kickctl doctor` looks closer")
         pause_s = 0.05
         self._rest(self._pause_s)
         while self.link.now() < self._give_up_at and not self._leaving.is_set():

@@ -76,7 +76,9 @@ class Robot(Watcher):
             KickctlError: The robot cannot be reached, or refuses.
         """
         if observe and take_over:
-            raise WrongUse("who only looks on cannot take over", "leave observe or take_over out")
+            raise WrongUse(
+                "a program that only observes cannot take over", "leave observe or take_over out"
+            )
         named = chosen(uri)
         link = make_link(named.address, seed)
         if observe:

@@ -100,7 +100,7 @@ class Watcher(Connection):
             if self.link.now() - due_since > patience_s:
                 raise NoLink(
                     "the robot sends no more records",
-                    "look at its screen; `kickctl doctor` says more",
+                    "is its program alive? `kickctl doctor` looks closer",
                 )
         return True
 

@@ -65,7 +65,7 @@ def _failure(error: BaseException) -> KickctlError | None:
                 f"install it: {install_command()}",
             )
         case MemoryError():
-            failure = NotDone("this machine has not enough memory", "ask for less at a time")
+            failure = NotDone("this computer does not have enough memory", "ask for less at a time")
         case _:
             return None
     return failure

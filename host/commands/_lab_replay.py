@@ -126,7 +126,7 @@ def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, A
     from_s, to_s = options.from_s or 0.0, inf if options.to_s is None else options.to_s
     if from_s > to_s:
         raise WrongUse(
-            f"--from {from_s:g} lies behind --to {to_s:g}",
+            f"--from {from_s:g} is later than --to {to_s:g}",
             "exchange them: both count from the start",
         )
     log = LogFile(path)

@@ -12,7 +12,7 @@ from host.util.numbers import Number
 EVERY = ("brick", "seed", "set", "token", "name")
 _REFUSED = {
     "brick": ("--brick chooses a robot, and `{}` reaches none", "leave it out"),
-    "seed": ("--seed fixes chances, and `{}` has none", "leave it out"),
+    "seed": ("--seed is for what is random, and nothing in `{}` is", "leave it out"),
     "set": ("--set gives parameters to a simulated robot, and `{}` has none", "leave it out"),
     "token": ("--token opens a robot, and `{}` reaches none", "leave it out"),
     "name": ("--name says who drives a robot, and `{}` drives none", "leave it out"),
@@ -63,7 +63,7 @@ def common(*, defaults: bool, used: Sequence[str] = EVERY) -> argparse.ArgumentP
     )
     add(
         "seed",
-        "fixes all chances of the simulation: a whole number",
+        "random seed of the simulation: the same seed gives the same run. A whole number",
         type=Number(least=0, whole=True),
         metavar="N",
     )
@@ -118,7 +118,7 @@ def add_take_over(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--take-over",
         action="store_true",
-        help="take control from who drives the robot now; they hear that you did",
+        help="take control from whoever drives the robot now; their program says that you did",
     )
 
 

@@ -45,7 +45,10 @@ def require_place(options: argparse.Namespace, path: Path) -> Path:
 
     require_no_log(path)
     if options.json and descriptor_of(path) == _STANDARD_OUTPUT:
-        raise WrongUse("with --json the answer goes to standard output", "name a file with --out")
+        raise WrongUse(
+            "with --json the answer goes to standard output, so nothing else can go there",
+            "name a file with --out",
+        )
     require_free(path, replace=options.force)
     require_folder(path)
     return path

@@ -30,7 +30,7 @@ def search_kicks(goal: str, wanted: str, params: Params, motor: Constants) -> di
     Raises:
         NotDone: No wheel rolls at these parameters.
     """
-    from host.kicking.outcome import DIRECTIONS
+    from host.kicking.outcome import DIRECTIONS, OTHER_PARAMETERS
     from host.kicking.rolling_wheels import roll
     from host.kicking.search import paper_kicks, search
     from host.kicking.search_margins import assess
@@ -41,7 +41,7 @@ def search_kicks(goal: str, wanted: str, params: Params, motor: Constants) -> di
         raise NotDone(
             f"at k = {params.k:g} and tau_s = {params.tau_s:g} no simulated wheel rolls steadily,"
             " so there is nothing to reverse",
-            "take parameters of a steady motion; see kickctl params list",
+            OTHER_PARAMETERS,
         )
     with progress("searching for kicks", 100.0) as tell:
         found = search(wheels, goal, lambda part: tell(60.0 * part))

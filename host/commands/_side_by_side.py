@@ -130,7 +130,7 @@ class _Run:
             result = json.loads(self.out)
         except ValueError:
             why = f"its process ended with status {status} and no result"
-            return failed(name, NotDone(why, "see above why"))
+            return failed(name, NotDone(why, "the lines above say why"))
         try:
             line = in_one_line(result)
         except KeyError:  # there is nothing but an error

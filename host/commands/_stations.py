@@ -76,8 +76,8 @@ def robots_of(options: argparse.Namespace) -> list[Chosen]:
     robots = several(text) if text is not None and is_several(text) else [chosen(text)]
     if options.seed is not None and any(sim_options(one.address) is None for one in robots):
         raise WrongUse(
-            f"--seed fixes the chances of {SIM} only",
-            "a robot elsewhere has the seed that it was started with",
+            f"--seed is only for the robot that is embedded in this program, {SIM}",
+            "leave it out: a robot elsewhere has the seed that it was started with",
         )
     return robots
 

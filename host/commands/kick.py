@@ -111,6 +111,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Kick, and write a log and a figure. Raises NotDone if a kicked wheel did not reverse."""
     from host.kicking.outcome import (
+        OTHER_PARAMETERS,
+        UNSETTLED,
         describe,
         kick_and_watch,
         require_control,
@@ -133,8 +135,8 @@ def run(options: argparse.Namespace) -> int:
         with recorded(robot, _in_name(options, ticks), of_kick=True) as recording:
             if not options.now and not wait_settled(robot):
                 raise NotDone(
-                    "the wheels did not settle",
-                    "are the parameters those of a steady motion? --now kicks without waiting",
+                    f"{UNSETTLED}, so the kick was not sent",
+                    f"{OTHER_PARAMETERS}; --now kicks without waiting",
                 )
             if options.window:
                 _await_window(robot, options.wheel, options.window)

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     if options.search:
         return _search(options)
     from host.errors import NotDone
-    from host.kicking.outcome import require_running, wait_settled
+    from host.kicking.outcome import OTHER_PARAMETERS, UNSETTLED, require_running, wait_settled
     from host.kicking.robot_motor import motor_of
     from robot.kicks import WHEELS
 
@@ -42,10 +42,7 @@ def run(options: argparse.Namespace) -> int:
         motor = motor_of(robot, options.motor)
         require_running(robot)
         if not wait_settled(robot):
-            raise NotDone(
-                "the wheels did not settle, so there is no steady motion to reverse",
-                "are k and tau_s those of a steady motion? see: kickctl params list",
-            )
+            raise NotDone(f"{UNSETTLED}, so there is no steady motion to reverse", OTHER_PARAMETERS)
         wheels = {side: _plan(robot, side, options.to, motor) for side in WHEELS}
         origin = {
             "params": robot.status()["params"],

@@ -35,6 +35,8 @@ def run(options: argparse.Namespace) -> int:
     from host.films.movie import FPS, Movie
     from host.films.rod_course import SLOWER, WINDOW_S, course
     from host.kicking.outcome import (
+        OTHER_PARAMETERS,
+        UNSETTLED,
         describe,
         kick_and_watch,
         require_control,
@@ -53,9 +55,7 @@ def run(options: argparse.Namespace) -> int:
             with recorded(robot, "rods") as recording:
                 log = recording.log
                 if not wait_settled(robot):
-                    raise NotDone(
-                        "the wheels did not settle", "are the parameters those of a steady motion?"
-                    )
+                    raise NotDone(f"{UNSETTLED}, so there is no kick to film", OTHER_PARAMETERS)
                 outcome = kick_and_watch(robot, log, PHASE)
                 kick_s = log.records[log.kicks()[0][0]].t_s
                 recorded_s = log.records[-1].t_s - kick_s

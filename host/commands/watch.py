@@ -36,7 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--take-over",
         action="store_true",
         dest="keys_take_over",
-        help="keys kick also a robot that somebody else drives; they hear that you took control",
+        help="keys also kick a robot that somebody else drives; their program says that you took"
+        " control",
     )
 
 

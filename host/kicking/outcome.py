@@ -15,6 +15,8 @@ from robot.record import Record
 from sim_motor.settling import WINDOW_S
 
 SETTLE_PATIENCE_S = 15.0
+UNSETTLED = f"the wheels do not move evenly, even after {SETTLE_PATIENCE_S:g} s"
+OTHER_PARAMETERS = "with this k and tau_s they may never do: take others, as k=8 and tau_s=0.25"
 WATCH_S = 6.0
 # How far `motion.settled` looks back, and a tick or two. All of this must lie behind a kick.
 JUDGED_S = 2 * WINDOW_S + 0.1

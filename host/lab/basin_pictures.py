@@ -49,7 +49,9 @@ class BasinPictures:
         try:
             question = self._station.basin_question(SIDES[0])
             if self._station.basins is None:
-                raise NotDone("this lab does not compute basins", "")
+                raise NotDone(
+                    "this page does not compute basins", "`kickctl lab` on a computer does"
+                )
         except NotDone as error:
             self._show({"why": error.message, "hint": error.hint})
             return

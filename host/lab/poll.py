@@ -96,7 +96,9 @@ class Poll:
                 )
             self._question = asked
         elif page.role == DRIVE or self._baton.driver == page.number:
-            raise NotDone("who asks or drives does not answer", "guess under Kick")
+            raise NotDone(
+                "a page that asks the class, or drives, does not answer", "guess under Kick"
+            )
         elif self._question is None or self._question.state != OPEN:
             raise NotDone("no question is open: answers count until the kick", "wait for the next")
         elif guess is None:

@@ -179,7 +179,10 @@ def _words(error: OSError, host: str, port: int) -> KickctlError:
             f"end that one, or take another port: --port {port + 1}, or --port 0 for any",
         )
     if error.errno == errno.EACCES:
-        return WrongUse(f"port {port} is not for everybody", "take one above 1023: --port 5426")
+        return WrongUse(
+            f"port {port} belongs to the system: only its administrator may use it",
+            "take one above 1023: --port 5426",
+        )
     return WrongUse(
         f"this computer cannot listen at {host}: {error.strerror or error}",
         "--host takes an address of this computer in its network, as `ip address` shows it",

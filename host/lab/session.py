@@ -331,9 +331,12 @@ class Session:
         station = self._station(message)
         wheel, angle_rad = requests.wheel_of(message), requests.angle_of(message)
         if self.baton.driver != page.number:
-            raise RefusedByRobot("only who drives may pull a wheel", "ask for the baton")
+            raise RefusedByRobot("only the page that drives may pull a wheel", "ask for the baton")
         if not station.hand_possible:
-            raise NotDone(f"nobody can pull the wheels of {station.name} from here", "")
+            raise NotDone(
+                f"the wheels of {station.name} cannot be pulled from here",
+                "only those of the lab's own simulated robot can",
+            )
         self.baton.beat(page.number, now)
         station.hand(wheel, angle_rad)
 

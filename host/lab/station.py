@@ -116,9 +116,12 @@ class Station(Observed):
         """Whose basins are to be computed, `side` starts along each axis. Raises NotDone."""
         motor = motor_known(self._hello)
         if not self._known:
-            raise NotDone("the robot has not been found yet", "")
+            raise NotDone("the robot has not been found yet", "the lab goes on looking for it")
         if self._walls_m is not None:
-            raise NotDone("basins are of a wheel by itself, and this robot has walls", "")
+            raise NotDone(
+                "basins are of a wheel by itself, and this robot has walls",
+                "start the lab without walls to see them",
+            )
         if motor is None:
             raise NotDone("nobody here knows the motors of this robot", MEASURE)
         values = self._follower.params

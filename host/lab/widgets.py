@@ -88,7 +88,7 @@ def show_log(log: Log, cut: Cut) -> None:
         raise WrongUse("this log is empty", "robot.record(3) records three seconds")
     if cut.from_s > cut.to_s:
         raise WrongUse(
-            f"from_s={cut.from_s:g} lies behind to_s={cut.to_s:g}",
+            f"from_s={cut.from_s:g} is later than to_s={cut.to_s:g}",
             "exchange them: both count from the log's start",
         )
     name = str(log.info.get("robot") or log.info.get("brick") or "log")

@@ -203,8 +203,8 @@ def make_link(uri: str, seed: int | None = None) -> Link:
         return _sim(parts, seed)
     if seed is not None:
         raise WrongUse(
-            f"--seed fixes the chances of {SIM} only",
-            "a robot elsewhere has the seed that it was started with",
+            f"--seed is only for the robot that is embedded in this program, {SIM}",
+            "leave it out: a robot elsewhere has the seed that it was started with",
         )
     if parts.scheme == "tcp":
         return _tcp(parts)

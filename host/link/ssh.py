@@ -192,7 +192,7 @@ def _parse(uri: str) -> tuple[Login, str, int]:
     address, _, query = uri.partition("?")
     if ":" in address.removeprefix("ssh://").rpartition("@")[0]:
         raise WrongUse(
-            "passwords do not belong into addresses, where others see them",
+            "a password does not belong in an address, where others see it",
             "leave it out: ssh asks for it",
         )
     login = parse_login(address)

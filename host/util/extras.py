@@ -27,5 +27,5 @@ def need(module: str, extra: str) -> None:
             f"{module} cannot be loaded: {error}",
             "is MUJOCO_GL set to something? unset it, or set it to egl or osmesa"
             if module in ("mujoco", "glfw")
-            else f"install it anew: {install_command(extra)}",
+            else f"install it again: {install_command(extra)}",
         ) from error

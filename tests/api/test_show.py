@@ -63,7 +63,7 @@ def test_a_log_is_shown_from_its_own_records_or_a_part_of_them(log, displayed):
     assert "log.show(from_s=0" in error.value.hint
     with pytest.raises(kickctl.WrongUse, match="from_s"):
         log.show(from_s="1")
-    with pytest.raises(kickctl.WrongUse, match="lies behind to_s"):
+    with pytest.raises(kickctl.WrongUse, match="is later than to_s"):
         log.show(from_s=0.8, to_s=0.2)
     with pytest.raises(kickctl.WrongUse, match="this log is empty"):
         kickctl.Log(log.info).show()

@@ -153,7 +153,7 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
     [
         (("--port", "{taken}"), 1, "is taken"),
         (("--brick", "tcp://127.0.0.1:1", "--walls", "2"), 2, "--walls is for the simulated"),
-        (("--brick", "tcp://127.0.0.1:1", "--seed", "2"), 2, "--seed fixes"),
+        (("--brick", "tcp://127.0.0.1:1", "--seed", "2"), 2, "--seed is only for"),
         (("--brick", "sim://?dither=1"), 2, "has no option 'dither'"),
         (("--host", "192.0.2.1", "--port", "0"), 2, "cannot listen at 192.0.2.1"),
         (("--class", "--host", "192.0.2.1"), 2, "not allowed with argument"),
@@ -165,7 +165,7 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--replay", "none.mcap"), 2, "none.mcap cannot be read"),
         (("--replay", "x.mcap", "--brick", "sim://"), 2, "`lab --replay` reaches none"),
         (("--replay", "x.mcap", "--walls", "2"), 2, "--walls is for robots"),
-        (("--replay", "x.mcap", "--from", "2", "--to", "1"), 2, "--from 2 lies behind --to 1"),
+        (("--replay", "x.mcap", "--from", "2", "--to", "1"), 2, "--from 2 is later than --to 1"),
         (("--twin",), 2, "--twin goes beside a log, and there is none"),
         (("--export", "x.txt", "x.mcap"), 2, "has another ending than .html"),
         (("--export", "x.mcap", "x.html"), 2, "kickctl lab --export x.html x.mcap"),

@@ -82,7 +82,7 @@ def test_the_teacher_asks_whoever_drives_and_all_others_answer(lab, teacher, pup
     assert "drive key asks the class" in refused
     assert "no question" in pupil.ask("answer", guess="stops")["error"]["message"]
     teacher.send("poll", request=1, robot="anna", kick=KICK)
-    assert "who asks or drives" in teacher.ask("answer", guess="stops")["error"]["message"]
+    assert "asks the class, or drives" in teacher.ask("answer", guess="stops")["error"]["message"]
     assert "missing" in pupil.ask("answer", guess=None)["error"]["message"]
     assert "nobody can guess" in pupil.ask("answer", guess="explodes")["error"]["message"]
     assert "no 'noise'" in teacher.ask("poll", robot="anna", kick={"noise": 1})["error"]["message"]
@@ -91,7 +91,7 @@ def test_the_teacher_asks_whoever_drives_and_all_others_answer(lab, teacher, pup
     teacher.send("give", request=3, page=pupil.page.number)
     assert pupil.drives
     assert "result" in teacher.ask("poll", robot="anna", kick=KICK)
-    assert "who asks or drives" in pupil.ask("answer", guess="stops")["error"]["message"]
+    assert "asks the class, or drives" in pupil.ask("answer", guess="stops")["error"]["message"]
     pupil.send("do", request=4, **DO)
     assert poll(lab, teacher, pupil)["state"] == "locked"
     assert "result" in teacher.ask("poll", robot="anna", kick=None)

@@ -76,7 +76,7 @@ def test_who_may_only_watch_does_nothing_but_stop(lab):
     assert "may only watch" in visit.ask("do", **KICK)["error"]["message"]
     assert "drive key" in visit.ask("take")["error"]["message"]
     assert (
-        "only who drives"
+        "only the page that drives"
         in visit.ask("hand", robot="anna", wheel="left", angle_rad=1)["error"]["message"]
     )
     visit.send("stop", robot="bert")

@@ -193,7 +193,11 @@ def refusal(attempt, *arguments):
 
 def test_the_words_of_every_refusal():
     safety, lease = Safety(), Lease()
-    nothing = {"code": "state", "message": "there is no fault to clear", "hint": ""}
+    nothing = {
+        "code": "state",
+        "message": "there is no fault to clear",
+        "hint": "kickctl status shows its state",
+    }
     assert refusal(safety.clear) == nothing
     safety.start()
     runs = {
