@@ -4,7 +4,7 @@ Checks, command line, documentation and dashboards all use this one table.
 """
 
 from collections import OrderedDict
-from math import isfinite
+from math import floor, isfinite
 from operator import attrgetter
 from types import SimpleNamespace
 
@@ -36,10 +36,19 @@ def _choice(name, default, choices, doc, at_rest_only=False):
 # The delta t of a late tick is at most this many control periods. tau must be at least that long,
 # or an Euler step could overshoot.
 LONGEST_STEP_TICKS = 3
+# In binary, three times 0.1 is a little more than 0.3.
+_ROUNDING_S = 1e-9
 
 _ROWS = (
     _number("a", "1", 0.1, 50.0, 4.0, "gain of the neurons; the slope of their sigmoid is a/4"),
-    _number("tau_s", "s", 0.03, 10.0, 0.25, "time constant of the membrane potentials"),
+    _number(
+        "tau_s",
+        "s",
+        0.03,
+        10.0,
+        0.25,
+        "time constant of the membrane potentials; at least three tick_s",
+    ),
     _number("k", "1", 0.0, 100.0, 8.0, "spring constant of the simulated rods"),
     _number(
         "rod_lag_s",
@@ -178,7 +187,7 @@ def check_step(tick_s, tau_s):
     Raises:
         Refused: tau_s is shorter than LONGEST_STEP_TICKS control periods.
     """
-    if tau_s < LONGEST_STEP_TICKS * tick_s:
+    if tau_s < LONGEST_STEP_TICKS * tick_s - _ROUNDING_S:
         raise Refused(
             "range",
             "tau_s {:g} s is shorter than {} ticks of {:g} s".format(
@@ -206,6 +215,33 @@ def check_lag(rod_lag_s, tick_s):
             "the robot remembers the angle of one tick before: take a shorter rod_lag_s or a longer"
             " tick_s",
         )
+
+
+def accepted(name, values, at_rest):
+    """What a parameter can be set to while the others stay as they are.
+
+    Args:
+        name: The parameter's name.
+        values: The parameters in force, by name.
+        at_rest: Whether the robot stands still.
+
+    Returns:
+        Of a number (least, greatest), to 0.1 ms: `Params.check` takes both. Else the choices that
+        it takes.
+    """
+    row = TABLE[name]
+    if row.choices is not None:
+        return row.choices if at_rest or not row.at_rest_only else (values[name],)
+    least, greatest = row.minimum, row.maximum
+    if name == "tau_s":
+        least = max(least, round(LONGEST_STEP_TICKS * values["tick_s"], 9))
+    elif name == "tick_s":
+        least = max(least, values.get("rod_lag_s", 0.0))  # an older robot has none
+        longest_s = (values["tau_s"] + _ROUNDING_S) / LONGEST_STEP_TICKS
+        greatest = max(least, min(greatest, floor(1e4 * longest_s) / 1e4))
+    elif name == "rod_lag_s":
+        greatest = min(greatest, values["tick_s"])
+    return least, greatest
 
 
 class Params(object):

@@ -9,6 +9,7 @@ from host.commands._rest import explain_rest
 from host.commands._terminal import print_result, print_table, robot_of, say, show
 from host.errors import WrongUse
 from host.link.settings import parse_setting
+from robot.params import TABLE, accepted
 
 HELP = "the robot's parameters: list, get NAME, set NAME=VALUE ..., reset [NAME ...]"
 # They say how the motors are mounted. Other values would turn a wheel the wrong way.
@@ -45,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
         values = robot.status()["params"]
     if options.action == "list":
         table = [
-            {"name": name, "value": values[name], **{key: row[key] for key in row if key != "name"}}
+            {"name": name, "value": values[name], **row, **_limits(name, values)}
             for name, row in rows.items()
         ]
         if options.json:
@@ -92,6 +93,14 @@ _ENDS = "the simulated robot ends with this command; the next one begins with it
 def _shown_unit(row: dict[str, Any]) -> str:
     """The unit in a parameter's row; empty for a number without one."""
     return "" if row["unit"] == "1" else str(row["unit"])
+
+
+def _limits(name: str, values: dict[str, Any]) -> dict[str, float]:
+    """Between which numbers the robot takes a parameter now; empty if the table says it."""
+    if name not in TABLE or TABLE[name].choices is not None:
+        return {}
+    least, greatest = accepted(name, values, at_rest=True)
+    return {"minimum": least, "maximum": greatest}
 
 
 def _say_what_follows(

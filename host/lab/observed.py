@@ -45,6 +45,8 @@ _HINTS = {
     "held": "the robot waits for its driver: take the baton, then kick it or set a parameter",
     "fault": "mend the cause, then clear the fault, then start",
 }
+# The states in which the motors may turn.
+_MOVING = ("running", "held")
 _REMEDIES = {"idle": "start", "stopped": "start", "fault": "clear"}
 _DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
 
@@ -151,13 +153,19 @@ class Observed:
         state = str(status["state"])
         edges, counts = status["lateness"]["edges_s"], status["lateness"]["counts"]
         hint = message.get("hint", _HINTS.get(state, ""))
+        values = dict(self._follower.params)
         return message | {
             "state": state,
             "reason": plain(printable(str(status["reason"]))),
             "stopped_by": self._stopped_by if state == "stopped" else None,
             "remedy": _REMEDIES.get(state),
             "hint": hint,
-            "params": dict(self._follower.params),
+            "params": values,
+            "accepts": {
+                name: params.accepted(name, values, at_rest=state not in _MOVING)
+                for name in values
+                if name in params.TABLE
+            },
             "battery_v": status["battery_v"],
             "controller": _text(status["controller"]),
             "here": self.drives_here(),

@@ -137,6 +137,14 @@ def test_params_list_has_what_scripts_rely_on(kickctl):
     ) == (8.0, 0.25, 0.03, 85.0)
 
 
+def test_params_list_says_what_is_taken_now(kickctl):
+    listed = ("--set", "tick_s=0.06", "--set", "rod_lag_s=0.015", "params", "list")
+    rows = {row["name"]: row for row in json.loads(kickctl(*listed, "--json")[1])["params"]}
+    ranges = {name: (rows[name]["minimum"], rows[name]["maximum"]) for name in ("tau_s", "tick_s")}
+    assert ranges == {"tau_s": (0.18, 10.0), "tick_s": (0.015, 0.0833)}
+    assert "0.18 to 10" in kickctl(*listed)[1]
+
+
 def test_params_set_and_get(kickctl):
     assert json.loads(kickctl("params", "set", "k=2.5", "link_loss=hold", "--json")[1]) == {
         "k": 2.5,

@@ -73,10 +73,23 @@ def test_a_parameter_is_sent_and_a_wrong_one_goes_back(visit, station):
     visitor.page.type("#param-k", "3,5")  # as on a keyboard in German
     visitor.page.keyboard.press("Enter")
     visitor.until("r.status.params.k === 3.5")
+    least = "Number(document.querySelector('#param-tau_s').min)"
+    visitor.until(f"{least} === 0.09")
+    visitor.page.click("#parameters summary")
+    visitor.page.fill("#param-tick_s", "0.02")
+    visitor.page.keyboard.press("Enter")
+    visitor.until(f"{least} === 0.06")
+    slider = visitor.page.locator(".param:has(#param-tau_s) [type=range]")
+    slider.fill("0")  # all the way to the left
+    visitor.until("r.status.params.tau_s === 0.06")
+    assert visitor.state()["note"] is None
+    slider.fill("200")
+    visitor.until("r.status.params.tau_s === 10")
+    assert visitor.page.is_disabled("#param-polarity_left-1")  # as long as the robot runs
     visitor.page.fill("#param-tau_s", "0.05")
     visitor.page.keyboard.press("Enter")
     visitor.until("s.note && s.note.message.includes('tau_s')")
-    visitor.page.wait_for_function("() => document.querySelector('#param-tau_s').value === '0.25'")
+    visitor.page.wait_for_function("() => document.querySelector('#param-tau_s').value === '10'")
     assert visitor.robot()["status"]["params"]["k"] == 3.5
     visitor.page.fill("#param-k", "4")
     visitor.page.keyboard.press("Enter")

@@ -6,6 +6,8 @@ import { texts } from "./texts.js";
 const USUAL_TICKS = { position: 3, phase: 4, pulse: 4 };
 const ALWAYS_ONE_TICK = ["membrane", "jump"];
 const USUAL_VALUE = { beta: 1, shift_rad: 2.36 };
+// Of what is no parameter of the robot.
+const LIMITS = { beta: [-1, 1], shift_rad: [-6.28, 6.28] };
 
 /**
  * @param {import("./lab.js").Lab} lab
@@ -99,6 +101,9 @@ export function createDesigner(lab, kick, predict) {
         const { valid } = ticks.input.validity;
         const lasts = texts.ticksHint(Number(ticks.input.value) * tick_s);
         ticks.output.textContent = valid ? lasts : texts.ticksWrong;
+        const accepted = LIMITS[param.value] ?? lab.store.robot?.status.accepts?.[param.value];
+        const [min, max] = accepted ?? ["", ""];
+        Object.assign(value.input, { min, max });
         shift.output.textContent = texts.shiftValue(Number(shift.input.value));
     }
 

@@ -59,7 +59,8 @@ export function options(labels) {
  * @param {{value: *, label: string}[]} options
  * @param {*} chosen The value at first.
  * @param {(value: *) => void} onchoice
- * @returns {HTMLFieldSetElement & {choose: (value: *) => void, value: *}}
+ * @returns {HTMLFieldSetElement & {choose: (value: *) => void, value: *,
+ *     allow: (can: (value: *) => boolean) => void}}
  */
 export function choices(name, legend, options, chosen, onchoice = () => {}) {
     const group = element("fieldset", { className: "choices" }, element("legend", {}, legend));
@@ -79,6 +80,10 @@ export function choices(name, legend, options, chosen, onchoice = () => {}) {
             input.checked = options[index].value === value;
         });
     };
+    group.allow = (can) =>
+        inputs.forEach((input, index) => {
+            input.disabled = !can(options[index].value);
+        });
     group.choose(chosen);
     return group;
 }

@@ -1,6 +1,6 @@
 /** The robot's parameters, from its own table. A change is sent at once. */
 
-import { choices, element, numberInput } from "./dom.js";
+import { choices, element, numberInput, setText } from "./dom.js";
 import { texts } from "./texts.js";
 import { sentences } from "./words.js";
 
@@ -42,12 +42,13 @@ export function createParameters(root, lab) {
         for (const row of rows) {
             const value = robot.status.params[row.name];
             if (value !== undefined && !row.pending && value !== row.value) row.show(value);
+            row.offer(robot.status.accepts?.[row.name] ?? row.all);
         }
     };
 }
 
 function choice(param, send) {
-    const row = { name: param.name, value: undefined, pending: false };
+    const row = { name: param.name, value: undefined, pending: false, all: param.choices };
     const options = param.choices.map((value) => ({ value, label: String(value) }));
     const group = choices(`param-${param.name}`, param.name, options, param.default, (value) =>
         send(row, value),
@@ -58,17 +59,18 @@ function choice(param, send) {
         row.value = value;
         group.choose(value);
     };
+    row.offer = (accepted) => group.allow((value) => accepted.includes(value));
     return row;
 }
 
 function number(param, send) {
     const { name, minimum, maximum } = param;
-    const row = { name, value: undefined, pending: false };
+    const row = { name, value: undefined, pending: false, all: [minimum, maximum] };
     const id = `param-${name}`;
     const field = numberInput({ id, min: minimum, max: maximum, step: "any" });
     const slider = element("input", { type: "range", min: 0, max: SLIDER_STEPS, step: 1 });
     slider.setAttribute("aria-label", name);
-    const scale = scaleOf(minimum, maximum);
+    let scale = scaleOf(minimum, maximum);
     const unit = element("span", { className: "unit" }, texts.unit(param.unit));
     const doc = element("p", { className: "fine", id: `${id}-doc` }, texts.paramDoc(param));
     field.setAttribute("aria-describedby", doc.id);
@@ -79,6 +81,13 @@ function number(param, send) {
         field.value = Number(value.toPrecision(6));
         slider.value = scale.place(value) * SLIDER_STEPS;
         slider.setAttribute("aria-valuetext", `${field.value} ${unit.textContent}`);
+    };
+    row.offer = ([least, greatest]) => {
+        if (Number(field.min) === least && Number(field.max) === greatest) return;
+        Object.assign(field, { min: least, max: greatest });
+        scale = scaleOf(least, greatest);
+        setText(doc, texts.paramDoc({ ...param, minimum: least, maximum: greatest }));
+        if (row.value !== undefined) row.show(row.value);
     };
     const take = (value) => {
         row.show(value);
@@ -96,7 +105,11 @@ function number(param, send) {
 function scaleOf(minimum, maximum) {
     const wide = maximum - minimum;
     return {
-        place: (value) => Math.sqrt((value - minimum) / wide),
-        value: (place) => Number((minimum + wide * place * place).toPrecision(3)),
+        place: (value) => (wide ? Math.sqrt(Math.max(0, value - minimum) / wide) : 0),
+        value: (place) =>
+            Math.min(
+                Math.max(Number((minimum + wide * place * place).toPrecision(3)), minimum),
+                maximum,
+            ),
     };
 }

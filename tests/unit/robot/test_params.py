@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.errors import Refused
-from robot.params import LONGEST_STEP_TICKS, TABLE, Params, check_value, describe
+from robot.params import LONGEST_STEP_TICKS, TABLE, Params, accepted, check_value, describe
 
 values = st.one_of(
     st.none(),
@@ -51,7 +51,7 @@ def test_a_change_is_refused_or_leaves_sound_values_and_checking_changes_nothing
         assert (
             after[name] in row.choices if row.choices else row.minimum <= after[name] <= row.maximum
         )
-    assert after["tau_s"] >= LONGEST_STEP_TICKS * after["tick_s"]
+    assert after["tau_s"] >= LONGEST_STEP_TICKS * after["tick_s"] - 1e-9
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,36 @@ def test_no_euler_step_can_overshoot():
     for wanted in ({"tau_s": 0.08}, {"tick_s": 0.1}, {"tick_s": 0.05, "tau_s": 0.1}):
         with pytest.raises(Refused):
             params.check(wanted)
-    assert params.check({"tick_s": 0.1, "tau_s": 0.31}) == {"tick_s": 0.1, "tau_s": 0.31}
+    assert params.check({"tick_s": 0.1, "tau_s": 0.3}) == {"tick_s": 0.1, "tau_s": 0.3}
+
+
+@given(
+    st.fixed_dictionaries(
+        {
+            "tick_s": st.floats(0.01, 0.1),
+            "tau_s": st.floats(0.03, 10.0) | st.floats(0.03, 0.3),
+            "rod_lag_s": st.floats(0.0, 0.02),
+        }
+    ),
+    st.booleans(),
+)
+def test_what_is_accepted_is_taken_and_a_little_more_is_not(wanted, at_rest):
+    params = Params()
+    try:
+        params.apply(params.check(wanted))
+    except Refused:
+        return
+    for name, row in TABLE.items():
+        taken = accepted(name, params.values(), at_rest)
+        for value in taken:
+            assert params.check({name: value}, at_rest) == {name: value}
+        if row.choices is None:
+            beyond = [taken[0] - 2e-4, taken[1] + 2e-4]
+        else:
+            beyond = set(row.choices) - set(taken)
+        for value in beyond:
+            with pytest.raises(Refused):
+                params.check({name: value}, at_rest)
 
 
 def test_the_rods_are_at_most_a_tick_behind():
