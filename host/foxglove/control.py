@@ -20,7 +20,7 @@ from typing import Any
 from foxglove import MessageSchema, Parameter, Schema, Service, ServiceRequest, ServiceSchema
 from foxglove.websocket import Client
 
-from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse
+from host.errors import KickctlError, NotDone, RefusedByRobot, WrongUse, quotable
 from host.foxglove.station import ShownStation
 from host.foxglove.topics import parameter, split_parameter
 from host.foxglove.watching import Watching
@@ -123,7 +123,7 @@ class Control(Watching):
         if not secrets.compare_digest(data, self.key.encode()):
             raise RefusedByRobot("this is not the key", "kickctl foxglove has printed it")
         self._unlocked.add(request.client_id)
-        return {"unlocked": True}
+        return {"unlocked": True, "viewer": request.client_id}
 
     def _stop(self, station: ShownStation, request: ServiceRequest) -> dict[str, Any]:
         """Stop a robot, and cancel what waits. It asks for no key, and looks at no request."""
@@ -202,16 +202,19 @@ class Control(Watching):
     ) -> list[Parameter]:
         """Have parameters set, and return those in force until then.
 
-        It waits for no robot: while it does, this connection's stop would wait, too.
+        It waits for no robot: while it does, this connection's stop would wait, too. The SDK tells
+        a refusal to all viewers or to none, so the words say whose it is.
         """
+        wanted = ", ".join(f"{one.name} = {one.get_value()!r}" for one in parameters)
+        asked = f"viewer {client.id}, who wants {quotable(wanted)}"
+        tell = partial(self._tell_refusal, asked)
         try:
             self._require_key(client.id)
             for prefix, changes in self._by_robot(parameters).items():
                 self._require_watcher(client.id, prefix)
-                arguments = self._changes(prefix, changes)
-                self._robots[prefix].do("set", arguments, self._hear_of_set)
+                self._robots[prefix].do("set", self._changes(prefix, changes), tell)
         except KickctlError as error:
-            self.tell(error.in_a_line)
+            tell(error)
         return self.values([one.name for one in parameters])
 
     def _by_robot(self, parameters: list[Parameter]) -> dict[str, dict[str, Any]]:
@@ -226,9 +229,9 @@ class Control(Watching):
             changes.setdefault(prefix, {})[name] = one.get_value()
         return changes
 
-    def _hear_of_set(self, result: dict[str, Any] | KickctlError) -> None:
+    def _tell_refusal(self, asked: str, result: dict[str, Any] | KickctlError) -> None:
         if isinstance(result, KickctlError):
-            self.tell(result.in_a_line)
+            self.tell(f"{asked}: {result.in_a_line}")
 
     def _changes(self, prefix: str, changes: dict[str, Any]) -> dict[str, Any]:
         """What a station takes to set parameters. Raises RefusedByRobot."""

@@ -179,7 +179,9 @@ class Viewers:
 
 def _lost_words(station: ShownStation) -> str:
     what = "is lost" if station.met.is_set() else "is not there yet"
-    return f"{station.name} {what}: {station.trouble or 'nothing comes from it'}"
+    why = station.trouble or "nothing comes from it"
+    pause = f"{station.again_s:g} s after each failure"
+    return f"{station.name} {what}: {why}. kickctl keeps trying, {pause}"
 
 
 class _Refusals(logging.Handler):

@@ -73,6 +73,7 @@ class LiveStation(Station):
 
     Attributes:
         met: Set as soon as the robot has been found for the first time.
+        again_s: How long after a try that has failed the next one comes (s).
     """
 
     def __init__(
@@ -90,6 +91,7 @@ class LiveStation(Station):
         self._token = token
         self._pull = pull
         self.met = threading.Event()
+        self.again_s = AGAIN_S
         self._is_line = make_link(uri).is_line
         self._watcher: Robot | None = None
         self._driver: Robot | None = None
@@ -130,7 +132,6 @@ class LiveStation(Station):
 
     def _watch(self) -> None:
         while not self._closed.is_set():
-            pause_s = AGAIN_S
             try:
                 with self._connect(observe=not self._is_line) as robot:
                     robot.on_trouble = self._note_trouble
@@ -140,13 +141,13 @@ class LiveStation(Station):
                     robot.add_tap(self)
                     self._follow(robot)
             except KickctlError as error:
-                pause_s = AGAIN_S if isinstance(error, NoLink) else REFUSED_S
+                self.again_s = AGAIN_S if isinstance(error, NoLink) else REFUSED_S
                 self.trouble = f"{error.message}. {error.hint}" if error.hint else error.message
             except Exception as error:  # after any failure the robot must be found again
                 logging.getLogger("kickctl").exception("the lab lost a robot")
-                self.trouble = f"the lab failed: {error!r}"
+                self.trouble, self.again_s = f"the lab failed: {error!r}", AGAIN_S
             self._wake()
-            self._closed.wait(pause_s)
+            self._closed.wait(self.again_s)
 
     def _follow(self, robot: Robot) -> None:
         if self.recording is not None:

@@ -26,6 +26,7 @@ class FakeStation:
         self.trouble = ""
         self.met = threading.Event()
         self.lost_s = 0.0
+        self.again_s = 0.5
         self.asked = []
         self.answer = {"tick": 7}
         self.waiting = []

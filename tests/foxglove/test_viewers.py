@@ -15,6 +15,8 @@ from tests.foxglove.stations import SERVICES, FakeStation, driver_of, shown
 from tests.foxglove.viewer import viewer_of
 from tests.live import wait_until
 
+AGAIN = "kickctl keeps trying, 0.5 s after each failure"
+
 
 @pytest.fixture
 def station():
@@ -149,7 +151,11 @@ def test_parameters_are_those_in_force_and_a_refusal_is_said(station):
             await viewer.send(op="setParameters", parameters=[{"name": "k", "value": 300}])
             await viewer.until(lambda: viewer.statuses)
             assert station.asked == [("set", {"set": {"k": 300}})]
-            assert viewer.statuses[0]["message"] == "the robot refuses: k cannot be 300"
+            (refusal,) = viewer.statuses
+            number = (await viewer.call("/unlock", {"key": viewers.key}))["viewer"]
+            assert refusal["message"] == (
+                f"viewer {number}, who wants k = 300: the robot refuses: k cannot be 300"
+            )
             assert viewers.said == []  # or a web site could fill the terminal
 
     shown(scenario, station, control=True)
@@ -190,8 +196,8 @@ def test_a_robot_that_is_lost_and_comes_back_is_said_here_and_there(station):
     async def scenario(viewers):
         async with viewer_of(viewers.url) as viewer:
             for words, until in (
-                (["anna is not there yet: nothing comes from it"], 1),
-                (["anna is not there yet: no answer"], 2),
+                ([f"anna is not there yet: nothing comes from it. {AGAIN}"], 1),
+                ([f"anna is not there yet: no answer. {AGAIN}"], 2),
             ):
                 viewers.look()
                 viewers.look()
@@ -205,7 +211,7 @@ def test_a_robot_that_is_lost_and_comes_back_is_said_here_and_there(station):
             station.met.set()
             station.lost_s = 1.2
             viewers.look()
-            assert viewers.said[2:] == ["anna is back", "anna is lost: no answer"]
+            assert viewers.said[2:] == ["anna is back", f"anna is lost: no answer. {AGAIN}"]
 
     shown(scenario, station)
 
