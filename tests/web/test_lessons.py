@@ -200,13 +200,18 @@ DO = {
 }
 
 
-def test_the_model_wheel_is_for_everybody_and_for_a_phone(pupil, station):
+def test_the_model_wheel_is_for_everybody_for_a_laptop_and_for_a_phone(pupil, station):
     page = pupil.page
     begin(pupil, station, "twins", 0)
     for number in (1, 2):
         page.click("text=Let a pair of twins go")
         pupil.reads("#lessons", f"pair {number}: ln d")
     assert_no_findings(page)
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.evaluate("scrollTo(0, 0)")
+    for part in (".locked", ".bench canvas:last-of-type", "#own-number", "text=Check what I did"):
+        box = page.locator(f"#lessons >> {part}").bounding_box()
+        assert box["y"] + box["height"] <= 768, part  # without a scroll
     page.set_viewport_size({"width": 320, "height": 640})
     assert page.evaluate("document.documentElement.scrollWidth") <= 320
 

@@ -66,14 +66,21 @@ function list(lesson) {
 /** The exercise that goes on, as far as it has come. */
 function steps(lesson, robot, bench) {
     const { texts, state } = lesson;
-    const parts = [
+    const last = button(lessonTexts.leave, () => lesson.leave(), "quiet");
+    const before = [
         element("h2", {}, texts.title),
         element("p", { className: "question" }, texts.question),
-        ...(state.locked ? play(lesson, bench) : predict(lesson, robot)),
+        ...(state.locked ? task(lesson) : predict(lesson, robot)),
     ];
-    if (state.done) parts.push(...explain(lesson));
-    const last = button(lessonTexts.leave, () => lesson.leave(), "quiet");
-    return [...parts, element("div", { className: "buttons" }, ...forward(lesson), last)];
+    const after = [
+        ...(state.locked ? found(lesson) : []),
+        ...(state.done ? explain(lesson) : []),
+        element("div", { className: "buttons" }, ...forward(lesson), last),
+    ];
+    if (!texts.model || !state.locked) return [...before, ...after];
+    bench.update();
+    const part = (parts) => element("div", { className: "asked" }, ...parts);
+    return [element("div", { className: "beside" }, part(before), bench.root, part(after))];
 }
 
 function predict(lesson, robot) {
@@ -92,20 +99,17 @@ function predict(lesson, robot) {
     return [group, lock];
 }
 
-function play(lesson, bench) {
-    const { texts, state, busy, checking } = lesson;
+function task({ texts, state }) {
+    const guess = lessonTexts.locked(texts.answers[state.guess]);
+    const locked = element("p", { className: "locked" }, guess);
+    if (state.done) return [locked];
+    const hints = texts.hints.slice(0, state.hints).map((words) => element("li", {}, words));
+    return [locked, element("p", {}, texts.task), element("ul", {}, ...hints)];
+}
+
+/** What a check has found. */
+function found({ texts, state, busy, checking }) {
     const { ok, missing } = lessonTexts;
-    const parts = [
-        element("p", { className: "locked" }, lessonTexts.locked(texts.answers[state.guess])),
-    ];
-    if (!state.done) {
-        const hints = texts.hints.slice(0, state.hints).map((words) => element("li", {}, words));
-        parts.push(element("p", {}, texts.task), element("ul", {}, ...hints));
-    }
-    if (texts.model) {
-        bench.update();
-        parts.push(bench.root);
-    }
     const verdict = element("p", { role: "status" });
     if (checking) verdict.append(lessonTexts.checking);
     else if (busy && texts.model) verdict.append(lessonTexts.computing);
@@ -113,7 +117,7 @@ function play(lesson, bench) {
     const findings = state.findings.map((one) =>
         element("li", {}, element("b", {}, one.ok ? ok : missing), ` ${one.words}`),
     );
-    return [...parts, verdict, element("ul", { className: "findings" }, ...findings)];
+    return [verdict, element("ul", { className: "findings" }, ...findings)];
 }
 
 function explain({ texts, state }) {

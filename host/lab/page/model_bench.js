@@ -31,7 +31,7 @@ export function createModelBench(lesson) {
     const controls = element("div", { className: "buttons" }, choice.root, go);
     const root = element("div", { className: "bench" });
     const found = element("div", { className: "buttons" }, own.root);
-    root.append(element("h3", {}, modelTexts.label), note, controls, figures, list, all, found);
+    root.append(element("h3", {}, modelTexts.label), note, controls, figures, found, all, list);
 
     let name = "";
     let known = null;
