@@ -8,6 +8,7 @@ from typing import Any
 
 from host.client.robot import Robot
 from host.errors import NotDone, RobotFault
+from host.kicking.steps import Steps, Wait, play
 from host.logs.log import Log
 from host.logs.motion import HEADINGS, heading, settled, settling_s
 from robot.kicks import DIRECTION_TICKS, PHASE, POSITION, PULSE, PULSED, WHEELS
@@ -92,12 +93,17 @@ def all_settled(robot: Robot) -> bool:
     return all(is_settled(recent, side) for side in WHEELS)
 
 
+def until_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> Wait:
+    """A wait until both wheels have settled, for at most patience_s of the robot's time."""
+    return Wait(patience_s, lambda: all_settled(robot))
+
+
 def wait_settled(robot: Robot, patience_s: float = SETTLE_PATIENCE_S) -> bool:
     """Wait until both wheels have settled, at most patience_s of the robot's time.
 
     Returns whether they have.
     """
-    return robot.wait(patience_s, until=lambda: all_settled(robot))
+    return robot.wait(*until_settled(robot, patience_s))
 
 
 def require_no_fault(status: dict[str, Any]) -> None:
@@ -147,13 +153,20 @@ def kick_and_watch(
     Raises:
         KickctlError: The robot does not run, refuses the kick, or cannot be reached.
     """
-    robot.wait(WATCH_S, until=lambda: len(log) > DIRECTION_TICKS)
+    return play(robot, kick_steps(robot, log, mode, wheel=wheel, **details))
+
+
+def kick_steps(
+    robot: Robot, log: Log, mode: str, *, wheel: str = "both", **details: Any
+) -> Steps[Outcome]:
+    """The steps of `kick_and_watch`."""
+    yield Wait(WATCH_S, lambda: len(log) > DIRECTION_TICKS)
     tick = robot.kick(mode, wheel=wheel, **details)
-    robot.wait(WATCH_S, until=lambda: bool(log.kicks()) and log.kicks()[-1][1]["begin"] == tick)
+    yield Wait(WATCH_S, lambda: bool(log.kicks()) and log.kicks()[-1][1]["begin"] == tick)
     kick = log.kicks()[-1][1]
     tick_s = float(log.info["params"]["tick_s"])
-    robot.wait(kick["ticks"] * tick_s + JUDGED_S)
-    robot.wait(WATCH_S, until=lambda: all_settled(robot))
+    yield Wait(kick["ticks"] * tick_s + JUDGED_S)
+    yield until_settled(robot, WATCH_S)
     if robot.newest is not None and robot.newest.state != 1:
         require_running(robot)
     last = log.records[-1].tick

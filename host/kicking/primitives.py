@@ -24,11 +24,12 @@ from host.kicking.outcome import (
     STOPPED,
     WATCH_S,
     Outcome,
-    kick_and_watch,
-    wait_settled,
+    kick_steps,
+    until_settled,
 )
 from host.kicking.planning import Plan, reversal
 from host.kicking.robot_motor import motor_of
+from host.kicking.steps import Steps, Wait, play
 from host.logs.log import Log
 from host.logs.motion import heading
 from robot.kicks import (
@@ -66,9 +67,13 @@ def headings(robot: Robot, log: Log) -> dict[str, str]:
 
     It is UNSETTLED for both if they do not settle, as when they roll forth and back.
     """
-    if not wait_settled(robot):
+    return play(robot, _headings(robot, log))
+
+
+def _headings(robot: Robot, log: Log) -> Steps[dict[str, str]]:
+    if not (yield until_settled(robot)):
         return dict.fromkeys(WHEELS, UNSETTLED)
-    robot.wait(WATCH_S, until=lambda: len(log) > DIRECTION_TICKS)
+    yield Wait(WATCH_S, lambda: len(log) > DIRECTION_TICKS)
     return {side: heading(log, side, log.records[-1].tick) for side in WHEELS}
 
 
@@ -98,16 +103,28 @@ def drive(
     Raises:
         KickctlError: The robot does not run, or cannot be reached, or its motor is not known.
     """
+    return play(robot, drive_steps(robot, log, primitive, motor, planned=planned))
+
+
+def drive_steps(
+    robot: Robot,
+    log: Log,
+    primitive: str,
+    motor: Constants | None = None,
+    *,
+    planned: bool = True,
+) -> Steps[dict[str, Any]]:
+    """The steps of `drive`."""
     stops = primitive == "stopped"
     if not planned or stops:
         motor = None
     elif motor is None:
         motor = motor_of(robot)
     wanted = dict(zip(WHEELS, PRIMITIVES[primitive], strict=True))
-    before = headings(robot, log)
+    before = yield from _headings(robot, log)
     k_before = float(robot.status()["params"]["k"])
-    kicks = _stop(robot, log) if stops else _roll(robot, log, wanted, motor)
-    after = headings(robot, log)
+    kicks = yield from _stop(robot, log) if stops else _roll(robot, log, wanted, motor)
+    after = yield from _headings(robot, log)
     return {
         "primitive": primitive,
         "reached": after == wanted,
@@ -119,24 +136,21 @@ def drive(
     }
 
 
-def _roll(robot: Robot, log: Log, wanted: dict[str, str], motor: Constants | None) -> list[Outcome]:
+def _roll(
+    robot: Robot, log: Log, wanted: dict[str, str], motor: Constants | None
+) -> Steps[list[Outcome]]:
     """Kick the wheels that do not head as wanted until they do."""
-    _restore_k(robot, log)
+    yield from _restore_k(robot, log)
     kicks: list[Outcome] = []
     while len(kicks) < MAX_KICKS:
-        present = headings(robot, log)
+        present = yield from _headings(robot, log)
         wrong = [side for side in WHEELS if present[side] != wanted[side]]
         if not wrong:
             break
         plans = motor is not None and len(kicks) < PLANNED_KICKS
         params = robot.status()["params"] if plans else None
-        kicks.append(
-            _kick(
-                robot,
-                log,
-                {side: plan(robot, present[side], wanted[side], params, motor) for side in wrong},
-            )
-        )
+        chosen = {side: plan(robot, present[side], wanted[side], params, motor) for side in wrong}
+        kicks.append((yield from _kick(robot, log, chosen)))
     return kicks
 
 
@@ -162,16 +176,17 @@ def plan(
     return planned or Plan(MEMBRANE, DEFAULT_TICKS[MEMBRANE])
 
 
-def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Outcome:
+def _kick(robot: Robot, log: Log, plans: dict[str, Plan]) -> Steps[Outcome]:
     """Kick both wheels at once if they have the same plan, at any phase; else kick the first."""
     side, chosen = next(iter(plans.items()))
     if chosen.window_rad is not None:
-        await_phase(robot, side, chosen.meets)
+        robot.lease()  # to take it together with the kick would cost a tick
+        yield _moment(robot, side, chosen.meets)
     elif len(plans) == 2 and all(
         own.window_rad is None and own.request() == chosen.request() for own in plans.values()
     ):
         side = "both"
-    return kick_and_watch(robot, log, wheel=side, **chosen.request())
+    return (yield from kick_steps(robot, log, wheel=side, **chosen.request()))
 
 
 def await_phase(robot: Robot, side: str, meets: Callable[[float], bool]) -> bool:
@@ -181,7 +196,12 @@ def await_phase(robot: Robot, side: str, meets: Callable[[float], bool]) -> bool
     than none.
     """
     robot.lease()  # to take it together with the kick would cost a tick
-    return robot.wait(MOMENT_PATIENCE_S, until=lambda: meets(sum(course(robot, side))))
+    return robot.wait(*_moment(robot, side, meets))
+
+
+def _moment(robot: Robot, side: str, meets: Callable[[float], bool]) -> Wait:
+    """A wait until a wheel will have an angle (rad) in the next tick that `meets` takes."""
+    return Wait(MOMENT_PATIENCE_S, lambda: meets(sum(course(robot, side))))
 
 
 def course(robot: Robot, side: str) -> tuple[float, float]:
@@ -193,18 +213,20 @@ def course(robot: Robot, side: str) -> tuple[float, float]:
     return angles[-1], (angles[-1] - angles[0]) / max(1, len(angles) - 1)
 
 
-def _restore_k(robot: Robot, log: Log) -> None:
+def _restore_k(robot: Robot, log: Log) -> Steps[None]:
     """Raise k to its default if an earlier stop has lowered it and the robot does not roll.
 
     Near k_c and below, no kick makes a wheel roll for long.
     """
     k = robot.status()["params"]["k"]
     default = {row["name"]: row["default"] for row in robot.describe("params")}["k"]
-    if k < default and not set(headings(robot, log).values()) <= {FORWARD, BACKWARD}:
-        robot.set(k=default)
+    if k < default:
+        present = yield from _headings(robot, log)
+        if not set(present.values()) <= {FORWARD, BACKWARD}:
+            robot.set(k=default)
 
 
-def _stop(robot: Robot, log: Log) -> list[Outcome]:
+def _stop(robot: Robot, log: Log) -> Steps[list[Outcome]]:
     """Bring the robot to rest by a pulse of k to zero.
 
     While it starts again by itself, halve k and repeat the pulse.
@@ -212,7 +234,7 @@ def _stop(robot: Robot, log: Log) -> list[Outcome]:
     status = robot.status()["params"]
     k, ticks = float(status["k"]), max(1, round(STOP_PULSE_S / status["tick_s"]))
     kicks: list[Outcome] = []
-    while set(headings(robot, log).values()) != {STOPPED}:
+    while set((yield from _headings(robot, log)).values()) != {STOPPED}:
         if k < LEAST_K:
             raise NotDone(
                 "the wheels turn without any drive", "is something else moving the robot?"
@@ -220,5 +242,6 @@ def _stop(robot: Robot, log: Log) -> list[Outcome]:
         if kicks:
             k /= 2.0
             robot.set(k=k)
-        kicks.append(kick_and_watch(robot, log, PULSE, param="k", value=0.0, ticks=ticks))
+        pulse = kick_steps(robot, log, PULSE, param="k", value=0.0, ticks=ticks)
+        kicks.append((yield from pulse))
     return kicks

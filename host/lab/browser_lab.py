@@ -12,11 +12,12 @@ from collections.abc import Callable
 from typing import Any
 
 from host.client.robot import Robot
-from host.errors import NotDone
+from host.errors import KickctlError, NotDone
+from host.kicking.steps import Slices
 from host.lab.keys import Keys
 from host.lab.outgoing import outgoing
 from host.lab.session import Session
-from host.lab.station import CONTINUE
+from host.lab.station import CONTINUE, HARMLESS, Answer, busy, stopped_meanwhile
 from host.lab.stepped_station import SteppedStation
 from host.link.direct import DirectLink
 from sim_motor.brick import SimBrick
@@ -41,6 +42,7 @@ class BrowserStation(SteppedStation):
         link = DirectLink(f"sim://?seed={seed}", brick)
         super().__init__(Robot(link, link.token), "simulated", CONTINUE)
         self._grip = Grip(brick)
+        self._performs: tuple[Slices[dict[str, Any]], Answer] | None = None
 
     def hand(self, wheel: str, angle_rad: float | None) -> None:
         if angle_rad is None:
@@ -54,6 +56,36 @@ class BrowserStation(SteppedStation):
         for _ in range(int(seconds / tick_s)):
             self._grip.pull(self._link.loop)
             self.step(tick_s)
+            self._go_on()
+
+    def do(self, command: str, arguments: dict[str, Any], answer: Answer) -> None:
+        """Carry out a command; a primitive goes on with the robot's time, so that pages draw it."""
+        if command in HARMLESS or (command != "primitive" and self._performs is None):
+            super().do(command, arguments, answer)
+        elif self._performs is not None:
+            answer(busy())
+        else:
+            steps = self._steps(self._robot, arguments["name"])
+            self._performs = Slices(self._robot, steps), answer
+            self._go_on()
+
+    def stop(self) -> None:
+        super().stop()
+        self._go_on(stopped_meanwhile())
+
+    def _go_on(self, break_off: KickctlError | None = None) -> None:
+        """Do what a primitive under way has to do now, and answer once it is over."""
+        if self._performs is None:
+            return
+        slices, answer = self._performs
+        result: dict[str, Any] | KickctlError | None
+        try:
+            result = slices.go_on(break_off)
+        except KickctlError as error:
+            result = error
+        if result is not None:
+            self._performs = None
+            answer(result)
 
     def _record(self, robot: Any, on: bool) -> dict[str, Any]:
         raise NotDone(

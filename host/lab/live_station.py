@@ -17,7 +17,16 @@ from typing import Any, NamedTuple
 from host.client.robot import Robot
 from host.client.stop import Stopped, stop_robot
 from host.errors import KickctlError, NoLink, NotDone
-from host.lab.station import STOP, Answer, Station, stop_words
+from host.kicking.steps import play
+from host.lab.station import (
+    HARMLESS,
+    STOP,
+    Answer,
+    Station,
+    busy,
+    stop_words,
+    stopped_meanwhile,
+)
 from host.lab.stopper import LAB
 from host.link.addresses import make_link
 from host.logs.tap import Event
@@ -35,8 +44,6 @@ ANSWER_S = 3.0
 MOST_JOBS = 20
 # How long a command waits for the stop that came before it (s).
 STOP_S = 7.0
-# Commands that a stop leaves alone.
-_HARMLESS = ("identify", "record")
 
 
 class _Job(NamedTuple):
@@ -172,14 +179,14 @@ class LiveStation(Station):
 
     def do(self, command: str, arguments: dict[str, Any], answer: Answer) -> None:
         """Carry out a command in the drive thread; a stop that comes meanwhile cancels it."""
-        if self._performs and command not in _HARMLESS:
-            answer(NotDone("the robot is being brought into a primitive", "wait, or stop it"))
+        if self._performs and command not in HARMLESS:
+            answer(busy())
             return
         if self._jobs.qsize() >= MOST_JOBS:
             answer(NotDone("the robot has not done the last commands yet", "wait, or stop it"))
             return
         self._performs = self._performs or command == "primitive"
-        self._driven = self._driven or command not in _HARMLESS
+        self._driven = self._driven or command not in HARMLESS
         self._jobs.put(_Job(command, arguments, answer, self._stops))
 
     def attend(self) -> None:
@@ -209,7 +216,7 @@ class LiveStation(Station):
         while (job := self._jobs.get()) is not None:
             self._work(job)
             self._performs = self._performs and job.command != "primitive"
-            if job.stops != self._stops and job.command not in (*_HARMLESS, "release"):
+            if job.stops != self._stops and job.command not in (*HARMLESS, "release"):
                 # What was under way when the stop came may have moved the robot after it.
                 self._stop_once()
         if self._driver is not None:
@@ -231,7 +238,7 @@ class LiveStation(Station):
             pages.call(lambda: job.answer(result))
 
     def _result(self, job: _Job) -> dict[str, Any]:
-        if job.command in _HARMLESS:
+        if job.command in HARMLESS:
             robot = self._watcher
             if robot is None:
                 raise NoLink("the robot has not been found yet", self.trouble)
@@ -251,7 +258,7 @@ class LiveStation(Station):
 
     def _require_no_stop(self, job: _Job) -> None:
         if job.stops != self._stops:
-            raise NotDone("the robot was stopped meanwhile", "try it again")
+            raise stopped_meanwhile()
 
     def _await_stop(self, job: _Job) -> None:
         """Wait for the end of the stop that came before a command, or it would undo that."""
@@ -264,7 +271,7 @@ class LiveStation(Station):
         robot, watch = self._driver_now(), _UntilStop(lambda: self._require_no_stop(job))
         robot.add_tap(watch)
         try:
-            return self._perform(robot, job.arguments["name"])
+            return play(robot, self._steps(robot, job.arguments["name"]))
         finally:
             robot.remove_tap(watch)
 

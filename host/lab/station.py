@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 from host.errors import KickctlError, NotDone, WrongUse, printable
 from host.kicking.modes import leave
 from host.kicking.outcome import require_running
-from host.kicking.primitives import drive
+from host.kicking.primitives import drive_steps
 from host.kicking.robot_motor import MEASURE
+from host.kicking.steps import Steps
 from host.lab import basin_question
 from host.lab.kicks import motor_known
 from host.lab.lessons.straight import STRAIGHT, start_straight
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from host.lab.worker import Worker
 
 STOP, CONTINUE = "stop", "continue"
+# Commands that a stop or a primitive under way leaves alone.
+HARMLESS = ("identify", "record")
 
 Answer = Callable[[dict[str, Any] | KickctlError], None]
 
@@ -167,17 +170,17 @@ class Station(Observed):
             return {"tick": tick, "kick_id": arguments["id"]}
         raise WrongUse(f"there is no command '{printable(command)}'", "reload the page")
 
-    def _perform(self, robot: Robot, primitive: str) -> dict[str, Any]:
-        """Bring the robot into a primitive, by kicks that need no plan. Raises KickctlError."""
+    def _steps(self, robot: Robot, primitive: str) -> Steps[dict[str, Any]]:
+        """The steps that bring the robot into a primitive, by kicks that need no plan."""
         robot.lease()
         if primitive == STRAIGHT:
-            return start_straight(robot)
+            return (yield from start_straight(robot))
         if robot.status()["state"] in ("idle", "stopped"):
             robot.start()
         require_running(robot)
         with robot.recording() as log:
             leave(robot)  # in chaos no kick leads there
-            return drive(robot, log, primitive, planned=False)
+            return (yield from drive_steps(robot, log, primitive, planned=False))
 
     def _record(self, robot: Watcher, on: bool) -> dict[str, Any]:
         """Begin or end a log of the robot. Raises KickctlError or OSError."""
@@ -194,6 +197,16 @@ class Station(Observed):
             self.recording = None
         self._wake()
         return {"log": self.recording.name if self.recording else None}
+
+
+def busy() -> NotDone:
+    """Why a robot does nothing else while it is brought into a primitive."""
+    return NotDone("the robot is being brought into a primitive", "wait, or stop it")
+
+
+def stopped_meanwhile() -> NotDone:
+    """Why a command was not carried out to its end."""
+    return NotDone("the robot was stopped meanwhile", "try it again")
 
 
 def stop_words(stopped: Stopped) -> str:

@@ -7,6 +7,7 @@ from typing import Any, Protocol, cast
 
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone
+from host.kicking.steps import play
 from host.lab.station import STOP, Answer, Station
 from host.lab.stopper import LAB
 from robot.commands import execute
@@ -67,7 +68,7 @@ class SteppedStation(Station):
                 elif command == "record":
                     result = self._record(self._robot, bool(arguments["on"]))
                 elif command == "primitive":
-                    result = self._perform(self._robot, arguments["name"])
+                    result = play(self._robot, self._steps(self._robot, arguments["name"]))
                 else:
                     result = self._carry_out(self._robot, command, arguments)
             except KickctlError as error:

@@ -37,8 +37,11 @@ class Visit:
         self._requests += 1
         message |= {"request": self._requests}
         self.tell(message)
-        replies = [one for one in self.heard if one.get("request") == self._requests]
-        return replies[-1]
+        return self.reply(self._requests)
+
+    def reply(self, request):
+        """What has been answered to a request, which are counted from 1; None before that."""
+        return next((one for one in self.heard if one.get("request") == request), None)
 
     def tell(self, message):
         self.lab.receive(json.dumps(message, allow_nan=False), self.now)

@@ -11,6 +11,7 @@ import numpy as np
 from host.client.robot import connect
 from host.experiments.robot.wall_hits import bounces, motion_since
 from host.kicking.modes import MODES, WALL_TURNER
+from host.kicking.steps import play
 from host.lab.lessons import checks, model, model_checks
 from host.lab.lessons.model_checks import PAIRS, Shown
 from host.lab.lessons.straight import start_straight
@@ -68,7 +69,7 @@ def there_and_back(robot):
 
 
 def wall(robot):
-    start_straight(robot)
+    play(robot, start_straight(robot))
     robot.wait(20.0)
 
 

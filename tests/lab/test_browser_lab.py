@@ -23,6 +23,10 @@ assert len(heard) > 50, heard
 """
 
 
+# What a page gets at most after 0.04 s of a primitive: to ask the robot something takes it a tick.
+MOST_TICKS = 8
+
+
 @pytest.fixture
 def visit():
     return Visit()
@@ -53,16 +57,41 @@ def test_a_stop_stops_it_and_says_that_this_page_did(visit):
     assert visit.last("state")["state"] == "running"
 
 
-def test_parameters_and_primitives_can_be_chosen(visit):
+def test_parameters_can_be_chosen(visit):
     visit.wait(1.0)
     assert "result" in visit.do("set", set={"k": 5.0})
     visit.wait(0.1)
     assert visit.last("state")["params"]["k"] == 5.0
-    assert visit.do("primitive", name="spin-left")["result"]["reached"]
-    # The seconds that it took are behind the robot, not before it.
-    before = visit.records[-1].tick
+
+
+def test_a_primitive_goes_on_with_the_page(visit):
+    visit.wait(1.0)
+    assert visit.do("primitive", name="spin-left") is None
+    began = tick = visit.records[-1].tick
+    while visit.reply(1) is None:
+        visit.wait(0.04)
+        assert 0 < visit.records[-1].tick - tick <= MOST_TICKS
+        tick = visit.records[-1].tick
+    assert visit.reply(1)["result"]["reached"]
+    assert tick - began > 50  # it has taken its time
+    assert "into a primitive" not in str(visit.do("kick", mode="membrane"))
+
+
+def test_a_stop_ends_a_primitive_in_the_next_tick(visit):
+    visit.wait(1.0)
+    visit.do("primitive", name="spin-left")
     visit.wait(0.3)
-    assert 9 <= visit.records[-1].tick - before <= 11
+    assert "into a primitive" in visit.do("kick", mode="membrane")["error"]["message"]
+    assert visit.reply(1) is None
+    last = visit.records[-1].tick
+    visit.tell({"type": "stop", "robot": None})
+    assert "stopped meanwhile" in visit.reply(1)["error"]["message"]
+    visit.wait(0.5)
+    stopped = [record for record in visit.records if record.tick > last + 1]
+    assert {record.left_duty_pct for record in stopped} == {0}
+    assert "result" in visit.do("start")
+    visit.wait(0.5)
+    assert visit.last("state")["state"] == "running"
 
 
 def test_a_hand_turns_a_wheel_of_a_robot_at_rest_and_lets_go(visit):

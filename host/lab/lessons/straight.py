@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from host.kicking.outcome import FORWARD
 from host.kicking.primitives import SHIFT_TOWARD
+from host.kicking.steps import Steps, Wait
 from robot.kicks import DEFAULT_TICKS, PHASE
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ STRAIGHT = "straight"
 SETTLE_S = 1.5
 
 
-def start_straight(robot: Robot) -> dict[str, Any]:
-    """Start a robot that stands, so that both wheels begin to roll forward in the same tick.
+def start_straight(robot: Robot) -> Steps[dict[str, Any]]:
+    """The steps that start a standing robot: both wheels begin to roll forward in the same tick.
 
     After an ordinary start half of all robots turn on the spot, and who kicks one wheel then faces
     no wall any more. Here the wheels rest with k = 0 until nothing is left of the random start, and
@@ -37,7 +38,7 @@ def start_straight(robot: Robot) -> dict[str, Any]:
     robot.set(k=0.0)
     try:
         robot.start()
-        robot.wait(SETTLE_S)
+        yield Wait(SETTLE_S)
     finally:
         robot.set(k=k)
     robot.kick(PHASE, ticks=DEFAULT_TICKS[PHASE], shift=SHIFT_TOWARD[FORWARD])
