@@ -77,7 +77,7 @@ class Study:
                 if "part" in entry:
                     self._add(entry["cell"], Part(**entry["part"]))
                 else:
-                    self._done[_key(entry["cell"])] = Done(entry["rows"], entry["spoiled"])
+                    self._end(entry["cell"], Done(entry["rows"], entry["spoiled"]))
             except (ValueError, KeyError, TypeError) as error:
                 raise WrongUse(
                     f"{self.folder / _CELLS} is damaged",
@@ -92,10 +92,15 @@ class Study:
     def __len__(self) -> int:
         return len(self._done)
 
+    @property
+    def complete(self) -> float:
+        """How many cells are complete, with the shares of those that have begun."""
+        return len(self._done) + sum(part.share for part in self._begun.values())
+
     def keep(self, cell: Cell, rows: list[Row], spoiled: list[str]) -> None:
         """Keep the result of a cell. It is on disk before this returns."""
         kept = self._append({"cell": cell, "rows": rows, "spoiled": spoiled})
-        self._done[_key(cell)] = Done(kept["rows"], spoiled)
+        self._end(cell, Done(kept["rows"], spoiled))
 
     def keep_part(self, cell: Cell, part: Part) -> None:
         """Keep a part of a cell, but for the last. It is on disk before this returns."""
@@ -105,6 +110,10 @@ class Study:
     def begun(self, cell: Cell) -> Part | None:
         """All complete parts of a cell that has begun, as one part; None for another cell."""
         return self._begun.get(_key(cell))
+
+    def _end(self, cell: Cell, done: Done) -> None:
+        self._done[_key(cell)] = done
+        self._begun.pop(_key(cell), None)
 
     def _add(self, cell: Cell, part: Part) -> None:
         before = self.begun(cell)

@@ -9,35 +9,58 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
 
 from host.errors import NotDone
-from host.runs.contract import Cell, Row, Setting
+from host.runs.contract import Cell, Part, Parts, Setting
 from host.util.interrupts import uninterrupted
 
 
 def compute_in_processes(
-    simulate: Callable[[Cell, Setting], list[Row]], cells: list[Cell], setting: Setting
-) -> Generator[tuple[Cell, list[Row]]]:
-    """Yields (cell, rows) as they are complete. Closing the generator ends all that still runs.
+    parts: Parts,
+    cells: list[Cell],
+    setting: Setting,
+    begun: Callable[[Cell], Part | None] = lambda cell: None,
+) -> Generator[tuple[Cell, Part]]:
+    """Compute cells part by part.
 
-    Raises NotDone.
+    Args:
+        parts: Computes a cell; a process asks it for one part at a time.
+        cells: What to compute.
+        setting: What the cells share.
+        begun: Gives the complete parts of a cell. It has a part as soon as the next pair is asked
+            for.
+
+    Yields:
+        (cell, its next part), in the order in which they are complete. Closing the generator ends
+        all that still runs.
+
+    Raises:
+        NotDone: Something ended a process.
     """
     processes = min(len(os.sched_getaffinity(0)), len(cells))
     if processes < 2:
-        yield from ((cell, simulate(cell, setting)) for cell in cells)
+        yield from ((cell, part) for cell in cells for part in parts(cell, setting, begun(cell)))
         return
     others = set(active_children())
     # Spawned, because a fork would copy locks that other threads hold, but not the threads.
     pool = ProcessPoolExecutor(processes, get_context("spawn"), begin_process)
-    try:
+
+    def go_on(cell: Cell) -> Future[Part]:
         with beginning_processes():
-            futures = {pool.submit(simulate, cell, setting): cell for cell in cells}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+            return pool.submit(_next_part, parts, cell, setting, begun(cell))
+
+    try:
+        running = {go_on(cell): cell for cell in cells}
+        while running:
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                cell, part = running.pop(future), future.result()
+                yield cell, part
+                if part.share < 1.0:
+                    running[go_on(cell)] = cell
     except BrokenProcessPool as error:
         raise NotDone(
             "something ended a process of the simulation",
@@ -49,6 +72,10 @@ def compute_in_processes(
         for process in set(active_children()) - others:
             process.terminate()
         pool.shutdown(cancel_futures=True)
+
+
+def _next_part(parts: Parts, cell: Cell, setting: Setting, begun: Part | None) -> Part:
+    return next(parts(cell, setting, begun))
 
 
 @contextmanager

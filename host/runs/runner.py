@@ -59,7 +59,6 @@ def do_cells(name: str, cells: list[Cell], study: Study, work: Work) -> None:
     missing = [cell for cell in cells if cell not in study]
     _keep(
         ((cell, Part(rows), spoiled) for cell in missing for rows, spoiled in [work(cell)]),
-        len(cells) - len(missing),
         len(cells),
         study,
         name,
@@ -90,6 +89,7 @@ def simulate(
         processes: Whether to use a process for each core of this machine.
     """
     missing = [cell for cell in cells if cell not in study]
+    parts = parts or partial(_in_one_part, function)
     done: Generator[tuple[Cell, Part]]
     if scheduler is not None:
         from host.runs.cluster import compute_on_cluster
@@ -98,21 +98,20 @@ def simulate(
     elif processes:
         from host.runs.processes import compute_in_processes
 
-        done = _whole(compute_in_processes(function, missing, setting))
-    elif parts is not None:
+        done = compute_in_processes(parts, missing, setting, study.begun)
+    else:
         done = (
             (cell, part) for cell in missing for part in parts(cell, setting, study.begun(cell))
         )
-    else:
-        done = ((cell, Part(function(cell, setting))) for cell in missing)
     with closing(done):
-        _keep(
-            ((cell, part, []) for cell, part in done),
-            len(cells) - len(missing),
-            len(cells),
-            study,
-            name,
-        )
+        _keep(((cell, part, []) for cell, part in done), len(cells), study, name)
+
+
+def _in_one_part(
+    function: Callable[[Cell, Setting], list[Row]], cell: Cell, setting: Setting, begun: Part | None
+) -> Iterator[Part]:
+    """A short cell, as Parts."""
+    yield Part(function(cell, setting))
 
 
 def _whole(results: Generator[tuple[Cell, list[Row]]]) -> Generator[tuple[Cell, Part]]:
@@ -122,18 +121,16 @@ def _whole(results: Generator[tuple[Cell, list[Row]]]) -> Generator[tuple[Cell, 
             yield cell, Part(rows)
 
 
-def _keep(results: Iterable[Result], done: int, total: int, study: Study, name: str) -> None:
+def _keep(results: Iterable[Result], total: int, study: Study, name: str) -> None:
     with progress(name, total) as advance:
-        advance(done)
+        advance(study.complete)
         for cell, part, spoiled in results:
             if part.share < 1.0:
                 study.keep_part(cell, part)
-                advance(done + part.share)
-                continue
-            begun = study.begun(cell)
-            study.keep(cell, [*(begun.rows if begun else ()), *part.rows], spoiled)
-            done += 1
-            advance(done)
+            else:
+                begun = study.begun(cell)
+                study.keep(cell, [*(begun.rows if begun else ()), *part.rows], spoiled)
+            advance(study.complete)
 
 
 def finish(

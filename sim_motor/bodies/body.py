@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 RECORD_S = 0.005
 OF_A_WHEEL = ("phi_rad", "omega_rad_s", "x", "target", "torque_nm")
 OF_A_CAR = ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")
+# What MuJoCo's next step depends on.
+_PHYSICS = mujoco.mjtState.mjSTATE_INTEGRATION
 _target_position: Any = with_mathematics(target_position, {"exp": np.exp})
 
 
@@ -129,6 +131,34 @@ class Body:
         target = _target_position(x, self.neurons.a)
         times_s = steps * float(self.model.opt.timestep)
         return np.concatenate([times_s, phi, omega, x, target, torque, bends, poses], axis=1)
+
+    @property
+    def record_s(self) -> float:
+        """Time between two rows."""
+        return self._every * float(self.model.opt.timestep)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What decides how it goes on, as plain data; kicks that have not begun are missing."""
+        physics = np.empty(mujoco.mj_stateSize(self.model, _PHYSICS))
+        mujoco.mj_getState(self.model, self.data, physics, _PHYSICS)
+        return {
+            "step": self.step,
+            "physics": physics.tolist(),
+            "floats": self.neurons.floats.tolist(),
+            "whole": self.neurons.whole.tolist(),
+        }
+
+    def resume(self, state: dict[str, Any]) -> None:
+        """Go on, to the bit, from the `state` of a body with the same model.
+
+        `rows` begins there.
+        """
+        self.step = state["step"]
+        mujoco.mj_setState(self.model, self.data, np.array(state["physics"]), _PHYSICS)
+        self.neurons.floats[:], self.neurons.whole[:] = state["floats"], state["whole"]
+        self._notes.clear()
+        self._note()
 
     def kick(self, kick: Kick) -> None:
         """Begin a kick at its `begin`, in steps, on the wheels whose names it has.

@@ -7,7 +7,8 @@ Neither the time that a row takes nor the memory grows with the number of rows.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class RunningSummary:
 
     def __init__(self, columns: tuple[str, ...]) -> None:
         self._columns = columns
-        self._reversals = _Reversals()
+        self._reversals = Reversals()
         self._totals = _Totals(0, 0.0, 0.0, 0.0)
         # (time s, mean |omega| rad/s, sums before the row) of the rows that were faster than all
         # before. In one of them start-up was over: the first that reaches STARTED of the greatest.
@@ -112,18 +113,29 @@ class _Turn:
     peak: float = 0.0
 
 
-class _Reversals:
+@dataclass
+class Reversals:
     """When the body as a whole took the other direction, as `measures.reversals_s` has it.
 
     A turn counts if its peak reaches a part of the greatest of all. That only grows, so turns that
     are too small are forgotten.
     """
 
-    def __init__(self) -> None:
-        self._most = 0.0
-        self._now = _Turn(0.0, 0.0)
-        self._turns: list[_Turn] = []
-        self._times_s: list[float] = []
+    _most: float = 0.0
+    _now: _Turn = field(default_factory=lambda: _Turn(0.0, 0.0))
+    _turns: list[_Turn] = field(default_factory=list)
+    _times_s: list[float] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, state: dict[str, Any]) -> Reversals:
+        """Go on from a `state`."""
+        turns = [_Turn(**turn) for turn in state["_turns"]]
+        return cls(state["_most"], _Turn(**state["_now"]), turns, list(state["_times_s"]))
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """All of it, as plain data."""
+        return asdict(self)
 
     def add(self, mean: float, before_s: float) -> None:
         """Take the wheels' mean omega (rad/s) in the next row, and the time of the last row (s)."""

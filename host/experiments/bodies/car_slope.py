@@ -8,22 +8,31 @@ is another steady motion: a slope may throw the car into it, and then the car st
 
 from __future__ import annotations
 
-from typing import TypedDict, final
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypedDict, final
 
 import numpy as np
 
 from host.experiments.bodies.simulation import EDGE_M, Position, build_body, run_body, set_heading
 from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import Claim
-from host.runs.contract import Findings, Options, Setting
+from host.runs.contract import Findings, Options, Part, Setting, as_rows
+from host.runs.contract import Row as PlainRow
 from host.util.intervals import fraction, wilson
-from sim_motor.bodies.measures import FALLEN_RAD, STILL_RAD_S, reversals_s
+from sim_motor.bodies.measures import FALLEN_RAD, STILL_RAD_S, Course
 from sim_motor.bodies.presets import PUSHED, preset
+from sim_motor.bodies.running_summary import Reversals
+
+if TYPE_CHECKING:
+    from sim_motor.bodies.body import Body
 
 # The authors' programs have slopes of 0.3 rad, in a funnel, and of 0.37 rad: the claim is tested on
 # these. Shallower slopes are shown beside them.
 ANGLES, AUTHORS_ANGLES = (0.2, 0.3, 0.37), (0.3, 0.37)
 EVERY_S = 0.2
+# The part of a drive that is computed at once (s): a second or two.
+PART_S = 100.0
 # The claim is about this time (s).
 CLAIMED_S = 600.0
 # A car travels if its mean speed over MEAN_S (s) is higher than this (m/s). A slower car rests, or
@@ -120,11 +129,37 @@ def cells(options: Options, *, batch: bool) -> list[Cell]:
     ]
 
 
-def simulate(cell: Cell, setting: Setting) -> list[Drive | Position]:
-    """The drive, and the car's positions, every EVERY_S."""
+def simulate(cell: Cell, setting: Setting) -> list[PlainRow]:
+    """The car's positions, every EVERY_S, and the drive."""
+    return [row for part in parts(cell, setting, None) for row in part.rows]
+
+
+def parts(cell: Cell, setting: Setting, begun: Part | None) -> Iterator[Part]:
+    """The same, PART_S at a time."""
+    while begun is None or begun.share < 1.0:
+        begun = _go_on(cell, setting, begun)
+        yield begun
+
+
+def _go_on(cell: Cell, setting: Setting, begun: Part | None) -> Part:
+    """The next part of a drive."""
+    body, way = _build(cell, setting), Way()
+    if begun is not None:
+        body.resume(begun.state["body"])
+        way = Way.of(begun.state["way"])
+    seconds = setting.options["seconds"]
+    left_s = seconds - body.time_s
+    run = run_body(body, min(PART_S, left_s))
+    rows = as_rows(way.add(run.course, body.record_s))
+    if run.unstable_s is None and left_s > PART_S:
+        return Part(rows, {"body": body.state, "way": way.state}, body.time_s / seconds)
+    return Part([*rows, dict(way.drive(stable=run.unstable_s is None))])
+
+
+def _build(cell: Cell, setting: Setting) -> Body:
     seed = setting.seed_of({"number": cell["number"]})
     heading = float(np.random.default_rng(seed).uniform(0.0, 2 * np.pi))
-    body = build_body(
+    return build_body(
         preset("paper"),
         "slopes",
         cars=1,
@@ -133,27 +168,95 @@ def simulate(cell: Cell, setting: Setting) -> list[Drive | Position]:
         phases=np.full(2, PUSHED),
         edit=set_heading(heading),
     )
-    run = run_body(body, setting.options["seconds"])
-    t, centre = run.course.t_s, run.course.centre_m
-    span = round(MEAN_S / float(t[1]))
-    travels = np.linalg.norm(centre[span:] - centre[:-span], axis=1) > TRAVELS_M_S * MEAN_S
-    reach = float(np.abs(centre[:, :2]).max())
-    rows: list[Drive | Position] = [
-        {
-            "inside": run.unstable_s is None and reach < EDGE_M,
-            "flipped": bool((run.course.lean_rad > FALLEN_RAD).any()),
-            "reach_m": reach,
-            "lean_rad": float(run.course.lean_rad.max()),
-            "reversals": len(reversals_s(run.course)),
-            "path_m": float(np.linalg.norm(np.diff(centre, axis=0), axis=1).sum()),
-            "travelled": float(travels.mean()),
-            "spun": float((run.course.omega.prod(axis=1) < -(STILL_RAD_S**2)).mean()),
-            "last_s": float(t[span:][travels][-1]) if travels.any() else 0.0,
-            "squares": len(np.unique(np.floor(centre[:, :2] / SQUARE_M), axis=0)),
+
+
+@dataclass
+class Way:
+    """A drive so far. All of it but `reversals` is plain data.
+
+    Attributes:
+        rows: number of rows, which are the car's states.
+        reach_m: see `Drive`; so are lean_rad, path_m and last_s.
+        windows: number of rows MEAN_S or more after the start.
+        travels: number of these in which it travelled.
+        spins: number of rows in which its wheels turned opposite ways.
+        squares: the squares of the floor in which it was, (squares, 2).
+        latest_m: where its middle was in the last MEAN_S, (rows, 3).
+        reversals: when it reversed.
+    """
+
+    rows: int = 0
+    reach_m: float = 0.0
+    lean_rad: float = 0.0
+    path_m: float = 0.0
+    last_s: float = 0.0
+    windows: int = 0
+    travels: int = 0
+    spins: int = 0
+    squares: list[list[float]] = field(default_factory=list)
+    latest_m: list[list[float]] = field(default_factory=list)
+    reversals: Reversals = field(default_factory=Reversals)
+
+    @classmethod
+    def of(cls, state: dict[str, Any]) -> Way:
+        """Go on from a `state`."""
+        return cls(**{**state, "reversals": Reversals.of(state["reversals"])})
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        return {**vars(self), "reversals": self.reversals.state}
+
+    def add(self, course: Course, every_s: float) -> list[Position]:
+        """Take the rows that follow.
+
+        Args:
+            course: The rows, the first of which is the last one so far.
+            every_s: Time between rows, s.
+
+        Returns:
+            The new ones of the car's positions, EVERY_S apart.
+        """
+        new = slice(1 if self.rows else 0, None)
+        t_s, omega, centre = course.t_s[new], course.omega[new], course.centre_m[new]
+        span, step = round(MEAN_S / every_s), round(EVERY_S / every_s)
+        known = np.array([*self.latest_m, *centre])
+        travels = np.linalg.norm(known[span:] - known[:-span], axis=1) > TRAVELS_M_S * MEAN_S
+        if travels.any():
+            self.last_s = float(t_s[-len(travels) :][travels][-1])
+        self.windows += len(travels)
+        self.travels += int(travels.sum())
+        self.spins += int((omega.prod(axis=1) < -(STILL_RAD_S**2)).sum())
+        self.reach_m = max(self.reach_m, float(np.abs(course.centre_m[:, :2]).max()))
+        self.lean_rad = max(self.lean_rad, float(course.lean_rad.max()))
+        self.path_m += float(np.linalg.norm(np.diff(course.centre_m, axis=0), axis=1).sum())
+        seen = np.array([*self.squares, *np.floor(centre[:, :2] / SQUARE_M)])
+        self.squares = np.unique(seen, axis=0).tolist()
+        self.latest_m = known[-span:].tolist()
+        before_s = np.append(course.t_s[:1], course.t_s[:-1])[new].tolist()
+        for mean, time_s in zip(omega.mean(axis=1).tolist(), before_s, strict=True):
+            self.reversals.add(mean, time_s)
+        shown = range(-self.rows % step, len(t_s), step)
+        self.rows += len(t_s)
+        return [
+            {"t_s": float(t_s[at]), "x_m": float(centre[at, 0]), "y_m": float(centre[at, 1])}
+            for at in shown
+        ]
+
+    def drive(self, *, stable: bool) -> Drive:
+        """The whole drive."""
+        return {
+            "inside": stable and self.reach_m < EDGE_M,
+            "flipped": self.lean_rad > FALLEN_RAD,
+            "reach_m": self.reach_m,
+            "lean_rad": self.lean_rad,
+            "reversals": len(self.reversals.times_s()),
+            "path_m": self.path_m,
+            "travelled": fraction(self.travels, self.windows),
+            "spun": self.spins / self.rows,
+            "last_s": self.last_s,
+            "squares": len(self.squares),
         }
-    ]
-    rows += run.positions(centre, EVERY_S)
-    return rows
 
 
 def drives(rows: list[Row]) -> list[DriveRow]:

@@ -1,5 +1,6 @@
 """Cars and trains in MuJoCo: their physics against theory."""
 
+import json
 import tracemalloc
 from math import sqrt
 
@@ -19,6 +20,23 @@ def k_over_onset(own, k):
     """How many times k is above the onset of rolling, for linear neurons and steady speed."""
     drag = own.body_drag * own.wheel_radius**2 / 2 + own.wheel_drag * own.wheel_radius
     return own.a * k * own.wheel_radius * own.tau / (4 * drag)
+
+
+def test_a_body_goes_on_to_the_bit_from_its_state_in_another_one():
+    """At a wall, where it hits and bends."""
+
+    def build():
+        body = build_body(BodyRequest(cars=2, scene="walls", seed=3))
+        body.data.qpos[0] = 3.3
+        return body
+
+    whole, first, second = build(), build(), build()
+    whole.run(1.5)
+    first.run(0.8)
+    second.resume(json.loads(json.dumps(first.state)))
+    second.run(0.7)
+    assert whole.data.ncon > 0
+    np.testing.assert_array_equal(second.rows, whole.rows[len(first.rows) - 1 :])
 
 
 def launch(body, own, omega):

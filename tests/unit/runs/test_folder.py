@@ -76,6 +76,11 @@ def test_parts_of_a_cell_add_up_until_it_is_complete(study):
         assert back.begun(CELLS[0]) == Part([{"value": 0.1}, {"value": 0.2}], [2.5], 0.5)
         assert CELLS[0] not in back
         assert back.begun(CELLS[1]) is None
+        assert back.complete == 0.5
+        keep(back, 0, 1)
+        assert back.complete == 2
+        with again(back) as complete:
+            assert complete.complete == 2
 
 
 def test_a_damaged_journal_is_reported_in_words(study):

@@ -1,6 +1,5 @@
 """Cells that are computed side by side, one process for each core."""
 
-import operator
 import os
 import signal
 import subprocess
@@ -12,7 +11,8 @@ from multiprocessing import active_children
 import pytest
 
 from host.errors import NotDone
-from host.runs import processes
+from host.runs.contract import Part
+from host.runs.processes import compute_in_processes
 
 
 @pytest.fixture(autouse=True)
@@ -20,16 +20,45 @@ def _two_cores(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {0, 1})
 
 
+def calls(cell, setting, begun):
+    """What the cell, a function, makes of the setting."""
+    yield Part([cell(setting)])
+
+
+def counting(cell, setting, begun):
+    """A cell counts up to itself, a number a part."""
+    number = begun.state + 1 if begun else 1
+    while number < cell:
+        yield Part([number], number, number / cell)
+        number += 1
+    yield Part([number])
+
+
 def test_cells_side_by_side_come_to_the_same_as_one_by_one():
-    found = dict(processes.compute_in_processes(operator.call, [abs, float, str], -3))
-    assert found == {abs: 3, float: -3.0, str: "-3"}
-    assert dict(processes.compute_in_processes(operator.call, [abs], -3)) == {abs: 3}
+    found = dict(compute_in_processes(calls, [abs, float, str], -3))
+    assert found == {abs: Part([3]), float: Part([-3.0]), str: Part(["-3"])}
+    assert dict(compute_in_processes(calls, [abs], -3)) == {abs: Part([3])}
+
+
+@pytest.mark.parametrize("cells", [[3], [3, 2, 1]])
+def test_parts_of_cells_come_one_by_one_and_on_from_those_that_are_kept(cells):
+    kept = {3: [1], 2: [], 1: []}
+    states = {3: Part([1], 1, 1 / 3)}
+    shares = {cell: [] for cell in cells}
+    for cell, part in compute_in_processes(counting, cells, None, states.get):
+        kept[cell] += part.rows
+        states[cell] = part
+        shares[cell].append(part.share)
+    assert {cell: kept[cell] for cell in cells} == {
+        cell: list(range(1, cell + 1)) for cell in cells
+    }
+    assert shares[3] == [2 / 3, 1.0]
 
 
 def test_work_that_is_broken_off_leaves_no_process_behind():
     """What sleeps for an hour is not waited for."""
-    work = processes.compute_in_processes(operator.call, [float, time.sleep], 3600.0)
-    assert next(work) == (float, 3600.0)
+    work = compute_in_processes(calls, [float, time.sleep], 3600.0)
+    assert next(work) == (float, Part([3600.0]))
     left = active_children()
     work.close()
     for process in left:
@@ -39,12 +68,12 @@ def test_work_that_is_broken_off_leaves_no_process_behind():
 
 def test_a_process_that_dies_is_an_error_in_words():
     with pytest.raises(NotDone, match="ended a process"):
-        list(processes.compute_in_processes(operator.call, [os._exit, float], 3))
+        list(compute_in_processes(calls, [os._exit, float], 3))
 
 
 def test_an_error_in_a_cell_is_that_error_here():
-    with pytest.raises(ZeroDivisionError):
-        list(processes.compute_in_processes(operator.truediv, [1, 2], 0))
+    with pytest.raises(ValueError, match="'x'"):
+        list(compute_in_processes(calls, [float, int], "x"))
 
 
 def test_processes_end_when_the_first_one_is_killed(tmp_path):
@@ -53,7 +82,7 @@ def test_processes_end_when_the_first_one_is_killed(tmp_path):
     script.write_text(
         "import os, time\n"
         "from host.runs import processes\n"
-        "def work(cell, setting):\n"
+        "def work(cell, setting, begun):\n"
         "    os.write(1, b'works\\n')\n"
         "    time.sleep(3600.0)\n"
         "if __name__ == '__main__':\n"
@@ -85,6 +114,6 @@ def test_a_script_without_a_main_block_gets_the_remedy(tmp_path):
 def test_a_process_hears_no_interrupt_from_its_first_step_on():
     mask = partial(signal.pthread_sigmask, signal.SIG_BLOCK)
     before = mask([])
-    found = dict(processes.compute_in_processes(operator.call, [mask, tuple], []))
-    assert signal.SIGINT in found[mask]
+    found = dict(compute_in_processes(calls, [mask, tuple], []))
+    assert signal.SIGINT in found[mask].rows[0]
     assert mask([]) == before
