@@ -72,11 +72,11 @@ def in_words(parameters: Mapping[str, Any]) -> str:
     """Parameters for a figure's corner.
 
     Args:
-        parameters: By the names of options; None for one that varies. What is no parameter of a
-            wheel or robot is left out.
+        parameters: By the names of options, as numbers or words; None for one that varies. What is
+            no parameter of a wheel or robot is left out.
     """
     return "   ".join(
-        words.format(f"{parameters[name]:g}")
+        words.format(value if isinstance(value := parameters[name], str) else f"{value:g}")
         for name, words in _WORDS.items()
         if parameters.get(name) is not None and parameters[name] != _ORDINARY.get(name)
     )

@@ -14,6 +14,7 @@ from host.runs.robot_options import defaults_besides
 from host.runs.runner import Draw
 from host.theory.studies.registry import K
 from host.util.arguments import need_text
+from sim_motor.bodies.presets import preset
 
 FORMATS = ("png", "svg", "pdf")
 USUAL = ("png", "svg")
@@ -24,6 +25,15 @@ _SET: dict[str, dict[str, float | None]] = {
     "explore": {"k": None, "tau": None},
     "exponents": {"k": None, "tau": None},
     "leave-chaos": {"k": 15.0, "tau": 1.0},
+}
+# The presets of the cars in a figure, where no option names one; the figure says what varies.
+_CARS: dict[str, tuple[str, ...]] = {
+    "car-slope": ("paper",),
+    "train-start": ("paper", "snake2019"),
+    "train-wall": ("paper", "snake2019"),
+    "train-slope": ("paper", "snake2019"),
+    "train-wiggle": ("snake2019",),
+    "train-goal": ("snake2019",),
 }
 # Options that name the constant on an axis.
 _AXES = ("along", "over", "x", "y")
@@ -120,6 +130,22 @@ def parameters(found: Found, setting: Setting, name: str) -> dict[str, Any]:
     on_axes = dict.fromkeys(options[axis] for axis in _AXES if axis in options)
     if options.get("along", "k") != "k" and own["k"] is None:
         own["k"] = K.default
-    if found.kind in (STUDY, BODY):
+    if found.kind == BODY:
+        return _of_cars(name, options)
+    if found.kind == STUDY:
         return {**own, **on_axes}
     return {**defaults_besides(options), **setting.preset.params, **own, **_SET.get(name, {})}
+
+
+def _of_cars(name: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of the cars of an experiment, as far as they are the same for all it shows."""
+    names = (options["preset"],) if "preset" in options else _CARS.get(name, ())
+    cars = {one: preset(one) for one in names}
+    found: dict[str, Any] = {}
+    for letter in ("a", "tau"):
+        values = {getattr(car, letter) for car in cars.values()}
+        found[letter] = values.pop() if len(values) == 1 else None
+    if cars and name != "train-slope":  # which varies k
+        several = len(cars) > 1
+        found["k"] = ", ".join(f"{car.k:g} N" + f" ({one})" * several for one, car in cars.items())
+    return found

@@ -68,7 +68,10 @@ def test_a_panel_that_only_the_results_rule_out_costs_no_results(tmp_path):
         ),
         ("bifurcation", {}, "a = 4   τ = 0.25 s   tick 0.03 s"),
         ("leave-chaos", {}, "a = 4   τ = 1 s   k = 15   tick 0.03 s"),
-        ("train-start", {}, ""),
+        ("train-start", {}, "a = 2   τ = 0.05 s   k = 0.5 N (paper), 2 N (snake2019)"),
+        ("train-slope", {}, "a = 2   τ = 0.05 s"),
+        ("train-kick", {}, "a = 2   τ = 0.05 s   k = 0.5 N"),
+        ("car-route", {}, ""),
         ("branch", {"along": "a", "dry": 0.0}, _ALONG_A),
     ],
 )
