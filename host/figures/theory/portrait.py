@@ -106,7 +106,7 @@ def _draw_lines(axes: Axes, rows: list[PointRow], most: float) -> None:
     """Manifolds, trajectories and limit cycles. most: the greatest speed shown, Hz."""
     edges = _points(rows, "stable manifold")
     edges = np.concatenate([edges, -edges])
-    forward = sides(edges, most)
+    forward = sides(edges, float(np.abs(edges[:, 1]).max(initial=0.01 * most)))
     for own, colour, side in zip((forward, ~forward), _STABLE, _SIDES, strict=True):
         for turns in range(-2, 3):
             phi = edges[own, 0] + turns * pi / 2

@@ -30,6 +30,9 @@ ROLLING_MEAN = 0.1
 # Lines of the grid of starts over a quarter turn, and over the speeds of one sign. Each piece of a
 # boundary is then bisected this many times, to 1e-6 rad.
 GRID, BISECTIONS = 160, 14
+# Lines of a coarse grid. If it has boundaries only in this part of the speeds, the fine grid covers
+# this part alone: boundaries of stiff wheels are folded there.
+COARSE, LOW = 40, 0.25
 # Steps per unit of a wheel's rate; they put a boundary where finer ones do, to 1e-6 rad.
 LABELLING = 0.6
 
@@ -93,12 +96,11 @@ def stable_manifolds(wheel: Wheel, fastest: float) -> Array:
         Points (phi in rad, omega in rad/s), (2, points), with phi between plus and minus an eighth
         turn and omega from 0 to `fastest`.
     """
-    phis = np.linspace(-QUARTER / 2, QUARTER / 2, GRID + 1)
-    omegas = np.linspace(0.0, fastest, GRID + 1)
-    grid = np.array(np.meshgrid(phis, omegas))
-    labels = basin_labels(grid[0].ravel(), grid[1].ravel(), wheel).reshape(grid.shape[1:])
-    along_phi = labels[:, :-1] != labels[:, 1:]
-    along_omega = labels[:-1] != labels[1:]
+    grid, along_phi, along_omega = _changes(wheel, fastest, COARSE)
+    lines = np.flatnonzero(along_phi.any(axis=1) | np.pad(along_omega.any(axis=1), (1, 0)))
+    if len(lines) and lines[-1] < LOW * COARSE:
+        fastest *= float(lines[-1] + 1) / COARSE
+    grid, along_phi, along_omega = _changes(wheel, fastest, GRID)
     one = np.concatenate([grid[:, :, :-1][:, along_phi], grid[:, :-1][:, along_omega]], axis=1)
     other = np.concatenate([grid[:, :, 1:][:, along_phi], grid[:, 1:][:, along_omega]], axis=1)
     own = basin_labels(one[0], one[1], wheel)
@@ -107,3 +109,24 @@ def stable_manifolds(wheel: Wheel, fastest: float) -> Array:
         same = basin_labels(middle[0], middle[1], wheel) == own
         one, other = np.where(same, middle, one), np.where(same, other, middle)
     return np.asarray((one + other) / 2)
+
+
+def _changes(
+    wheel: Wheel, fastest: float, parts: int
+) -> tuple[Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Where labels change on a grid.
+
+    Args:
+        wheel: The wheel.
+        fastest: The greatest speed, rad/s.
+        parts: Of the grid, in either direction.
+
+    Returns:
+        Angles and speeds, (2, parts + 1, parts + 1), a line for each speed; whether the label
+        changes from an angle to the next, (parts + 1, parts); from a speed to the next,
+        (parts, parts + 1).
+    """
+    phis = np.linspace(-QUARTER / 2, QUARTER / 2, parts + 1)
+    grid = np.array(np.meshgrid(phis, np.linspace(0.0, fastest, parts + 1)))
+    labels = basin_labels(grid[0].ravel(), grid[1].ravel(), wheel).reshape(grid.shape[1:])
+    return grid, labels[:, :-1] != labels[:, 1:], labels[:-1] != labels[1:]

@@ -58,3 +58,10 @@ def test_wheels_on_either_side_of_a_stable_manifold_end_on_different_attractors(
     assert (np.ptp(sides, axis=0) > 0).all()
     # The saddle lies on the boundary of its basins.
     assert np.hypot(phi - pi / 4, omega).min() < 0.02
+
+
+def test_boundaries_far_below_the_greatest_speed_are_found_as_finely_as_others():
+    """They reach 1.06 of 22 rad/s; a grid for all speeds has 124 points of them."""
+    _, omega = stable_manifolds(Wheel(k=5.0), 22.0)
+    assert omega.max() == pytest.approx(1.0636, abs=5e-4)
+    assert len(omega) > 300
