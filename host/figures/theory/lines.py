@@ -98,7 +98,15 @@ def draw(rows: list[LinesRow], findings: Findings) -> Figure:
             xlim=(min(near) - 0.01, min(max(near), _CLOSE) + 0.01),
             yscale="log",
         )
-        share_legend(figure, [plane, close], loc="outside lower center", ncols=5, fontsize=10.5)
+        share_legend(
+            figure,
+            [plane, close],
+            loc="outside lower center",
+            ncols=5,
+            fontsize=10.5,
+            title="\n".join(numbers["not_drawn"]),
+            title_fontsize=10,
+        )
         figure.suptitle("Bifurcations of a wheel in the plane of two constants", fontsize=16)
     return figure
 

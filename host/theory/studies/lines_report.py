@@ -8,6 +8,7 @@ from typing import TypedDict, cast
 from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.chaos_edges import LASTING_S, LIFE_S, MANY, WHEELS
+from host.theory.studies.lines_plane import plane_of
 from host.theory.studies.lines_rows import (
     ChaosEdgeRow,
     CyclePointRow,
@@ -20,6 +21,7 @@ from host.theory.studies.lines_rows import (
     points_of,
     specials_of,
 )
+from host.theory.studies.lines_windows import VALUES, WINDOW_BANDS
 from host.theory.studies.registry import LETTERS
 
 _UNITS = {"tau": "s", "f": "s", "I": "s^2"}
@@ -74,6 +76,7 @@ class Numbers(TypedDict):
             stays: the closest values at which its life is shorter and longer, with 95 % confidence.
         crisis_life_s: this life (s).
         greatest_off_by: the greatest relative difference with shorter time steps.
+        not_drawn: what lines are not followed, or may be missed, in words.
     """
 
     constants: dict[str, float]
@@ -84,6 +87,7 @@ class Numbers(TypedDict):
     crises: list[dict[str, object]]
     crisis_life_s: float
     greatest_off_by: float | None
+    not_drawn: list[str]
 
 
 def report(rows: list[LinesRow], setting: Setting) -> Findings:
@@ -91,6 +95,8 @@ def report(rows: list[LinesRow], setting: Setting) -> Findings:
     axes = {axis: setting.options[axis] for axis in ("x", "y")}
     chaos = chaos_edges_of(rows)
     specials, ends, lines = specials_of(rows), ends_of(rows), _lines(points_of(rows))
+    beside = list(_beside_answers(ends, axes))
+    missed = _missed_answer(setting, axes)
     differences = [row["off_by"] for row in specials if row["off_by"] is not None]
     numbers: Numbers = {
         "constants": {letter: setting.options[letter] for letter in LETTERS},
@@ -128,6 +134,7 @@ def report(rows: list[LinesRow], setting: Setting) -> Findings:
         ],
         "crisis_life_s": LIFE_S,
         "greatest_off_by": max(differences, default=None),
+        "not_drawn": [f"{answer.name}: {answer.in_words()}" for answer in (*beside, missed)],
     }
     answers = [
         *(_special_answer(row, axes) for row in specials if row["part"] != "windows"),
@@ -136,9 +143,10 @@ def report(rows: list[LinesRow], setting: Setting) -> Findings:
             for row in ends
             if row["part"] != "windows" and row["type"] != "beside"
         ),
-        *_beside_answers(ends, axes),
+        *beside,
         *(_line_answer(one, axes) for one in lines),
         *_missing(lines),
+        missed,
     ]
     if chaos:
         what = f"{MANY} of {WHEELS} wheels leave chaos in {LASTING_S:g} s, to where none does"
@@ -162,6 +170,17 @@ def _missing(lines: list[LineNumbers]) -> Iterator[Answer]:
         yield Answer("pitchforks of symmetric cycles", "none; they cannot double their period")
     if _name("windows", "period-doubling") not in names:
         yield Answer(_name("windows", "period-doubling"), "none found")
+
+
+def _missed_answer(setting: Setting, axes: dict[str, str]) -> Answer:
+    """Which windows are too narrow to be found for sure."""
+    window = plane_of(setting.options).window
+    step, height = (window.x_to - window.x_from) / (VALUES - 1), window.y_to / WINDOW_BANDS
+    words = (
+        f"those narrower in {axes['x']} than {step:.2g}{_unit(axes['x'])}, or lower in {axes['y']}"
+        f" than {height:.2g}{_unit(axes['y'])}"
+    )
+    return Answer("windows that may be missing", words)
 
 
 def _beside_answers(ends: list[EndRow], axes: dict[str, str]) -> Iterator[Answer]:

@@ -231,9 +231,15 @@ def test_a_fold_beside_the_merging_line_is_reported_with_its_distance(monkeypatc
     assert (row["kind"], row["type"], row["on"]) == ("end", "beside", "fold")
     assert 0.0 < row["gap"] < 1e-8
     rows = [{"part": "FB", "band": 0, **row}]
-    answer = lines.report(rows, Setting(1, options(x="a", y="k"))).answers[0]
+    found = lines.report(rows, Setting(1, options(x="a", y="k")))
+    answer = found.answers[0]
     assert answer.name.startswith("folds of forth-and-back cycles: so close to the merging line")
     assert answer.value.endswith(f"closer than {row['gap']:.1e} of it")
+    beside, missed = found.numbers["not_drawn"]
+    assert beside == f"{answer.name}: {answer.value}"
+    assert missed == (
+        "windows that may be missing: those narrower in a than 0.05, or lower in k than 1.2"
+    )
 
 
 @pytest.fixture(scope="module")
