@@ -128,11 +128,19 @@ def note_of(command: str) -> str:
         The lines; none for the program itself.
     """
     words = command.partition(" ")[2]
-    note = NOTES.get(words) or _note_of_run(words)
+    note = note_on(words)
     if note is None:
         return ""
     typed = f"{command} {note.example}".rstrip()
-    return f"\nexample:  {typed}\ntakes:    {note.takes}\npage:     {note.page}\n"
+    lines = f"\nexample:  {typed}\ntakes:    {note.takes}\npage:     {note.page}\n"
+    if words.partition(" ")[0] == "theory":
+        lines += "words:    kickctl help WORD explains one, such as fold, merging or crisis\n"
+    return lines
+
+
+def note_on(words: str) -> Note | None:
+    """The note of a verb, of its action or of a run, such as 'log plot'; None if there is none."""
+    return NOTES.get(words) or _note_of_run(words)
 
 
 def _note_of_run(words: str) -> Note | None:

@@ -11,7 +11,9 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import host
 import robot
+from host.commands._help_notes import note_on
 from host.commands._terminal import print_result, show
 from host.errors import NotDone
 from host.experiments.registry import TABLE as EXPERIMENTS
@@ -22,9 +24,9 @@ from robot.params import TABLE as PARAMS
 from robot.record import CHANNELS
 
 HELP = (
-    "find words among verbs and their options, experiments, studies of the model, the robot's"
-    " parameters, the columns of logs, faults, and the paper's claims; without a word: list the"
-    " verbs"
+    "explain a word, and find words among verbs and their options, experiments, studies of the"
+    " model, the robot's parameters, the columns of logs, faults, and the paper's claims; without a"
+    " word: list the verbs"
 )
 USES = ()
 # The verbs whose parts are runs, and those.
@@ -34,6 +36,8 @@ MOST = 12
 _WIDTH = 100
 _FAULT = re.compile(r"^\| (?!what you see)(.+?) \| (.+) \|$", re.MULTILINE)
 _FAULTS = "## When it does not move"
+_WORD = re.compile(r"^\| (.+?) \| (.+) \| `kickctl (.+)` \|$", re.MULTILINE)
+_EXPLAINED = "word: "
 
 
 class Place(NamedTuple):
@@ -58,8 +62,14 @@ class Place(NamedTuple):
         return any(own == word or (len(word) > 1 and own.startswith(word)) for own in self.words())
 
     def is_called(self, words: list[str]) -> bool:
-        """Whether these words are its name, which that of an option is not."""
-        return self.name[0] != "-" and _words(self.name.partition("=")[0]) == words
+        """Whether these words are its name, which that of an option is not.
+
+        What is explained is also called by the beginning of its name, as Hopf.
+        """
+        own = _words(self.name.partition("=")[0])
+        if self.before == _EXPLAINED:
+            return any(_words(name)[: len(words)] == words for name in self.name.split(","))
+        return self.name[0] != "-" and own == words
 
     def __str__(self) -> str:
         """As it is printed."""
@@ -147,6 +157,12 @@ def _words(text: str) -> list[str]:
 
 
 def _places(parser: argparse.ArgumentParser) -> Iterator[Place]:
+    glossary = Path(host.__file__).with_name("GLOSSARY.md").read_text(encoding="utf-8")
+    for word, meaning, command in _WORD.findall(glossary):
+        note = note_on(command)
+        assert note is not None  # each command of the glossary has one
+        text = meaning.replace("\\|", "|")
+        yield Place(_EXPLAINED, word, f"{text}; see kickctl {command}, and {note.page}")
     yield from _of_options(parser, frozenset())
     common = frozenset(parser._option_string_actions)  # noqa: SLF001 - argparse lists them nowhere
     for verb, own in _inner(parser):

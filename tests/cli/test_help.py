@@ -8,6 +8,7 @@ import pytest
 
 from host.cli import VERBS
 from host.experiments.registry import TABLE as EXPERIMENTS
+from host.figures.theory import lines
 from host.theory.studies.registry import TABLE as STUDIES
 from robot.params import TABLE as PARAMS
 from robot.record import CHANNELS
@@ -29,14 +30,17 @@ def names(kickctl):
 @pytest.mark.parametrize(
     ("words", "first"),
     [
-        (("hysteresis",), "kickctl experiment bifurcation"),
+        (("hysteresis",), "word: hysteresis"),
+        (("crisis",), "word: crisis"),
+        (("Hopf",), "word: Hopf bifurcation"),
+        (("torus",), "word: Neimark-Sacker bifurcation, torus bifurcation"),
         (("Lyapunov", "point"), "kickctl theory lyapunov"),
-        (("kick",), "kickctl kick"),
+        (("kick",), "word: kick"),
         (("rod_lag_s",), "kickctl params set rod_lag_s=VALUE"),
         (("left", "torque"), "column of logs: left_torque"),
         (("R5",), "claim R5"),
         (("k",), "kickctl params set k=VALUE"),
-        (("seed",), "kickctl --seed"),
+        (("seed",), "word: seed, random seed"),
         (("minutes",), "kickctl experiment NAME --minutes"),
         (("walls", "simulated", "distance"), "kickctl lab --walls"),
         (("recover", "damaged"), "kickctl log recover"),
@@ -79,6 +83,23 @@ def test_many_places_are_named_below_the_first_ones(kickctl):
     assert "docs/model.md" in what
     assert len(lines) < 30
     assert any(line.endswith("more; one more word finds fewer:") for line in lines)
+
+
+def test_a_word_is_explained_with_its_command_and_page(kickctl):
+    _, out, _ = kickctl("help", "crisis")
+    assert out.splitlines()[1] == (
+        "    a chaotic attractor touches the boundary of its basin; beyond this value of the"
+        " parameter chaos is a transient, which ends; see kickctl theory lyapunov-line, and"
+        " docs/theory.md"
+    )
+
+
+def test_words_of_the_figures_of_lines_are_explained(names):
+    """Those of the legend."""
+    labels = [label for _, _, label in lines._LINES.values()]
+    labels += [label for _, label in lines._MARKERS.values() if not label.startswith("crosses")]
+    words = {label.partition(",")[0].removesuffix("s") for label in labels}
+    assert [word for word in words if not names(word)[0].startswith("word: ")] == []
 
 
 def test_a_claim_is_said_in_its_sentence(kickctl):

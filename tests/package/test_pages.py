@@ -13,6 +13,7 @@ PAGES = [
     "SECURITY.md",
     "robot/README.md",
     "robot/PROTOCOL.md",
+    "host/GLOSSARY.md",
 ] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md"))
 
 
