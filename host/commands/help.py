@@ -64,12 +64,11 @@ class Place(NamedTuple):
     def is_called(self, words: list[str]) -> bool:
         """Whether these words are its name, which that of an option is not.
 
-        What is explained is also called by the beginning of its name, as Hopf.
+        What is explained is also called by the first words of its name, as Hopf.
         """
-        own = _words(self.name.partition("=")[0])
-        if self.before == _EXPLAINED:
+        if self.before == _EXPLAINED and len(words[0]) > 1:
             return any(_words(name)[: len(words)] == words for name in self.name.split(","))
-        return self.name[0] != "-" and own == words
+        return self.name[0] != "-" and _words(self.name.partition("=")[0]) == words
 
     def __str__(self) -> str:
         """As it is printed."""
