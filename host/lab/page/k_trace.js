@@ -24,7 +24,7 @@ export class KTrace {
     #begin = 0;
     #others = "";
 
-    /** @param {import("./store.js").RobotView} robot */
+    /** @param {import("./robot_view.js").RobotView} robot */
     constructor(robot) {
         this.robot = robot;
         /** @type {Hold[]} Oldest first. */

@@ -4,7 +4,7 @@ import { element, setText } from "./dom.js";
 import { Board, Onlookers, part } from "./notebook.js";
 import { Reel } from "./reel.js";
 import { words } from "./replay_texts.js";
-import { STATES } from "./store.js";
+import { STATES } from "./robot_view.js";
 import { unpackTape } from "./tape.js";
 
 export default () => {

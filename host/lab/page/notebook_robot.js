@@ -6,7 +6,7 @@ import { Frames } from "./frames.js";
 import { Board, Onlookers, part } from "./notebook.js";
 import { words } from "./notebook_texts.js";
 import { Pace } from "./pace.js";
-import { RobotView, STATES } from "./store.js";
+import { RobotView, STATES } from "./robot_view.js";
 import { Views } from "./views.js";
 
 // How long a stop may take until it counts as not confirmed, ms.

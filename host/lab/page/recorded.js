@@ -1,6 +1,6 @@
 /** A robot from a log: all records are there, and a cursor says which one is on the screen. */
 
-import { RobotView } from "./store.js";
+import { RobotView } from "./robot_view.js";
 
 export class RecordedRobot extends RobotView {
     #settings = [];

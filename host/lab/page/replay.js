@@ -5,7 +5,7 @@ import { createHappened } from "./happened.js";
 import { Reel } from "./reel.js";
 import { words } from "./replay_texts.js";
 import { Screen } from "./screen.js";
-import { STATES } from "./store.js";
+import { STATES } from "./robot_view.js";
 import { loadTape } from "./tape.js";
 import { createTwin } from "./twin.js";
 import { sentences } from "./words.js";

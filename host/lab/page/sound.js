@@ -1,6 +1,6 @@
 /** The robot as one hears it: each wheel ticks as it turns, and its torque is a tone. */
 
-import { AT_REST } from "./store.js";
+import { AT_REST } from "./robot_view.js";
 
 // A wheel ticks this many times a turn.
 const CLICKS_A_TURN = 8;

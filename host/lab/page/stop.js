@@ -4,7 +4,7 @@
  */
 
 import { byId, setText } from "./dom.js";
-import { AT_REST } from "./store.js";
+import { AT_REST } from "./robot_view.js";
 import { texts } from "./texts.js";
 
 const PATIENCE_MS = 1500;

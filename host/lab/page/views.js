@@ -15,7 +15,7 @@ export class Views {
     #fastest = 3;
     #view = {};
 
-    /** @param {import("./store.js").RobotView} robot */
+    /** @param {import("./robot_view.js").RobotView} robot */
     constructor(robot) {
         this.robot = robot;
         this.wheels = {};

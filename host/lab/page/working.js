@@ -5,7 +5,7 @@
 
 import { byId, element, setText } from "./dom.js";
 import { words } from "./replay_texts.js";
-import { STATES } from "./store.js";
+import { STATES } from "./robot_view.js";
 
 const SIDES = ["left", "right"];
 // How a tick compares, as its channel `compared` has it.
