@@ -68,6 +68,10 @@ class Follower:
         kick = self._snapshot.kick
         self._kick = Kick(**kick) if kick else None
 
+    def follow_on(self, record: Record) -> None:
+        """Have the next record follow another one than it did: that of where a twin begins."""
+        self._before = record
+
     @property
     def params(self) -> dict[str, Any]:
         """The parameters in force, by name."""

@@ -88,8 +88,11 @@ def stall(hello: dict[str, Any], params: dict[str, Any]) -> float | None:
         From 0 to 1; None if the motors are not known here.
     """
     motor = motor_known(hello)
-    if motor is None:
-        return None
+    return None if motor is None else stall_of(motor, params)
+
+
+def stall_of(motor: Constants, params: dict[str, Any]) -> float:
+    """The same for a robot whose motors are known."""
     standing_nm = motor.torque_constant * motor.battery_v / motor.resistance
     most = params["duty_scale"] * params["max_duty_pct"] / 100.0
     least = (motor.static + motor.rolling) / standing_nm

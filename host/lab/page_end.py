@@ -8,28 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from host.errors import KickctlError
+from host.lab.allowance import Allowance
 
 # How many messages a second a page may send, and how many at once. Stops are not counted.
 RATE_PER_S, BURST = 150.0, 300.0
 # How many messages may wait for a page that reads none.
 MAX_WAITING = 400
-
-
-class Allowance:
-    """How much a page may still send: a bucket that fills by itself."""
-
-    def __init__(self, now: float) -> None:
-        self._left = BURST
-        self._since = now
-
-    def take(self, now: float) -> bool:
-        """Take one. Returns whether there was one."""
-        self._left = min(BURST, self._left + RATE_PER_S * max(0.0, now - self._since))
-        self._since = now
-        if self._left < 1.0:
-            return False
-        self._left -= 1.0
-        return True
 
 
 @dataclass
@@ -85,7 +69,7 @@ class Page:
         self.basins = ""
         self.closed = False
         self.awake: Callable[[], object] = lambda: None
-        self.allowance = Allowance(now)
+        self.allowance = Allowance(now, RATE_PER_S, BURST)
 
     def send(self, message: dict[str, Any]) -> None:
         """Have a message sent. A page that takes none for too long is closed."""

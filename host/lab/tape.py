@@ -13,10 +13,11 @@ from math import inf, isfinite, nan
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse, printable
-from host.kicking.robot_motor import EV3, known_entry
+from host.kicking.robot_motor import EV3
 from host.lab import derived, worked
 from host.lab.kicks import stall
-from host.lab.twin import Twin, compare_kicks
+from host.lab.steady_clock import SteadyClock
+from host.lab.twin import Twin, compare_kicks, motors_of
 from host.logs.log import Gaps, Log
 from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import LogFile
@@ -24,7 +25,6 @@ from host.logs.replay import Mismatch, Replayer, other_sources, too_large
 from host.logs.tap import Event
 from robot.record import STRUCT, Record, describe
 from robot.safety import RUNNING
-from sim_motor.constants import load
 
 # Ten minutes of 30 ms ticks: as many as the robot's black box holds, and about 10 MB.
 MOST_TICKS = 20_000
@@ -47,34 +47,11 @@ class Cut(NamedTuple):
         )
 
 
-class _Clock:
-    """A clock that goes on where the robot's program, and with it its own clock, begins again."""
-
-    def __init__(self) -> None:
-        self.begin_s: float | None = None
-        self._shift_s = 0.0
-        self._latest_s = 0.0
-        self._restarted = False
-
-    def restart(self) -> None:
-        self._restarted = True
-
-    def read(self, record: Record) -> float:
-        """The time of the next record (s)."""
-        if self._restarted and self.begin_s is not None:
-            self._shift_s = self._latest_s + record.dt_s - record.t_s
-        self._restarted = False
-        self._latest_s = float(record.t_s + self._shift_s)
-        if self.begin_s is None:
-            self.begin_s = self._latest_s
-        return self._latest_s
-
-
 class _Writer:
     """Follows a log, and packs the ticks of a cut."""
 
     def __init__(self, name: str, info: dict[str, Any], cut: Cut, twin: Twin | None) -> None:
-        self.clock = _Clock()
+        self.clock = SteadyClock()
         self.replayer = Replayer(info)
         self.twin = twin
         self.pair: tuple[list[Record], list[Record]] = ([], [])
@@ -86,7 +63,6 @@ class _Writer:
         self._name = name
         self._cut = cut
         self._follower = derived.Follower()
-        self._twins_follower = derived.Follower()
         self._gaps = Gaps()
         self._waiting: list[Event] = []
 
@@ -94,7 +70,6 @@ class _Writer:
         self._gaps.take(event)
         self.replayer.take(event)
         self._follower.take_event(event)
-        self._twins_follower.take_event(event)
         if self.twin is not None:
             self.twin.take_event(event)
         if event["event"] == "restart":
@@ -130,13 +105,11 @@ class _Writer:
         own = STRUCT.pack(*shown) + _DERIVED.pack(*values)
         self.packed.append(own + worked.STRUCT.pack(*numbers))
         if self.twin is not None:
-            self._take_twin(self.twin.take_record(shown, t_s), shown)
-
-    def _take_twin(self, twin: Record, robot: Record) -> None:
-        values = self._twins_follower.derive(twin) or _NO_SPEED
-        self.packed_twin.append(STRUCT.pack(*twin) + _DERIVED.pack(*values))
-        self.pair[0].append(robot)
-        self.pair[1].append(twin)
+            twin, its_values = self.twin.take_record(shown, t_s)
+            packed = STRUCT.pack(*twin) + _DERIVED.pack(*its_values or _NO_SPEED)
+            self.packed_twin.append(packed)
+            self.pair[0].append(shown)
+            self.pair[1].append(twin)
 
     def flush(self) -> None:
         """Note the events that came before the next record."""
@@ -249,16 +222,8 @@ def _written(packed: list[bytes]) -> str:
 
 def _twin(motor: str, info: dict[str, Any]) -> tuple[str, Twin]:
     """The twin, and the entry of its motors."""
-    entry = motor or known_entry(str(info.get("motor", EV3)))
-    if entry is None:
-        raise WrongUse(
-            f"this computer does not know the motors of the log's robot, '{info.get('motor')}'",
-            "name an entry of a motors file: --twin NAME",
-        )
-    try:
-        return entry, Twin(load(entry), info.get("battery_v"))
-    except ValueError as error:
-        raise WrongUse(str(error), "name one of these: --twin NAME") from error
+    entry, constants = motors_of(motor, str(info.get("motor", EV3)), "the log's robot")
+    return entry, Twin(constants, info.get("battery_v"))
 
 
 def too_long(name: str, cut: Cut) -> WrongUse:

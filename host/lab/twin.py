@@ -1,8 +1,8 @@
-"""A simulated twin of a logged robot: the same program under the same kicks, with simulated motors.
+"""A simulated twin of a robot: the same program under the same kicks, with simulated motors.
 
-The twin begins where the log begins, and again at each start of the robot and after each gap: with
-the robot's angles, speeds and potentials. From there on it goes its own way, with the log's
-parameters, kicks and times of ticks. Whatever else pushes the robot, such as a wall, a hand or a
+The twin begins where the robot's records begin, and again at each start of the robot and after each
+gap: with the robot's angles, speeds and potentials. From there on it goes its own way, with the
+robot's parameters, kicks and times of ticks. What else pushes the robot, as a wall, a hand or a
 weaker battery, does not push the twin.
 """
 
@@ -11,7 +11,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from host.errors import WrongUse, printable
 from host.kicking.outcome import compare
+from host.kicking.robot_motor import known_entry
+from host.lab import derived
 from host.logs.motion import heading_of
 from host.logs.replay import Controller
 from host.logs.tap import Event
@@ -19,18 +22,21 @@ from robot.kicks import DIRECTION_TICKS, WHEELS
 from robot.record import Record
 from robot.safety import RUNNING, limit_duty
 from sim_motor.clock import VirtualClock
-from sim_motor.constants import Constants
+from sim_motor.constants import Constants, load
 from sim_motor.motor import SPEED, WHEEL_SPEED
 from sim_motor.wheel_motor import SimMotor
 
 # How long after a kick wheels are compared at the latest, and at the earliest (s): after the first
 # time they have settled, before the second one nobody knows.
 _LATEST_S, _EARLIEST_S = 3.0, 1.0
+# A tick that begins later than this after the one before counts as one after a gap (s): by then the
+# robot's watchdog has stopped its motors, and to compute so much at once would take too long.
+_LONGEST_PAUSE_S = 1.0
 _NEWS = ("kick", "params", "start", "stop", "hold", "resume", "fault", "restart", "lost")
 
 
 class Twin:
-    """Follows a log, and computes what its twin does in each tick.
+    """Follows a robot's stream, and computes what its twin does in each tick.
 
     Args:
         constants: The motors' constants.
@@ -42,35 +48,55 @@ class Twin:
         self._battery_v = battery_v or constants.battery_v
         self._clock = VirtualClock(0, jitter=False)
         self._controller = Controller()
+        self._follower = derived.Follower()
         self._motors: list[SimMotor] = []
         self._before: tuple[float, Record] | None = None
 
     def take_event(self, event: Event) -> None:
         """Follow parameters and kicks; begin again where the robot does."""
         self._controller.take(event)
+        self._follower.take_event(event)
         if event["event"] in ("start", "lost", "restart"):
-            self._motors = []
+            self.begin_again()
         if event["event"] == "restart":
             self._before = None
 
+    def begin_again(self) -> None:
+        """Have the twin begin with the robot's next tick."""
+        self._motors = []
+
     def pass_over(self, record: Record, t_s: float) -> None:
-        """Note a tick of the robot before the twin begins, as `take_record`."""
+        """Take a tick of the robot, as `take_record`, for which the twin is not computed.
+
+        The twin begins behind it.
+        """
+        self.begin_again()
         self._before = t_s, record
 
-    def take_record(self, record: Record, t_s: float) -> Record:
-        """The twin's record of a tick.
+    def take_record(self, record: Record, t_s: float) -> tuple[Record, tuple[float, ...] | None]:
+        """Compute the twin's tick.
 
         Args:
             record: The robot's.
             t_s: When the tick began, on a clock that no restart sets back (s).
+
+        Returns:
+            The twin's record, and its derived channels as derived.Follower gives them.
+
+        Raises:
+            OverflowError: The robot's numbers are too large to compute with.
         """
         self._clock.wait(t_s, lambda _: None)
         before, self._before = self._before, (t_s, record)
-        if before is not None and record.tick != before[1].tick + 1:
-            self._motors = []
+        if before is not None and (
+            record.tick != before[1].tick + 1 or t_s > before[0] + _LONGEST_PAUSE_S
+        ):
+            self.begin_again()
         begins = not self._motors
         if begins:
             self._motors = [self._motor(side, record, t_s, before) for side in WHEELS]
+            if before is not None:
+                self._follower.follow_on(before[1])
         else:
             angles = zip(WHEELS, self._motors, strict=True)
             record = record._replace(
@@ -83,7 +109,7 @@ class Twin:
             record = record._replace(**self._results(record))
         for side, motor in zip(WHEELS, self._motors, strict=True):
             motor.write_duty(getattr(record, side + "_duty_pct"))
-        return record
+        return record, self._follower.derive(record)
 
     def _motor(
         self, side: str, record: Record, t_s: float, before: tuple[float, Record] | None
@@ -111,6 +137,32 @@ class Twin:
             }
             results.update({f"{wheel.side}_{name}": value for name, value in values.items()})
         return results
+
+
+def motors_of(entry: str, model: str, whose: str) -> tuple[str, Constants]:
+    """The motors of a twin.
+
+    Args:
+        entry: The name of an entry of a motors file; empty for that of the robot's own motors.
+        model: What the robot's program calls its motors.
+        whose: Which robot that is, in words.
+
+    Returns:
+        The name of the entry, and its constants.
+
+    Raises:
+        WrongUse: There is no entry of this name, or none for this model.
+    """
+    known = entry or known_entry(model)
+    if known is None:
+        raise WrongUse(
+            f"this computer does not know the motors of {whose}, '{printable(model)}'",
+            "name an entry of a motors file: --twin NAME; kickctl experiment calibrate writes one",
+        )
+    try:
+        return known, load(known)
+    except ValueError as error:
+        raise WrongUse(str(error), "name one of these: --twin NAME") from error
 
 
 def compare_kicks(
