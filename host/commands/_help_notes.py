@@ -50,7 +50,7 @@ NOTES = {
         "10 --out mine.mcap", "1 s; on a robot in real time as long as it records", _LOGS
     ),
     "watch": Note("--brick anna", "until q or ^C, or --seconds", "docs/listen.md"),
-    "lab": Note("--walls 2", "3 s until the page opens; until ^C", "docs/lab.md"),
+    "lab": Note("--twin", "3 s until the page opens; until ^C", "docs/lab.md"),
     "foxglove": Note("--brick anna", "3 s until it serves; until ^C", "docs/foxglove.md"),
     "log": Note("plot logs/mine.mcap", "2 s; see kickctl log ACTION --help", _LOGS),
     "log list": Note("", _SHORT, _LOGS),

@@ -58,15 +58,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where the part of the log ends, in s from its first tick (default: its end). A page"
         " takes 20,000 ticks: ten minutes of 30 ms",
     )
-    group.add_argument(
-        "--twin",
-        nargs="?",
-        const="",
-        metavar="MOTOR",
-        help="show beside the robot a simulated one under the same kicks, with this entry of a"
-        " motors file, as `kickctl experiment calibrate` writes one (default: the robot's own)."
-        " It takes as long again",
-    )
     add_force(group)
 
 
@@ -79,10 +70,6 @@ def wants_replay(options: argparse.Namespace) -> bool:
             raise WrongUse(
                 f"{name} cuts a log, and there is none", "name one: --replay LOG --from 10 --to 20"
             )
-    if options.twin is not None:
-        raise WrongUse(
-            "--twin goes beside a log, and there is none", "name one: --replay LOG --twin"
-        )
     if options.force:
         raise WrongUse("--force replaces a file, and none is written", "leave it out")
     return False

@@ -16,6 +16,7 @@ from host.util.numbers import Number
 
 if TYPE_CHECKING:
     from host.lab.live_station import LiveStation
+    from host.lab.live_twin import LiveTwin
 
 S = TypeVar("S", bound="LiveStation")
 
@@ -79,7 +80,18 @@ def robots_of(options: argparse.Namespace) -> list[Chosen]:
             f"--seed is only for the robot that is embedded in this program, {SIM}",
             "leave it out: a robot elsewhere has the seed that it was started with",
         )
-    return robots
+    return _told_apart(robots)
+
+
+def _told_apart(robots: list[Chosen]) -> list[Chosen]:
+    """The robots with names by which people tell simulated ones without a name apart."""
+    nameless = [
+        one for one in robots if one.name == one.address and sim_options(one.address) is not None
+    ]
+    names = dict.fromkeys(nameless, "simulated")
+    if len(nameless) > 1:
+        names = {one: f"simulated-{number}" for number, one in enumerate(nameless, 1)}
+    return [one._replace(name=names.get(one, one.name)) for one in robots]
 
 
 def station_of(
@@ -88,6 +100,7 @@ def station_of(
     stack: ExitStack,
     kind: type[S],
     walls_m: float | None = None,
+    twin: LiveTwin | None = None,
 ) -> S:
     """The station of a robot, which looks for it already. A simulated one is started for it.
 
@@ -97,28 +110,30 @@ def station_of(
         stack: Ends what is begun here.
         kind: What kind of station.
         walls_m: The walls' distance for a simulated robot (m); None for what its address says.
+        twin: Its simulated twin; None for none.
     """
     from host.lab.desk_robot import DeskRobot, child_options
     from host.lab.station import CONTINUE, STOP
 
     if sim_options(robot.address) is None:
         token = options.token or robot.token
-        station = kind(robot.name, robot.address, options.unattended or STOP, "real", token=token)
+        rule = options.unattended or STOP
+        station = kind(robot.name, robot.address, rule, "real", token=token, twin=twin)
     else:
         address = robot.address
         if walls_m is not None:
             address = with_params(address, [f"walls={walls_m:g}"])
         walls = (sim_options(address) or {}).get("walls")
         desk = stack.enter_context(DeskRobot(child_options(address, options.seed)))
-        name = "simulated" if robot.name == robot.address else robot.name
         station = kind(
-            name,
+            robot.name,
             desk.uri,
             options.unattended or CONTINUE,
             "simulated",
             walls_m=None if walls is None else float(walls),
             token=desk.token,
             pull=desk.pull,
+            twin=twin,
         )
         desk.on_end = station.say_end
     stack.callback(_end, station)

@@ -20,6 +20,7 @@ from host.util.numbers import Number
 
 if TYPE_CHECKING:
     from host.lab.live_station import LiveStation
+    from host.lab.live_twin import LiveTwin
     from host.lab.server import Lab
 
 HELP = (
@@ -58,6 +59,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="M",
         help="put the simulated robot between two walls at this distance, in m",
     )
+    parser.add_argument(
+        "--twin",
+        nargs="?",
+        const="",
+        metavar="MOTOR",
+        help="show beside each robot, or beside the robot of a log, its simulated twin: the same"
+        " program under the same kicks, with the motor of this entry of a motors file, as"
+        " `kickctl experiment calibrate` writes one (default: the robot's own)",
+    )
     _lab_replay.add_arguments(parser)
 
 
@@ -78,7 +88,11 @@ def run(options: argparse.Namespace) -> int:
             stack.callback(worker.close)
         robots = robots_of(options)
         walls_m = _walls_m(options, robots)
-        stations = [station_of(one, options, stack, LiveStation, walls_m) for one in robots]
+        twins = [_twin_of(options) for _ in robots]
+        stations = [
+            station_of(one, options, stack, LiveStation, walls_m, twin)
+            for one, twin in zip(robots, twins, strict=True)
+        ]
         lab = stack.enter_context(
             Lab(
                 stations,
@@ -122,6 +136,15 @@ def _walls_m(options: argparse.Namespace, robots: list[Chosen]) -> float | None:
     return None if options.walls is None else float(options.walls)
 
 
+def _twin_of(options: argparse.Namespace) -> LiveTwin | None:
+    """A twin for a robot, if twins are wanted. Raises WrongUse if its motor is not known."""
+    if options.twin is None:
+        return None
+    from host.lab.live_twin import LiveTwin
+
+    return LiveTwin(options.twin)
+
+
 def _tell(lab: Lab, stations: list[LiveStation], options: argparse.Namespace) -> None:
     """Say where the page is, open it, and say which robots are not there."""
     if options.json:
@@ -146,6 +169,9 @@ def _tell(lab: Lab, stations: list[LiveStation], options: argparse.Namespace) ->
                 f"{station.name} is not there yet: {station.trouble or 'it does not answer'}\n"
                 "  the page shows it as lost, and finds it when it comes"
             )
+        elif station.twin is not None and station.twin.trouble is not None:
+            trouble = station.twin.trouble
+            say(f"{station.name} has no twin: {trouble.message}\n  {trouble.hint}")
 
 
 def _open(url: str) -> None:

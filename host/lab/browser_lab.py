@@ -162,5 +162,5 @@ class BrowserLab:
         while self._calls:
             self._calls.popleft()()
         self._session.look()
-        for message in outgoing(self._page, self._session.stations):
+        for message in outgoing(self._page, self._session.rings):
             self._send(message)

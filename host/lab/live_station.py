@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from queue import SimpleQueue
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.client.robot import Robot
 from host.client.stop import Stopped, stop_robot
@@ -32,6 +32,9 @@ from host.link.addresses import make_link
 from host.logs.tap import Event
 from host.util.own_name import own_name
 from robot.record import Record
+
+if TYPE_CHECKING:
+    from host.lab.live_twin import LiveTwin
 
 # How long somebody who drives counts as there without a new sign (s). Then heartbeats cease, and
 # the robot stops by its own dead-man: so it does if this program hangs.
@@ -77,6 +80,7 @@ class LiveStation(Station):
         walls_m: How far apart the walls are (m); None if there are none.
         token: The path of its token file; None for the usual place.
         pull: Pulls a wheel of a simulated robot: gets its name and the angle (rad) or None.
+        twin: Its simulated twin; None for none.
 
     Attributes:
         met: Set as soon as the robot has been found for the first time.
@@ -92,8 +96,9 @@ class LiveStation(Station):
         walls_m: float | None = None,
         token: str | None = None,
         pull: Callable[[str, float | None], None] | None = None,
+        twin: LiveTwin | None = None,
     ) -> None:
-        super().__init__(name, uri, rule, label, walls_m)
+        super().__init__(name, uri, rule, label, walls_m, twin)
         self.hand_possible = pull is not None
         self._token = token
         self._pull = pull

@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 
-from host.lab.observed import Observed
 from host.lab.page_end import Page
-from host.lab.ring import MOST_RECORDS
+from host.lab.ring import MOST_RECORDS, Ring
 
 
-def outgoing(page: Page, robots: Mapping[str, Observed]) -> Iterator[str | bytes]:
+def outgoing(page: Page, rings: Mapping[str, Ring]) -> Iterator[str | bytes]:
     """What a page has to get now. It counts as sent as soon as the next one is asked for.
 
     Args:
         page: The page.
-        robots: All robots by name, in the order of the welcome.
+        rings: The records of all robots, then of all twins, by name; in the welcome's order.
 
     Yields:
         Messages as MESSAGES.md has them: texts, and to a page that stays, records.
@@ -25,7 +24,7 @@ def outgoing(page: Page, robots: Mapping[str, Observed]) -> Iterator[str | bytes
     if page.closed:
         return
     for index, name in enumerate(page.places):
-        ring = robots[name].ring
+        ring = rings[name]
         while page.places[name] < ring.end:
             portion = ring.read(page.places[name], MOST_RECORDS)
             page.places[name] = portion.place

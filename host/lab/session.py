@@ -22,6 +22,7 @@ from host.lab.invitation import invitation
 from host.lab.keys import DRIVE, Keys
 from host.lab.lessons.marking import Marking
 from host.lab.lessons.texts import lessons
+from host.lab.observed import HISTORY
 from host.lab.page_end import Departed, Page
 from host.lab.poll import Poll
 from host.lab.presets import describe_presets, describe_primitives
@@ -44,6 +45,7 @@ class Session:
 
     Attributes:
         pages: The pages that have joined, by number.
+        rings: The records of all robots, then of all twins, by name; in the welcome's order.
         marking: Checks guided exercises.
         view_url: The page's address for who watches; empty before the server listens.
     """
@@ -51,6 +53,10 @@ class Session:
     def __init__(self, keys: Keys, stations: Iterable[Station]) -> None:
         self.pages: dict[int, Page] = {}
         self.stations = {station.name: station for station in stations}
+        self.rings = {name: one.ring for name, one in self.stations.items()}
+        for station in self.stations.values():
+            if station.twin is not None:
+                self.rings[station.twin_name] = station.twin.ring
         self.baton = Baton()
         self.view_url = ""
         self._poll = Poll(self.pages, self.baton)
@@ -244,14 +250,14 @@ class Session:
         self._counted = (-1, -1)  # the newcomer has to be told, too
 
     def _greet(self, page: Page) -> None:
-        for station in self.stations.values():
-            page.places[station.name] = station.history()
+        page.places = {name: ring.latest(HISTORY) for name, ring in self.rings.items()}
         page.send(
             {
                 "type": "welcome",
                 "page": page.number,
                 "role": page.role,
                 "robots": [station.description() for station in self.stations.values()],
+                "twins": [one.twin_description() for one in self.stations.values() if one.twin],
                 "presets": describe_presets(),
                 "primitives": describe_primitives(),
                 "lab": self._keys.lab,
@@ -351,6 +357,8 @@ class Session:
 
     def _station(self, message: Message) -> Station:
         name = requests.text_of(message, "robot")
+        if name in self.rings.keys() - self.stations.keys():
+            raise NotDone("a twin does what its robot is asked to", "choose the robot itself")
         if name not in self.stations:
             raise WrongUse(f"there is no robot '{quotable(name)}'", requests.RELOAD)
         return self.stations[name]

@@ -19,12 +19,15 @@ from host.lab import basin_question
 from host.lab.kicks import motor_known
 from host.lab.lessons.straight import STRAIGHT, start_straight
 from host.lab.observed import Observed
+from host.logs.tap import Event
+from robot.record import Record
 
 if TYPE_CHECKING:
     from host.client.robot import Robot
     from host.client.stop import Stopped
     from host.client.watching import Watcher
     from host.lab.forecasts import Forecasts, Question
+    from host.lab.live_twin import LiveTwin
     from host.lab.recording import Recording
     from host.lab.worker import Worker
 
@@ -44,6 +47,7 @@ class Station(Observed):
         rule: What happens when nobody drives it any more: STOP or CONTINUE.
         label: 'simulated' or 'real'.
         walls_m: How far apart the walls are (m); None if there are none.
+        twin: Its simulated twin; None for none.
 
     Attributes:
         recording: The log that is being written, or None.
@@ -53,17 +57,57 @@ class Station(Observed):
     """
 
     def __init__(
-        self, name: str, uri: str, rule: str, label: str, walls_m: float | None = None
+        self,
+        name: str,
+        uri: str,
+        rule: str,
+        label: str,
+        walls_m: float | None = None,
+        twin: LiveTwin | None = None,
     ) -> None:
         super().__init__(name, uri, label, walls_m)
         self.rule = rule
+        self.twin = twin
         self.forecasts: Forecasts | None = None
         self.basins: Worker | None = None
         self.recording: Recording | None = None
         self.logs: dict[str, Recording] = {}
 
+    @property
+    def twin_name(self) -> str:
+        """What people call its twin. No robot has this name."""
+        return f"twin of {self.name}"
+
+    def twin_description(self) -> dict[str, Any]:
+        """The twin's entry in the welcome; empty if there is none."""
+        if self.twin is None:
+            return {}
+        own = {"name": self.twin_name, "robot": self.name}
+        return own | self.twin.description(self._follower.params)
+
     def state(self) -> dict[str, Any]:
         return super().state() | {"recording": self.recording.name if self.recording else None}
+
+    # What the robot says goes to its twin, too, once it is on its way to the pages.
+
+    def take_records(self, records: list[Record]) -> None:
+        super().take_records(records)
+        if self.twin is None:
+            return
+        compared = self.twin.take_records(records, self.clock())
+        if compared is not None:
+            self._hear({"type": "twin", "robot": self.name, **compared})
+        self._wake()
+
+    def take_event(self, event: Event) -> None:
+        super().take_event(event)
+        if self.twin is not None:
+            self.twin.take_event(event)
+
+    def _meet(self, robot: Watcher) -> None:
+        super()._meet(robot)
+        if self.twin is not None:
+            self.twin.meet(self._hello, self._status["battery_v"])
 
     # What pages want.
 

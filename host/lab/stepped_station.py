@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone
@@ -13,6 +13,9 @@ from host.lab.stopper import LAB
 from robot.commands import execute
 from robot.loop import Loop
 from robot.wire import load
+
+if TYPE_CHECKING:
+    from host.lab.live_twin import LiveTwin
 
 
 class SteppedLink(Protocol):
@@ -31,15 +34,20 @@ class SteppedStation(Station):
         robot: The robot, or its address, as in sim://?seed=1.
         name: What people call it.
         rule: What happens when nobody drives it any more: STOP or CONTINUE.
+        twin: Its simulated twin; None for none.
     """
 
     def __init__(
-        self, robot: Robot | str = "sim://?seed=1", name: str = "sim", rule: str = STOP
+        self,
+        robot: Robot | str = "sim://?seed=1",
+        name: str = "sim",
+        rule: str = STOP,
+        twin: LiveTwin | None = None,
     ) -> None:
         self._lock = threading.RLock()
         self._robot = robot if isinstance(robot, Robot) else Robot.connect(robot)
         self._link = cast(SteppedLink, self._robot.link)
-        super().__init__(name, self._robot.link.uri, rule, "simulated")
+        super().__init__(name, self._robot.link.uri, rule, "simulated", twin=twin)
         self._meet(self._robot)
         self._robot.add_tap(self)
 

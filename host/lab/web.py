@@ -187,7 +187,7 @@ class Site:
             while True:
                 await news.wait()
                 news.clear()
-                for data in outgoing(page, self._session.stations):
+                for data in outgoing(page, self._session.rings):
                     if isinstance(data, str):
                         await socket.send_str(data)
                     else:

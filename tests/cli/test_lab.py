@@ -6,12 +6,14 @@ import socket
 import subprocess
 import sys
 import tempfile
+from argparse import Namespace
 from contextlib import ExitStack, contextmanager
 from urllib.request import Request, urlopen
 
 import pytest
 
 from host.client.robot import connect
+from host.commands._stations import robots_of
 from host.lab.desk_robot import DeskRobot, child_options
 from tests.fakes import eventful
 from tests.lab.browser import browse
@@ -120,14 +122,17 @@ def test_an_interrupt_lets_a_robot_go_on_that_may(desk, observer):
 
 
 def test_without_a_robot_it_simulates_one_between_walls_with_a_hand():
-    with lab("--seed", "3", "--set", "k=2.5", "--walls", "1.5") as (process, info):
+    options = ("--seed", "3", "--set", "k=2.5", "--walls", "1.5", "--twin")
+    with lab(*options) as (process, info):
 
         async def scenario(browser):
             tab = await browser.open(info["drive"])
             await tab.until(lambda tab: tab.records)
-            return (await tab.latest("welcome"))["robots"][0]
+            return await tab.latest("welcome")
 
-        robot = browse(scenario)
+        welcome = browse(scenario)
+        (robot,), (twin,) = welcome["robots"], welcome["twins"]
+        assert (twin["robot"], twin["motor"], twin["why"]) == ("simulated", "pybricks", "")
         assert (robot["name"], robot["label"]) == ("simulated", "simulated")
         assert (robot["walls"], robot["hand"]) == (1.5, True)
         assert robot["events"][-1]["params"]["k"] == 2.5
@@ -135,6 +140,14 @@ def test_without_a_robot_it_simulates_one_between_walls_with_a_hand():
             assert observer.hello["seed"] == 3
         process.send_signal(signal.SIGINT)
         assert process.wait(60.0) == 0, process.said()
+
+
+def test_simulated_robots_without_a_name_are_told_apart():
+    def names(brick):
+        return [one.name for one in robots_of(Namespace(brick=brick, seed=None))]
+
+    assert names("sim://?seed=1") == ["simulated"]
+    assert names("sim://?seed=1,tcp://a,sim://?seed=2") == ["simulated-1", "tcp://a", "simulated-2"]
 
 
 def test_a_robot_that_is_away_is_said_and_the_page_is_there():
@@ -166,7 +179,7 @@ def test_a_robot_that_is_away_is_said_and_the_page_is_there():
         (("--replay", "x.mcap", "--brick", "sim://"), 2, "`lab --replay` reaches none"),
         (("--replay", "x.mcap", "--walls", "2"), 2, "--walls is for robots"),
         (("--replay", "x.mcap", "--from", "2", "--to", "1"), 2, "--from 2 is later than --to 1"),
-        (("--twin",), 2, "--twin goes beside a log, and there is none"),
+        (("--twin", "none"), 2, "name one of these: --twin NAME"),
         (("--export", "x.txt", "x.mcap"), 2, "has another ending than .html"),
         (("--export", "x.mcap", "x.html"), 2, "kickctl lab --export x.html x.mcap"),
         (("--export", "x.html", "--force", "x.mcap"), 2, "needs FILE.html and LOG right behind it"),
