@@ -16,9 +16,10 @@ export class Hand {
      * @param {import("./lab.js").Lab} lab
      * @param {import("./screen.js").Screen} screen Knows the theme of the drawing.
      * @param {() => number} angle The angle of the wheel on the screen, rad.
+     * @param {() => ?import("./robot_view.js").RobotView} shown The robot whose wheel it is.
      */
-    constructor(canvas, wheel, lab, screen, angle) {
-        Object.assign(this, { canvas, wheel, lab, screen, angle });
+    constructor(canvas, wheel, lab, screen, angle, shown = () => lab.store.robot) {
+        Object.assign(this, { canvas, wheel, lab, screen, angle, shown });
         canvas.addEventListener("pointerdown", (event) => this.#grab(event));
         canvas.addEventListener("pointermove", (event) => this.#move(event));
         for (const end of ["pointerup", "pointercancel", "lostpointercapture", "blur", "keyup"]) {
@@ -31,8 +32,8 @@ export class Hand {
 
     /** @returns {boolean} Whether this page may pull the wheel now. */
     get allowed() {
-        const { robot, mayDrive } = this.lab.store;
-        return Boolean(robot?.info.hand && mayDrive && !robot.lost);
+        const robot = this.shown();
+        return Boolean(robot?.info.hand && this.lab.store.mayDrive && !robot.lost);
     }
 
     /** Say by the canvas whether it can be pulled. */
@@ -80,8 +81,8 @@ export class Hand {
     }
 
     #pull(target) {
-        const { robot, baton } = this.lab.store;
-        this.robot = robot.name;
+        const { baton } = this.lab.store;
+        this.robot = this.shown().name;
         // Only who drives may pull; a free baton comes at once.
         if (!baton.you) this.lab.request({ type: "ask" }).catch((no) => this.lab.tell(no));
         this.#target = target;

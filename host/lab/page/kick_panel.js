@@ -1,5 +1,6 @@
 /** Kicks: the guess, the three kicks of the paper, and what became of the last one. */
 
+import { besideTexts } from "./beside_texts.js";
 import { createDesigner } from "./designer.js";
 import { button, choices, element, options, setText, show } from "./dom.js";
 import { createExpectation } from "./expectation.js";
@@ -37,12 +38,15 @@ export function createKicks(root, lab) {
     const verdict = createVerdict(lab);
 
     const kick = async (fields) => {
-        const { robot } = lab.store;
+        const { targets } = lab.store;
         const guessed = guess.value;
-        const done = await lab.try("kick", { ...fields, wheel: wheel.value, guess: guessed });
-        if (!done) return;
-        if (guessed) robot.takeVerdict({ type: "guess", kick_id: done.kick_id, guess: guessed });
-        guess.choose(null);
+        const asked = { ...fields, wheel: wheel.value, guess: guessed };
+        const results = await lab.tryEach(targets, "kick", asked);
+        targets.forEach((robot, n) => {
+            const kick_id = results[n]?.kick_id;
+            if (guessed && kick_id) robot.takeVerdict({ type: "guess", kick_id, guess: guessed });
+        });
+        if (results.some(Boolean)) guess.choose(null);
     };
     const predict = async (fields) => {
         const kick = { ...fields, wheel: wheel.value };
@@ -63,11 +67,18 @@ export function createKicks(root, lab) {
         return big;
     });
     const resting = element("p", { className: "resting" }, texts.startFirst);
+    const all = element("input", { type: "checkbox", id: "kick-all" });
+    const everyone = element("label", { className: "check" }, all, besideTexts.kickAll);
+    all.onchange = () => {
+        lab.store.all = all.checked;
+        lab.changed = true;
+    };
     const controls = element("fieldset", { className: "bare" });
     const designer = createDesigner(lab, kick, predict);
     controls.append(
         guess,
         wheel,
+        everyone,
         element("div", { className: "three" }, resting, ...three),
         verdict.root,
         designer.root,
@@ -76,11 +87,13 @@ export function createKicks(root, lab) {
     root.append(controls);
 
     const update = () => {
-        const { robot, mayDrive, still } = lab.store;
-        const runs = robot?.state === "running";
+        const { robot, robots, targets, mayDrive, still } = lab.store;
+        const runs = targets.some(({ state }) => state === "running");
         for (const field of [...three, designer.commands]) field.disabled = !(mayDrive && runs);
         guess.disabled = wheel.disabled = !mayDrive;
-        expectation.renew(mayDrive && runs && guess.value ? wheel.value : null);
+        show(everyone, robots.length > 1);
+        const one = targets.length === 1;
+        expectation.renew(mayDrive && runs && one && guess.value ? wheel.value : null);
         USUAL.forEach(({ mode }, n) => {
             const [, length, what] = texts.theThree[mode];
             const expected = expectation.of(n);

@@ -1,5 +1,6 @@
 /** The lab as the panels see it: what is known, and how to ask for something. */
 
+import { besideTexts } from "./beside_texts.js";
 import { Store } from "./store.js";
 import { texts } from "./texts.js";
 
@@ -43,13 +44,13 @@ export class Lab {
     }
 
     /**
-     * Have the selected robot do something.
+     * Have a robot do something.
      * @param {string} command As MESSAGES.md says.
      * @param {object} given Its arguments.
+     * @param {string} [robot] Its name; that of the selected one if it is left out.
      * @returns {Promise<object>} The result. It fails with `{message, hint}`.
      */
-    do(command, given = {}) {
-        const robot = this.store.robot?.name;
+    do(command, given = {}, robot = this.store.robot?.name) {
         return this.request({ type: "do", robot, command, arguments: given });
     }
 
@@ -59,14 +60,29 @@ export class Lab {
      * @returns {Promise<object | null>} The result, null if it was refused.
      */
     async try(command, given = {}) {
-        try {
-            const result = await this.do(command, given);
-            if (this.store.note === this.#told) this.tell(null);
-            return result;
-        } catch (error) {
-            this.tell(error);
-            return null;
-        }
+        const [result] = await this.tryEach([this.store.robot ?? {}], command, given);
+        return result;
+    }
+
+    /**
+     * The same of several robots at once. If some refuse, their names are said, and the others do
+     * it all the same.
+     * @param {import("./robot_view.js").RobotView[]} robots
+     * @returns {Promise<(object | null)[]>} The result of each.
+     */
+    async tryEach(robots, command, given = {}) {
+        const refusals = [];
+        const ask = ({ name }) =>
+            this.do(command, given, name).catch(({ message, hint }) => {
+                const words = robots.length > 1 ? besideTexts.named(name, message) : message;
+                refusals.push({ message: words, hint });
+                return null;
+            });
+        const results = await Promise.all(robots.map(ask));
+        const joined = (part) => [...new Set(refusals.map((one) => one[part]))].join("; ");
+        if (refusals.length) this.tell({ message: joined("message"), hint: joined("hint") });
+        else if (this.store.note === this.#told) this.tell(null);
+        return results;
     }
 
     /** @param {{message: string, hint: string}} note What a person should know. */

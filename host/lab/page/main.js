@@ -3,6 +3,7 @@
 import { aloneTexts } from "./alone_texts.js";
 import { createBasins } from "./basins.js";
 import { createBaton } from "./baton.js";
+import { Beside } from "./beside.js";
 import { createClass } from "./class_panel.js";
 import { byId, fillTexts, setText } from "./dom.js";
 import { addDrawings, labelWheels } from "./drawings.js";
@@ -74,11 +75,13 @@ function update() {
         views.update(now / 1000);
         sound.update(views);
     }
+    beside.move(now / 1000);
     // What counts the time since something happened is renewed now and then, too.
     if (!lab.changed && now - told < 250) return;
     lab.changed = false;
     told = now;
     for (const panel of panels) panel();
+    beside.update();
     for (const hand of hands) hand.update();
     document.body.classList.toggle("lost", !link.up || Boolean(robot?.lost));
     if (robot) setText(byId("delay"), texts.delay(1000 * DELAY_TICKS * robot.tick_s));
@@ -93,6 +96,7 @@ const frames = new Frames(update, () => {
     if (lab.store.baton.you) lab.send({ type: "beat" });
 });
 addDrawings(frames, screen, () => views);
+const beside = new Beside(byId("beside"), byId("beside-switch"), { lab, stop, frames, screen });
 const kPlane = byId("k-plane");
 frames.add(kPlane, kTrace.draw, () => views && [kTrace.view(), screen.themeFor(kPlane, 24, 16)]);
 const { canvas: score, draw: drawScore, view: scoreView } = kicks.verdict;
@@ -104,6 +108,6 @@ for (const [canvas, draw, view, letters, lines] of lessons.drawings) {
     });
 }
 
-window.lab = { state: () => snapshot(lab, stop, frames, views, kTrace, sound) };
+window.lab = { state: () => snapshot({ lab, stop, frames, views, kTrace, sound, beside }) };
 if (source.note) lab.tell(source.note);
 source.open();

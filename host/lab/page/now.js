@@ -36,11 +36,11 @@ export function createNow(lab) {
         }
         buttons.forEach((tab, index) => {
             tab.setAttribute("aria-current", String(robots[index] === robot));
-            tab.dataset.state = shown(robots[index]);
+            tab.dataset.state = shownState(robots[index]);
         });
         show(root, Boolean(robot));
         if (!robot) return;
-        const is = shown(robot);
+        const is = shownState(robot);
         root.dataset.state = is;
         setText(state, texts.states[is]);
         let helps = is === "lost" ? null : robot.status.remedy;
@@ -57,11 +57,12 @@ export function createNow(lab) {
 }
 
 /** @returns {string} What a robot does, as a key of `texts.states`. */
-function shown(robot) {
+export function shownState(robot) {
     return robot.lost ? "lost" : robot.state;
 }
 
-function whyOf(status, page) {
+/** @returns {string} Why a robot does not run, in sentences; empty if it does. */
+export function whyOf(status, page) {
     if (status.state === "running") return "";
     return sentences(texts.reason(status, page), status.hint);
 }

@@ -1,5 +1,6 @@
 /** What a screen reader hears: kicks and outcomes, faults, and robots that come and go. */
 
+import { besideTexts } from "./beside_texts.js";
 import { byId } from "./dom.js";
 import { texts } from "./texts.js";
 
@@ -12,12 +13,17 @@ export function createSaid(lab) {
         region.textContent = words;
     };
 
+    const named = (name, words) =>
+        say(lab.store.robots.length > 1 ? besideTexts.named(name, words) : words);
+
     lab.listeners.push((message) => {
         const { type, robot } = message;
         if (type === "event" && message.event.event === "kick") {
-            say(texts.said.kick(message.event.kick));
+            named(robot, texts.said.kick(message.event.kick));
         } else if (type === "outcome") {
-            say(texts.said.outcome(message));
+            named(robot, texts.said.outcome(message));
+        } else if (type === "twin") {
+            say(besideTexts.compared(message, robot));
         } else if (type === "state") {
             const now = message.link === "lost" ? "lost" : message.state;
             const then = before.get(robot);

@@ -1,15 +1,12 @@
 /** What the page knows, as plain data for tests and for people at the console. */
 
 /**
- * @param {import("./lab.js").Lab} lab
- * @param {import("./stop.js").Stop} stop
- * @param {import("./frames.js").Frames} frames
- * @param {import("./views.js").Views | null} views
- * @param {{state: () => object[]}} kTrace
- * @param {import("./sound.js").Sound} sound
+ * @param {object} parts Of the page: its `lab`, `stop`, `frames`, `kTrace`, `sound` and `beside`,
+ *     and the `views` of the robot that is shown, or null.
  * @returns {object}
  */
-export function snapshot({ store }, stop, frames, views, kTrace, sound) {
+export function snapshot({ lab, stop, frames, views, kTrace, sound, beside }) {
+    const { store } = lab;
     const { link, role, page, baton, refused, note, score, poll, selected } = store;
     const robots = store.robots.map((robot) => ({
         name: robot.name,
@@ -22,8 +19,18 @@ export function snapshot({ store }, stop, frames, views, kTrace, sound) {
         kicks: robot.kicks,
         basins: robot.basins,
     }));
+    const twins = store.twins.map(({ name, robot, ring, compared, score, info }) => ({
+        name,
+        robot: robot.name,
+        record: ring.record(),
+        records: ring.length,
+        compared,
+        score,
+        why: info.why,
+    }));
     const drawing = { frames: frames.count, p95_ms: frames.p95(), shown_s: views?.time ?? null };
     const known = { link, role, page, baton, refused, note, score, poll, selected };
-    const shown = { robots, drawing, stop: stop.progress(), k_trace: kTrace.state() };
-    return structuredClone({ ...known, ...shown, sound: sound.state() });
+    const shown = { robots, twins, drawing, stop: stop.progress(), k_trace: kTrace.state() };
+    const parts = { sound: sound.state(), beside: beside.state() };
+    return structuredClone({ ...known, ...shown, ...parts });
 }

@@ -1,6 +1,6 @@
 /**
- * STOP: the button, Esc and Space. It asks nothing, stops all robots, and says in words what each
- * of them has confirmed.
+ * STOP: the buttons, Esc and Space. It asks nothing, stops all robots or the one whose button it
+ * is, and says in words what each of them has confirmed.
  */
 
 import { byId, setText } from "./dom.js";
@@ -11,18 +11,16 @@ const PATIENCE_MS = 1500;
 
 export class Stop {
     #asked = new Map();
-    #owed = false;
+    // Names of robots whose STOP waits for the link; null for all of them.
+    #owed = new Set();
     #byKeyboard = false;
     #pointed = true;
 
     /** @param {import("./lab.js").Lab} lab */
     constructor(lab) {
         this.lab = lab;
-        this.button = byId("stop");
         this.words = byId("stop-words");
-        // A pointer stops when it goes down, not when it comes up.
-        this.button.onpointerdown = () => this.press();
-        this.button.onclick = (event) => event.detail === 0 && this.press();
+        this.obey(byId("stop"));
         lab.listeners.push((message) => this.#hear(message));
         addEventListener("keydown", (event) => this.#key(event), true);
         addEventListener("pointerdown", () => this.#point(), true);
@@ -30,11 +28,27 @@ export class Stop {
         addEventListener("click", (event) => this.#release(event));
     }
 
-    /** Stop all robots, at once. */
-    press() {
-        const sent = this.lab.send({ type: "stop", robot: null });
-        this.#owed = !sent;
+    /**
+     * Stop by a button.
+     * @param {HTMLButtonElement} button
+     * @param {() => ?string} name Of the robot that it stops; null for all.
+     */
+    obey(button, name = () => null) {
+        // A pointer stops when it goes down, not when it comes up.
+        button.onpointerdown = () => this.press(name());
+        button.onclick = (event) => event.detail === 0 && this.press(name());
+    }
+
+    /**
+     * Stop at once.
+     * @param {?string} name The robot; null for all.
+     */
+    press(name = null) {
+        const sent = this.lab.send({ type: "stop", robot: name });
+        if (sent) this.#owed.delete(name);
+        else this.#owed.add(name);
         for (const robot of this.lab.store.robots) {
+            if (name !== null && robot.name !== name) continue;
             this.#asked.set(robot.name, { heard: robot.heard, at: performance.now() });
         }
         setTimeout(() => (this.lab.changed = true), PATIENCE_MS + 10);
@@ -54,12 +68,12 @@ export class Stop {
     /** Say what is known. */
     update() {
         const progress = Object.entries(this.progress());
-        const several = progress.length > 1;
+        const all = progress.length === this.lab.store.robots.length;
         const same = new Set(progress.map(([, stage]) => stage)).size === 1;
         const lines = progress.map(([name, stage]) =>
-            several && !same ? `${name}: ${texts.stop[stage]}` : texts.stop[stage],
+            all && same ? texts.stop[stage] : `${name}: ${texts.stop[stage]}`,
         );
-        if (this.#owed && !lines.length) lines.push(texts.stop.waiting);
+        if (this.#owed.size && !lines.length) lines.push(texts.stop.waiting);
         setText(this.words, [...new Set(lines)].join(" "));
         const worst = progress.some(([, stage]) => stage !== "confirmed" && stage !== "sent");
         this.words.classList.toggle("alarm", worst);
@@ -67,7 +81,7 @@ export class Stop {
 
     #progressOf(robot) {
         const asked = this.#asked.get(robot.name);
-        if (this.#owed) return "waiting";
+        if (this.#owed.has(robot.name) || this.#owed.has(null)) return "waiting";
         if (robot.heard > asked.heard && AT_REST.includes(robot.state) && !robot.lost) {
             asked.confirmed = true;
         }
@@ -79,7 +93,7 @@ export class Stop {
         if (message.type === "welcome") {
             // The counts of what is heard of the robots start at zero again.
             for (const asked of this.#asked.values()) asked.heard = 0;
-            if (this.#owed) this.press();
+            for (const name of this.#owed) this.press(name);
         }
         // What was said about a stop is over as soon as somebody starts the robot again.
         if (message.type === "event" && ["start", "resume"].includes(message.event.event)) {

@@ -1,6 +1,7 @@
 /** What the page knows, from the messages of the lab. Nothing here draws or sends. */
 
 import { RobotView } from "./robot_view.js";
+import { TwinView } from "./twin_view.js";
 
 export class Store {
     constructor() {
@@ -11,7 +12,11 @@ export class Store {
         this.welcome = null;
         /** @type {RobotView[]} */
         this.robots = [];
+        /** @type {TwinView[]} */
+        this.twins = [];
         this.selected = 0;
+        /** Whether kicks go to all robots. */
+        this.all = false;
         this.baton = { driver: null, you: false, asking: [], why: "" };
         this.pages = { driving: 0, watching: 0 };
         this.score = { guesses: 0, right: 0, predicted: 0, simulation: 0 };
@@ -26,9 +31,14 @@ export class Store {
         this.poll = { state: "none", score: { kicks: 0 } };
     }
 
-    /** @returns {RobotView | undefined} The robot that is shown large. */
+    /** @returns {RobotView | undefined} The robot that this page drives, and may show large. */
     get robot() {
         return this.robots[this.selected];
+    }
+
+    /** @returns {RobotView[]} The robots to which a kick goes. */
+    get targets() {
+        return this.all ? this.robots : this.robots.filter((robot) => robot === this.robot);
     }
 
     /** @returns {boolean} Whether this page could command; its first command takes the baton. */
@@ -45,6 +55,11 @@ export class Store {
     /** @param {string} name @returns {RobotView | undefined} */
     byName(name) {
         return this.robots.find((robot) => robot.name === name);
+    }
+
+    /** @param {string} name Of a robot. @returns {TwinView | undefined} Its twin. */
+    twinOf(name) {
+        return this.twins.find(({ robot }) => robot.name === name);
     }
 
     /**
@@ -67,6 +82,9 @@ export class Store {
         this.page = message.page;
         this.role = message.role;
         this.robots = message.robots.map((info) => new RobotView(info));
+        this.twins = (message.twins ?? []).map(
+            (info) => new TwinView(info, this.byName(info.robot)),
+        );
         this.selected = Math.max(
             0,
             this.robots.findIndex(({ name }) => name === shown),
@@ -79,7 +97,9 @@ export class Store {
     }
 
     _records({ data }) {
-        this.robots[new DataView(data).getUint8(1)]?.takeRecords(data, performance.now() / 1000);
+        const index = new DataView(data).getUint8(1);
+        const view = this.robots[index] ?? this.twins[index - this.robots.length];
+        view?.takeRecords(data, performance.now() / 1000);
     }
 
     _state(message) {
@@ -88,6 +108,11 @@ export class Store {
 
     _event({ robot, event }) {
         this.byName(robot)?.takeEvent(event);
+        this.twinOf(robot)?.takeEvent(event);
+    }
+
+    _twin(message) {
+        this.twinOf(message.robot)?.takeCompared(message);
     }
 
     _prediction(message) {

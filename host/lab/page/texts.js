@@ -7,7 +7,7 @@ const DONE = { reverses: "reversed", continues: "continued", stops: "stopped" };
 // The same of a wheel that rested before the kick.
 const VERBS_AT_REST = { reverses: "begin to roll", continues: "stay at rest" };
 const DONE_AT_REST = { reverses: "began to roll", continues: "stayed at rest" };
-const atRest = (before, side) => (before?.[side] === "stopped" ? DONE_AT_REST : DONE);
+export const atRest = (before, side) => (before?.[side] === "stopped" ? DONE_AT_REST : DONE);
 const likeliest = (shares) =>
     Object.entries(shares ?? {}).reduce(
         (best, entry) => (entry[1] > best[1] ? entry : best),

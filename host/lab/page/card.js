@@ -1,0 +1,137 @@
+/** One robot or twin among several: what it does, its wheels, its plane, and a STOP of its own. */
+
+import { besideTexts } from "./beside_texts.js";
+import { button, element, setText, show } from "./dom.js";
+import { labelWheels } from "./drawings.js";
+import { draw as drawPlane } from "./draw/plane.js";
+import { draw as drawWheel } from "./draw/wheel.js";
+import { onBasins } from "./ground.js";
+import { Hand } from "./hand.js";
+import { shownState, whyOf } from "./now.js";
+import { texts } from "./texts.js";
+import { fitted } from "./theme.js";
+import { Views } from "./views.js";
+
+const SIDES = ["left", "right"];
+
+export class Card {
+    #info = element("div", { className: "info" });
+    #title = element("h2");
+    #state = element("b", { className: "state" });
+    #kind = element("span", { className: "kind" });
+    #choose = button("", () => this.#select(), "choose");
+    #stop = button(texts.stopButton, () => {}, "stop");
+    #said = element("p", { className: "card-said" });
+    #note = element("p", { className: "card-note" });
+    #canvases = {};
+    #hands;
+    #select;
+    #views = null;
+
+    /**
+     * @param {object} page Its `lab`, `stop`, `frames` and `screen`.
+     * @param {(robot: import("./robot_view.js").RobotView) => void} select Has kicks go to a robot.
+     */
+    constructor({ lab, stop, frames, screen }, select) {
+        this.lab = lab;
+        /** @type {?import("./robot_view.js").RobotView} What it shows. */
+        this.robot = null;
+        this.root = element("section", { className: "card" });
+        this.#select = () => this.robot && !this.twin && select(this.robot);
+        stop.obey(this.#stop, () => this.robot?.name);
+        this.#info.append(this.#title, this.#state, this.#kind, this.#stop, this.#choose);
+        this.#info.append(this.#said, this.#note);
+        this.root.append(this.#info);
+        this.root.onclick = (event) => event.target.closest("button") || this.#select();
+        const drawings = [
+            ["left", drawWheel, ({ wheels }) => wheels.left, 21, 19],
+            ["right", drawWheel, ({ wheels }) => wheels.right, 21, 19],
+            ["plane", onBasins(drawPlane), ({ lag }) => lag, 17, 10],
+        ];
+        for (const [name, draw, view, letters, lines] of drawings) {
+            const canvas = element("canvas", { role: "img" });
+            this.#canvases[name] = canvas;
+            this.root.append(element("figure", { className: name }, canvas));
+            // Of several drawings each is small, on a projector too.
+            const theme = () => fitted(screen.theme, canvas, letters, lines);
+            frames.add(canvas, draw, () => this.#views && [view(this.#views), theme()]);
+        }
+        this.#canvases.plane.setAttribute("aria-label", texts.lagPlane);
+        this.#hands = SIDES.map((side) => {
+            const angle = () => this.#views.angle(side);
+            const shown = () => (this.twin ? null : this.robot);
+            return new Hand(this.#canvases[side], side, lab, screen, angle, shown);
+        });
+    }
+
+    /** @returns {boolean} Whether it shows a twin. */
+    get twin() {
+        return Boolean(this.robot?.robot);
+    }
+
+    /** @param {import("./robot_view.js").RobotView} robot What it shows from now on. */
+    take(robot) {
+        if (this.robot === robot) return;
+        this.robot = robot;
+        this.#views = new Views(robot);
+    }
+
+    /**
+     * Move all to what is on the screen now.
+     * @param {number} now_s The page's clock, s.
+     */
+    move(now_s) {
+        this.#views.linked = this.lab.store.link.up;
+        this.#views.update(now_s);
+    }
+
+    /** Say what is known. */
+    update() {
+        const { robot, twin } = this;
+        const { robots, targets, page } = this.lab.store;
+        const is = shownState(robot);
+        const here = targets.includes(robot);
+        this.#info.dataset.state = is;
+        this.root.classList.toggle("here", here && robots.length > 1);
+        this.root.classList.toggle("twin-card", twin);
+        this.root.classList.toggle("stale", robot.lost);
+        const name = twin ? besideTexts.twinOf(robot.robot.name) : robot.name;
+        this.root.setAttribute("aria-label", name);
+        setText(this.#title, name);
+        setText(this.#state, twin && robot.lost ? besideTexts.paused : texts.states[is]);
+        setText(this.#kind, twin ? besideTexts.twin : "");
+        show(this.#choose, !twin && robots.length > 1);
+        const words = here ? besideTexts.here : besideTexts.choose;
+        setText(this.#choose, words);
+        this.#choose.setAttribute("aria-pressed", String(here));
+        this.#choose.setAttribute("aria-label", besideTexts.chooseLabel(words, name));
+        show(this.#stop, !twin);
+        this.#stop.setAttribute("aria-label", besideTexts.stopLabel(name));
+        setText(this.#said, twin ? this.#twinSaid() : this.#robotSaid(is, page));
+        setText(this.#note, twin ? besideTexts.notPushed(robot.robot.name) : "");
+        for (const hand of this.#hands) hand.update();
+        labelWheels(this.#views, (side) => this.#canvases[side], SIDES);
+    }
+
+    #robotSaid(is, page) {
+        const { robot } = this;
+        if (is === "lost") return texts.lostFor(robot.lostFor());
+        if (is !== "running") return whyOf(robot.status, page);
+        const kick = robot.kicks.at(-1);
+        return kick ? besideTexts.lastKick(kick, kick.outcome) : texts.noKick;
+    }
+
+    #twinSaid() {
+        const { info, compared, score, robot } = this.robot;
+        if (info.why) return besideTexts.noTwin(info.why, info.hint);
+        const last = compared ? besideTexts.compared(compared, robot.name) : "";
+        return `${last} ${besideTexts.score(score)}`.trim();
+    }
+
+    /** @returns {object} What it shows, for tests. */
+    state() {
+        const { robot, twin } = this;
+        const { time = null, wheels, lag, stale } = this.#views ?? {};
+        return { name: robot.name, twin, time, wheels, traced: lag?.count ?? 0, stale };
+    }
+}
