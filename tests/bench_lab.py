@@ -28,6 +28,7 @@ from tests.bench_stop import clock_zero, first_tick_off
 TICK_S = 0.01
 KICKS, STOPS = 30, 20
 PAGES = 30
+BESIDE = 3
 WORK_S = 20.0
 HEAP_MINUTES = 10.0
 RUNNING = STATES.index("running")
@@ -68,14 +69,34 @@ def lab_page(minutes: float = HEAP_MINUTES) -> None:
                 _stops(page, watcher, log, " beside these and basins", _change_k)
         _work(process.pid, address["view"])
         _heap(page, minutes)
+        page.close()
+        _beside(browser, "three robots", BESIDE)
+        _beside(browser, "a robot and its twin", 1, "--twin")
         browser.close()
 
 
+def _beside(browser, what, robots, *options):
+    """Print how long the drawings of several robots or twins take, and a stop of them."""
+    with _lab(robots, *options) as (_, address, uri), connect(uri, observe=True) as watcher:
+        page = browser.new_page(viewport={"width": 1366, "height": 768})
+        page.goto(address["drive"])
+        page.wait_for_function(
+            "() => window.lab?.state().beside.cards.length"
+            " && lab.state().beside.cards.every((one) => one.traced > 100)"
+        )
+        page.evaluate(LISTEN)
+        _frames(page, f", {what} beside each other")
+        with watcher.recording() as log:
+            _stops(page, watcher, log, f" with {what}")
+        page.close()
+
+
 @contextmanager
-def _lab():
-    """A running `kickctl lab`: (its process, its addresses, its robot's address)."""
-    command = [sys.executable, "-m", "host", "--json", "lab", "--no-open", "--port", "0"]
-    command += ["--brick", f"sim://?seed=3&tick_s={TICK_S}"]
+def _lab(robots=1, *options):
+    """A running `kickctl lab`: (its process, its addresses, its first robot's address)."""
+    command = [sys.executable, "-m", "host", "--json", "lab", "--no-open", "--port", "0", *options]
+    bricks = [f"sim://?seed={seed}&tick_s={TICK_S}" for seed in range(3, 3 + robots)]
+    command += ["--brick", ",".join(bricks)]
     with (
         tempfile.TemporaryDirectory() as folder,
         subprocess.Popen(
@@ -94,15 +115,15 @@ def _lab():
             process.wait(10)
 
 
-def _frames(page):
+def _frames(page, what=""):
     page.evaluate("() => new Promise((done) => setTimeout(done, 3000))")
     before, since = page.evaluate("lab.state().drawing.frames"), time.perf_counter()
     page.evaluate("() => new Promise((done) => setTimeout(done, 5000))")
     drawing = page.evaluate("lab.state().drawing")
     rate = (drawing["frames"] - before) / (time.perf_counter() - since)
     _say(
-        f"lab page: {rate:.0f} frames a second, its own drawing takes {drawing['p95_ms']:.1f} ms"
-        " in 95 of 100 frames or less",
+        f"lab page{what}: {rate:.0f} frames a second, its own drawing takes"
+        f" {drawing['p95_ms']:.1f} ms in 95 of 100 frames or less",
         drawing["p95_ms"] <= 8.0,
         "at most 8 ms",
     )
