@@ -85,7 +85,7 @@ def test_a_kick_goes_to_the_chosen_robot_and_each_stop_to_its_own(show, pair):
     card(visitor, "anna").locator(".stop").click()
     visitor.until(f"{STATES} === 'stopped,running'")
     visitor.reads("#stop-words", "anna: Stopped.")
-    visitor.reads(".card:not(.here)", "This page stopped it.")
+    visitor.reads(".card:not(.here)", "Stopped. The robot confirms it.")
     assert visitor.state()["selected"] == 1
     page.click("#stop")
     visitor.until(f"{STATES} === 'stopped,stopped'")

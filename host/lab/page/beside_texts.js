@@ -27,6 +27,7 @@ export const besideTexts = {
     whose: (name) => `: ${name}`,
     all: "all robots",
     kickAll: "Kick all robots",
+    remedy: (words, name) => `${words}: ${name}`,
     named: (name, words) => `${name}: ${words}`,
 
     twinOf: (name) => `Twin of ${name}`,

@@ -33,7 +33,7 @@ export class Card {
      * @param {(robot: import("./robot_view.js").RobotView) => void} select Has kicks go to a robot.
      */
     constructor({ lab, stop, frames, screen }, select) {
-        this.lab = lab;
+        Object.assign(this, { lab, stop });
         /** @type {?import("./robot_view.js").RobotView} What it shows. */
         this.robot = null;
         this.root = element("section", { className: "card" });
@@ -107,7 +107,10 @@ export class Card {
         this.#choose.setAttribute("aria-label", besideTexts.chooseLabel(words, name));
         show(this.#stop, !twin);
         this.#stop.setAttribute("aria-label", besideTexts.stopLabel(name));
-        setText(this.#said, twin ? this.#twinSaid() : this.#robotSaid(is, page));
+        const stopping = twin ? null : this.stop.progress()[robot.name];
+        const said = twin ? this.#twinSaid() : this.#robotSaid(is, page);
+        setText(this.#said, texts.stop[stopping] ?? said);
+        this.#said.classList.toggle("alarm", stopping === "unconfirmed" || stopping === "waiting");
         setText(this.#note, twin ? besideTexts.notPushed(robot.robot.name) : "");
         for (const hand of this.#hands) hand.update();
         labelWheels(this.#views, (side) => this.#canvases[side], SIDES);

@@ -1,5 +1,6 @@
 /** The top of the page: which robot is shown, what it does, and the button that helps. */
 
+import { besideTexts } from "./beside_texts.js";
 import { button, byId, element, setText, show } from "./dom.js";
 import { texts } from "./texts.js";
 import { sentences } from "./words.js";
@@ -51,7 +52,8 @@ export function createNow(lab) {
         setText(reason, why);
         show(remedy, Boolean(helps));
         remedy.value = helps ?? "";
-        setText(remedy, texts.remedies[helps] ?? "");
+        const words = texts.remedies[helps] ?? "";
+        setText(remedy, robots.length > 1 ? besideTexts.remedy(words, robot.name) : words);
         remedy.disabled = !mayDrive;
     };
 }
