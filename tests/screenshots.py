@@ -14,6 +14,7 @@ from playwright.sync_api import sync_playwright
 
 from host.client.robot import connect
 from host.lab.forecasts import Forecasts
+from host.lab.live_twin import LiveTwin
 from host.lab.one_file import one_file
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
@@ -80,6 +81,7 @@ def main():
             take(browser, place, {"width": width, "height": height}, forecasts, basins)
         forecasts.close()
         basins.close()
+        take_twin(browser)
         take_replay(browser)
         take_notebook(browser)
         browser.close()
@@ -100,6 +102,26 @@ def take(browser, place, viewport, forecasts, basins):
             print(path.relative_to(ROOT), f"{path.stat().st_size / 1000:.0f} kB")
             if moment == "4-reversed":
                 shutil.copy(path, BEST / f"lab-{place}.png")
+        page.close()
+    station.close()
+
+
+def take_twin(browser):
+    """Take a picture of a robot and its twin after a kick."""
+    station = SteppedStation("sim://?seed=3", "anna", CONTINUE, LiveTwin())
+    station.step(5)
+    with Lab([station], port=0) as lab:
+        page = browser.new_page(viewport={"width": 1366, "height": 768})
+        page.goto(lab.drive_url)
+        page.click("#kick-phase")
+        page.wait_for_function("() => lab.state().robots[0].kicks.length")
+        for _ in range(60):
+            station.step(0.09)
+            page.wait_for_timeout(90)
+        page.wait_for_function("() => lab.state().twins[0].compared")
+        page.mouse.move(0, 0)
+        path = save(page.screenshot(), "twin")
+        shutil.copy(path, BEST / "lab-twin.png")
         page.close()
     station.close()
 

@@ -159,6 +159,21 @@ def test_after_a_gap_it_begins_where_the_robot_is(run):
     assert own(rows[records[119].tick]) != records[119]
 
 
+def test_it_begins_again_with_the_robots_program(run):
+    """The robot's clock and its ticks begin again, too."""
+    _, log = run
+    twin, records = LiveTwin(), log.records[:40]
+    twin.meet({}, None)
+    twin.take_records(records, 0.0)
+    first = rows_of(twin.ring)
+    twin.take_event({"event": "restart", "tick": 0})
+    twin.take_records(records, 2.0)
+    again = rows_of(twin.ring)[len(first) :]
+    assert [row["tick"] for row in again] == [row["tick"] for row in first]
+    assert again[-1]["left_phi_rad"] == pytest.approx(first[-1]["left_phi_rad"], abs=0.1)
+    assert first[-1]["left_phi_rad"] != records[-1].left_phi_rad
+
+
 def test_what_comes_all_at_once_is_passed_over(run):
     _, log = run
     twin = LiveTwin()
