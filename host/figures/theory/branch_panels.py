@@ -13,6 +13,8 @@ from host.figures.style import COLOURS, say_if_empty
 from host.theory.studies.branch_tables import LineRow, TurnedRow
 
 DASHED: Any = (0, (2.5, 1.2))
+# Those of turning wheels of each k, which can be told apart in grey, too.
+_WIDTHS = (1.2, 3.0)
 
 
 def draw_line(axes: Axes, line: list[LineRow]) -> None:
@@ -48,10 +50,16 @@ def draw_line(axes: Axes, line: list[LineRow]) -> None:
 
 def draw_turning(axes: Axes, turned: dict[float, list[TurnedRow]]) -> None:
     """x1 of a turned wheel: formula, numbers, and the wheel that rolls by itself."""
-    for colour, k in zip(COLOURS, sorted(turned), strict=False):
+    for colour, width, k in zip(COLOURS, _WIDTHS, sorted(turned), strict=False):
         own = sorted(turned[k], key=lambda row: row["phi"])
         angles = [degrees(row["phi"]) for row in own]
-        axes.plot(angles, [row["x1"] for row in own], color=colour, label=f"$k$ = {k:g}, formula")
+        axes.plot(
+            angles,
+            [row["x1"] for row in own],
+            color=colour,
+            linewidth=width,
+            label=f"$k$ = {k:g}, formula",
+        )
         dots = own[:: max(1, len(own) // 24)]
         axes.plot(
             [degrees(row["phi"]) for row in dots],

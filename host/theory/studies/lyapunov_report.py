@@ -36,7 +36,9 @@ LONG_S = 250.0
 # positive.
 SURE, VERY_SURE, CERTAIN = 1.96, 3.0, 5.0
 # Regular motions are the same if speeds (rad/s) and exponents (1/s) differ by less, or relatively.
-ALIKE = 0.02
+# The exponents are those of ALIKE_S (s) or more: of two that belong together, as those of a complex
+# pair of multipliers, the error falls as 1 / time.
+ALIKE, ALIKE_S = 0.02, 250.0
 # A period of the motion in the series, s.
 APART_S = 2.0
 
@@ -176,8 +178,10 @@ def _attractors(kind: Kind, rows: list[BlockRow]) -> Iterator[tuple[str, list[Bl
     for own in _by_wheel(rows):
         speeds = [abs(own[0]["omega_mean"]), own[0]["omega_std"]]
         place = np.array([*speeds, *np.mean([_exponents_of(row) for row in own], axis=0)])
+        shorter = max(1.0, ALIKE_S / own[0]["seconds"])
+        within = ALIKE * np.array([1.0] * len(speeds) + [shorter] * 4)
         for other, same in groups:
-            if kind == KINDS[CHAOS] or np.allclose(place, other, rtol=ALIKE, atol=ALIKE):
+            if kind == KINDS[CHAOS] or np.allclose(place, other, ALIKE, within):
                 same.extend(own)
                 break
         else:

@@ -288,6 +288,7 @@ def test_two_ways_to_roll_are_two_attractors_and_two_directions_are_one():
     exponents = {f"exponent_{n}": 1.0 - n for n in range(1, 5)}
     kinds = {"kind": "rolling", "kind_after": "rolling"}
     measured = {"batch": 0, "block": 0, "omega_std": 0.5, "along_flow": True, "by_pairs": 0.0}
+    measured["seconds"] = 250.0
     rows = [
         {**exponents, **kinds, **measured, "wheel": wheel, "omega_mean": mean}
         for wheel, mean in enumerate((5.0, -5.0, 4.0))
@@ -298,6 +299,26 @@ def test_two_ways_to_roll_are_two_attractors_and_two_directions_are_one():
         "rolling (2)": 1,
     }
     assert in_words(point) == "rolling or rolling (2); its start decides"
+
+
+@pytest.mark.parametrize(("seconds", "attractors"), [(50.0, 1), (250.0, 2)])
+def test_exponents_of_a_short_time_do_not_make_two_attractors_of_one(seconds, attractors):
+    """A complex pair of multipliers, whose exponents are equal in the long run."""
+    kinds = {"kind": "rolling", "kind_after": "rolling", "omega_mean": 5.0, "omega_std": 0.5}
+    measured = {"batch": 0, "block": 0, "along_flow": True, "by_pairs": 0.0, "seconds": seconds}
+    rows = [
+        {
+            **kinds,
+            **measured,
+            "wheel": wheel,
+            "exponent_1": 0.0,
+            "exponent_2": -0.8 + half,
+            "exponent_3": -0.8 - half,
+            "exponent_4": -16.0,
+        }
+        for wheel, half in enumerate((0.0, 0.05))
+    ]
+    assert len(spectrum(rows, Wheel())["attractors"]) == attractors
 
 
 def test_the_papers_point_is_judged(small):

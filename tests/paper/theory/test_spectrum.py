@@ -50,7 +50,7 @@ def test_the_exponent_along_the_flow_is_0_within_its_error():
 def point_of(k, tau_s, seconds):
     wheel = Wheel(k=k, tau=tau_s)
     found = pieces.spectrum_in_blocks(wheel, seconds, np.random.default_rng(1))
-    return spectrum([{"batch": 0, **row} for row in found], wheel)
+    return spectrum([{"batch": 0, "seconds": seconds, **row} for row in found], wheel)
 
 
 @pytest.fixture(scope="module")
