@@ -135,7 +135,7 @@ def _draw_lines(axes: Axes, panel: Panel, swept: list[Axis]) -> None:
     elif panel.unit == "%":
         axes.set(ylabel=panel.unit, ylim=(-5.0, 105.0))
     else:
-        _scale(axes, "y", panel.values)
+        _scale(axes, "y", panel.values, panel.errors)
         axes.set_ylabel(panel.unit)
 
 
@@ -168,9 +168,13 @@ def _draw_map(axes: Axes, panel: Panel, swept: list[Axis]) -> None:
         axes.figure.colorbar(image, ax=axes, label=panel.unit)
 
 
-def _scale(axes: Axes, which: str, values: NDArray[np.float64]) -> None:
+def _scale(
+    axes: Axes, which: str, values: NDArray[np.float64], errors: NDArray[np.float64] | float = 0.0
+) -> None:
+    """A logarithmic axis for what is positive for sure, and goes over a wide range."""
     known = values[~np.isnan(values)]
-    if len(known) and known.min() > 0.0 and known.max() > WIDE * known.min():
+    least = values - 2 * np.nan_to_num(errors)
+    if len(known) and np.nanmin(least) > 0.0 and known.max() > WIDE * known.min():
         axes.set(**{f"{which}scale": "log"})
     elif len(known) and known.max() - known.min() <= SAME * abs(known.max()):
         middle = float(known.mean())

@@ -78,6 +78,7 @@ def draw_scene(axes: Axes, data: mujoco.MjData, path: Array) -> None:
     half_m = 0.62 * max(1.0, float((high - low).max()))
     x, y = (np.linspace(one - half_m, one + half_m, _LINES) for one in middle)
     heights = ground_heights(data, x, y)
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), aspect="equal")
     if np.isfinite(heights).all() and np.ptp(heights) > _FLAT_M:
         _draw_heights(axes, x, y, heights)
     for wall in walls(data):
@@ -86,7 +87,6 @@ def draw_scene(axes: Axes, data: mujoco.MjData, path: Array) -> None:
         axes.plot(*ends.T, **_WALL, zorder=1)
     for corners in _boxes(data):
         axes.add_patch(Polygon(corners.tolist(), **_BOX, zorder=1))
-    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), aspect="equal")
     axes.locator_params(nbins=5)
     axes.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
 
@@ -101,7 +101,15 @@ def _draw_heights(axes: Axes, x: Array, y: Array, heights: Array) -> None:
         x, y, heights, levels=[foot_m, *levels], extend="max", cmap="Greys", alpha=0.35, zorder=0
     )
     lines = axes.contour(x, y, heights, levels=levels, colors="grey", linewidths=0.6, zorder=0)
-    axes.clabel(lines, fmt="%g m", fontsize=9, colors="dimgrey")
+    # Labels stand around the middle, each to another side: at an edge they would be cut.
+    contours = [np.concatenate(parts) for parts in lines.allsegs if any(map(len, parts))]
+    middle, aside = np.array([x.mean(), y.mean()]), np.array([np.ptp(x) / 4, 0.0])
+    places = []
+    for own in contours:
+        nearest = np.linalg.norm(own - (middle + aside), axis=1).argmin()
+        places.append(tuple(own[nearest].tolist()))
+        aside = np.array([-aside[1], aside[0]])
+    axes.clabel(lines, fmt="%g m", fontsize=9, colors="dimgrey", manual=places)
     style: Any = {"colors": "dimgrey", "linestyles": "--", "linewidths": 1.2, "zorder": 1}
     axes.contour(x, y, heights, levels=[foot_m], **style)
 

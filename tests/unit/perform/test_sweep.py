@@ -222,6 +222,18 @@ def test_the_figure_has_lines_over_one_constant_and_a_line_for_each_value_of_ano
         assert speed.get_ylabel() == "Hz"
 
 
+def test_what_is_0_but_for_its_error_is_not_spread_over_decades():
+    rows, found = findings([K])
+    own = [row for row in rows if row["quantity"] == "speed"]
+    scales = []
+    for error in (None, 1e-11):
+        exponents = [
+            {**row, "value": 1e-12 if row["k"] < 2 else 1.0, "error": error} for row in own
+        ]
+        scales.append(figure.draw(exponents, found).axes[0].get_yscale())
+    assert scales == ["log", "linear"]
+
+
 def test_the_figure_says_how_many_quantities_it_leaves_to_the_table():
     rows, found = findings([K])
     many = [{**row, "quantity": f"{row['quantity']} {n}"} for n in range(20) for row in rows]
