@@ -131,6 +131,6 @@ def _draw_speeds(axes: Axes, rows: list[Row]) -> None:
     axes.axhline(0, color="lightgrey", linewidth=1, zorder=0)
     axes.set(
         xlabel=r"length $\times$ (2 kicked $-$ 10)/10 (s)",
-        ylabel=r"mean $\omega$ when the kick ends (rad/s)",
+        ylabel="mean $\\omega$ when\nthe kick ends (rad/s)",
     )
     axes.legend(fontsize=11)

@@ -22,6 +22,8 @@ from host.runs.contract import Findings
 
 PANELS = ("wave", "speed", "amplitudes", "lags")
 _MARKS = "os^"
+# Of the joints, which can be told apart in grey, too.
+_LINES = ("-", "--", "-.", ":")
 
 
 def draw(rows: list[Row], findings: Findings) -> Figure:
@@ -52,7 +54,13 @@ def _draw_wave(axes: Axes, angles: list[JointAngleRow], train: TrainNumbers) -> 
     for joint in range(1, 1 + JOINTS):
         own = [row for row in angles if row["joint"] == joint]
         t_s = [row["t_s"] - own[0]["t_s"] for row in own]
-        axes.plot(t_s, [row["deg"] for row in own], color=COLOURS[joint - 1], label=f"{joint}")
+        axes.plot(
+            t_s,
+            [row["deg"] for row in own],
+            color=COLOURS[joint - 1],
+            linestyle=_LINES[joint - 1],
+            label=f"{joint}",
+        )
     hz = "" if train["hz"] is None else f", {train['hz']:.2f} Hz"
     theirs = AUTHORS[train["drag"]]["hz"]
     axes.set_title(f"drag {train['drag']:g} N s/rad{hz} (theirs {theirs:.2f} Hz)", fontsize=12)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.experiments.robot.starts import Numbers, Row
-from host.figures.style import COLOURS, SIZE, styled
+from host.figures.style import ABOVE, COLOURS, SIZE, styled
 from host.runs.contract import Findings
 from host.util.intervals import wilson
 from robot.kicks import WHEELS
@@ -21,7 +21,7 @@ _WAYS = {
     -1: ("backward", COLOURS[1], "//"),
     0: ("at rest", "grey", ".."),
 }
-_MARKERS = "os"
+_LINES = ("-", "--")
 _BINS_DEG = np.arange(-180, 181, 20)
 
 
@@ -70,11 +70,11 @@ def _draw_counts(axes: Axes, numbers: Numbers) -> None:
 def _draw_shares(axes: Axes, rows: list[Row]) -> None:
     """The share of forward among the wheels that moved, start after start."""
     longest = 1
-    for side, colour, marker in zip(WHEELS, COLOURS[2:], _MARKERS, strict=False):
+    for side, colour, line in zip(WHEELS, COLOURS[2:], _LINES, strict=False):
         forward = np.array([row["direction"] == 1 for row in rows if _moved(row, side)])
         longest = max(longest, len(forward))
         starts = np.arange(1, len(forward) + 1)
-        style: Any = {"color": colour, "marker": marker, "markersize": 3}
+        style: Any = {"color": colour, "linestyle": line, "marker": "o", "markersize": 3}
         axes.plot(starts, np.cumsum(forward) / starts, label=f"{side} wheel", **style)
     starts = np.arange(1, longest + 1)
     half = 1.96 * 0.5 / np.sqrt(starts)
@@ -89,7 +89,7 @@ def _draw_shares(axes: Axes, rows: list[Row]) -> None:
     axes.set_ylim(0, 1)
     axes.set_xlabel("starts of wheels that moved")
     axes.set_ylabel("share of forward")
-    axes.legend(fontsize=11, loc="upper right")
+    axes.legend(fontsize=10, ncols=3, **ABOVE)
 
 
 def _moved(row: Row, side: str) -> bool:
@@ -98,12 +98,14 @@ def _moved(row: Row, side: str) -> bool:
 
 def _draw_offsets(axes: Axes, rows: list[Row]) -> None:
     """How many wheels went each way, by where they stood."""
-    offsets = [
-        np.array([row["ahead_deg"] for row in rows if row["direction"] == way]) for way in _WAYS
-    ]
-    labels, colours, hatches = zip(*_WAYS.values(), strict=True)
+    found = {
+        way: np.array([row["ahead_deg"] for row in rows if row["direction"] == way])
+        for way in _WAYS
+    }
+    offsets = {way: own for way, own in found.items() if len(own)}
+    labels, colours, hatches = zip(*(_WAYS[way] for way in offsets), strict=True)
     style: Any = {"color": colours, "hatch": hatches, "label": labels, "edgecolor": "white"}
-    axes.hist(offsets, bins=_BINS_DEG.tolist(), stacked=True, rwidth=0.9, **style)
+    axes.hist(list(offsets.values()), bins=_BINS_DEG.tolist(), stacked=True, rwidth=0.9, **style)
     axes.axvline(0, color="black", linestyle=":")
     axes.set_xticks(range(-180, 181, 45))
     axes.set_xlabel("the wheel stood ahead of the angle that its potentials remember (°)")
