@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 from docs.site import ROOT
@@ -22,6 +23,8 @@ def build(folder: Path, notebooks: str) -> int:
 
     pages = folder / "pages"
     lay_out(pages)
+    if notebooks != "off":
+        _encrypt_kernels()
     # Sphinx would not warn of pages that it does not read again, and forget their index entries.
     return build_main(
         [
@@ -33,6 +36,16 @@ def build(folder: Path, notebooks: str) -> int:
     )
 
 
+def _encrypt_kernels() -> None:
+    """Have notebooks talk to their kernels in secret: without that each kernel warns."""
+    from jupyter_cache.executors import utils
+    from traitlets.config import Config
+
+    # MyST-NB has no setting for it.
+    secret = Config(KernelManager={"transport_encryption": "auto"})
+    utils.executenb = partial(utils.executenb, config=secret)
+
+
 def main() -> int:
     """Build the site as the command line says. Returns the exit status."""
     arguments = argparse.ArgumentParser(prog="python -m docs.site", description="Builds the site.")
@@ -42,7 +55,6 @@ def main() -> int:
     quick = arguments.parse_args().quick
     if not quick:
         print("Notebooks that have changed are run first: up to 5 minutes for all.", flush=True)
-        print("Warnings of IPKernelApp, about encryption within this computer, mean nothing here.")
     folder = ROOT / "build" / ("docs-quick" if quick else "docs")
     status = build(folder, "off" if quick else "cache")
     if not status:
