@@ -12,7 +12,7 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process, resource_tracker
 
 from host.errors import NotDone
 from host.runs.contract import Cell, Part, Parts, Setting
@@ -84,6 +84,8 @@ def beginning_processes() -> Iterator[None]:
 
     They inherit that SIGINT is blocked; `begin_process` then ignores it.
     """
+    # It unblocks SIGINT when it begins, which the first process would have it do below.
+    resource_tracker.ensure_running()
     with uninterrupted():
         before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:

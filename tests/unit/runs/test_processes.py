@@ -117,3 +117,21 @@ def test_a_process_hears_no_interrupt_from_its_first_step_on():
     found = dict(compute_in_processes(calls, [mask, tuple], []))
     assert signal.SIGINT in found[mask].rows[0]
     assert mask([]) == before
+
+
+def test_nor_does_the_first_one_of_a_program():
+    """With it Python's tracker of resources begins, which a test before may have begun here."""
+    script = (
+        "import signal\n"
+        "from concurrent.futures import ProcessPoolExecutor\n"
+        "from multiprocessing import get_context\n"
+        "from host.runs.processes import beginning_processes\n"
+        "with beginning_processes():\n"
+        "    pool = ProcessPoolExecutor(1, get_context('spawn'))\n"
+        "    mask = pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, [])\n"
+        "print(*mask.result())\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert str(int(signal.SIGINT)) in done.stdout.split()
