@@ -92,6 +92,33 @@ def test_a_kick_goes_to_the_chosen_robot_and_each_stop_to_its_own(show, pair):
     assert page.locator(".card .state").all_inner_texts() == ["Stopped", "Stopped"]
 
 
+def test_without_a_link_a_stop_of_one_waits_and_stops_no_other(show, pair):
+    keep = """
+        window.sockets = [];
+        window.WebSocket = class extends WebSocket {
+            constructor(url) {
+                super(url);
+                sockets.push(this);
+            }
+        };
+    """
+    # Between the loss and the next attempt to connect.
+    press = """
+        (button) => new Promise((done) => {
+            sockets.at(-1).close();
+            const press = () => {
+                if (lab.state().link.up) return setTimeout(press, 1);
+                done(button.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true })));
+            };
+            press();
+        })
+    """
+    visitor = show(*pair, script=keep)
+    card(visitor, "bert").locator(".stop").evaluate(press)
+    visitor.until(f"s.link.up && {STATES} === 'running,stopped' && s.stop.bert === 'confirmed'")
+    assert "anna" not in visitor.state()["stop"]
+
+
 def test_one_kick_goes_to_all_robots_and_who_refuses_is_named(show, pair):
     anna, bert = pair
     third = robot(3, "carl")
@@ -137,6 +164,8 @@ def test_one_is_shown_large_instead_and_what_is_hidden_is_not_drawn(show, pair):
     assert set(page.evaluate(frames)) == {"left", "right", "plane"}
     page.click("#beside-switch")
     visitor.until("!s.beside.shown")
+    page.click("#robots >> text=bert")
+    visitor.until("r.name === 'bert'")
     assert {"left-wheel", "strips"} <= set(page.evaluate(frames))
     assert "plane" not in page.evaluate(frames)
     visitor.come_back()
@@ -170,7 +199,7 @@ def test_the_keyboard_alone_chooses_kicks_and_stops(show, pair):
 
 
 def test_on_a_phone_they_stand_in_a_column(show, pair):
-    visitor = show(*pair, viewport={"width": 390, "height": 844})
+    visitor = show(*pair, viewport={"width": 390, "height": 844}, color_scheme="dark")
     page = visitor.page
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     anna, bert = (card(visitor, name).bounding_box() for name in ("anna", "bert"))
@@ -180,10 +209,9 @@ def test_on_a_phone_they_stand_in_a_column(show, pair):
     assert_no_findings(page)
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_twin_does_the_same_under_the_same_kick(show, scheme):
+def test_a_twin_does_the_same_under_the_same_kick(show):
     anna = robot(3, "anna", LiveTwin())
-    visitor = show(anna, viewport={"width": 1366, "height": 768}, color_scheme=scheme)
+    visitor = show(anna, viewport={"width": 1366, "height": 768})
     page = visitor.page
     assert out_of_sight(page) == []
     assert [one["twin"] for one in visitor.state()["beside"]["cards"]] == [False, True]

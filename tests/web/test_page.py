@@ -6,11 +6,7 @@ import pytest
 
 from host.client.robot import Robot
 from host.errors import LeaseLost
-from host.lab.server import Lab
-from host.lab.station import CONTINUE
-from host.lab.stepped_station import SteppedStation
 from tests.web.test_basins import Halves
-from tests.web.visitor import Visitor
 
 
 def turns(visitor):
@@ -335,22 +331,3 @@ def wait_for(visitor, condition):
     """Let the page go on until a condition on this side holds."""
     while not condition():
         visitor.page.evaluate("new Promise(requestAnimationFrame)")
-
-
-def test_several_robots_one_is_shown_and_stop_means_all(browser, station):
-    station.step(1)
-    other = SteppedStation("sim://?seed=2", "bert", CONTINUE)
-    other.step(1)
-    with Lab([station, other], port=0) as lab:
-        visitor = Visitor(browser, lab, lab.drive_url)
-        visitor.until("s.robots.length === 2 && s.robots.every((one) => one.records > 0)")
-        visitor.page.click("#robots >> text=bert")
-        visitor.until("r.name === 'bert'")
-        visitor.page.click("#kick-membrane")
-        visitor.until("r.kicks.length === 1 && s.robots[0].kicks.length === 0")
-        visitor.page.keyboard.press("Escape")
-        visitor.until("s.robots.every((one) => one.state === 'stopped')")
-        visitor.reads("#stop-words", "Stopped.")
-        visitor.context.close()
-        assert visitor.complaints == []
-    other.close()
