@@ -23,7 +23,7 @@ from tests.lint.sources import ROOT
         (("--unattended", "stop"), "robots that are driven", "--control"),
         (("--force",), "--force is for --layout", "leave it out"),
         (("--listen", "everybody"), "cannot be 'everybody'", ""),
-        (("--brick", "tcp://127.0.0.1:1", "--seed", "1"), "of sim:// only", "has the seed"),
+        (("--brick", "tcp://127.0.0.1:1", "--seed", "1"), "is only for the robot", "has the seed"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_words(kickctl, arguments, message, hint):
