@@ -35,6 +35,10 @@ def program(first: str) -> str:
     )
 
 
+# By nesting, the rules that the page has, too, hold within a widget only.
+STYLES = f".kickctl {{\n{page_text('parts.css')}}}\n{page_text('notebook.css')}"
+
+
 class RobotWidget(anywidget.AnyWidget):
     """A robot as it moves.
 
@@ -43,7 +47,7 @@ class RobotWidget(anywidget.AnyWidget):
     """
 
     _esm = program("notebook_robot.js")
-    _css = page_text("notebook.css")
+    _css = STYLES
 
     def __init__(self, robot: Watcher) -> None:
         super().__init__()
@@ -67,7 +71,7 @@ class LogWidget(anywidget.AnyWidget):
     """
 
     _esm = program("notebook_log.js")
-    _css = page_text("notebook.css")
+    _css = STYLES
     tape = traitlets.Dict().tag(sync=True)
 
     def __init__(self, tape: dict[str, Any]) -> None:
