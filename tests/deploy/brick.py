@@ -159,6 +159,34 @@ class Brick:
             )
         wait_until(self._answers)
 
+    def take_card(self, other):
+        """Have the brick hold what another one holds, as a copy of its card would."""
+        left_out = shutil.ignore_patterns(
+            "robot.pid", "robot.log*", "manager.pid", "notified", "systemctl.log"
+        )
+        for mine, theirs in ((self.home, other.home), (self.etc, other.etc)):
+            shutil.copytree(theirs, mine, symlinks=True, ignore=left_out, dirs_exist_ok=True)
+        # What names a place of the other brick.
+        for path in (
+            self.kickctl / "arguments",
+            self.etc / "systemd" / "system" / "kickctl.service",
+        ):
+            if path.exists():
+                text = path.read_text(encoding="utf-8")
+                path.write_text(text.replace(str(other.folder), str(self.folder)), encoding="utf-8")
+
+    def do(self, command):
+        """Run a command of the shell, as a login would."""
+        environment = {"HOME": str(self.home), "PATH": os.environ["PATH"]}
+        environment["SSH_ORIGINAL_COMMAND"] = command
+        subprocess.run([self.folder / "login"], env=environment, check=True)
+
+    def start_program(self):
+        """Start the robot's program as deploy.sh does, and wait until it is ready."""
+        program = "sh kickctl/current/robot/service/brick.sh run"
+        self.do(f"setsid {program} </dev/null >/dev/null 2>&1 &")
+        wait_until(lambda: "READY" in self.log())
+
     def _answers(self):
         assert self._sshd.poll() is None, (self.folder / "sshd.log").read_text(encoding="utf-8")
         with (
@@ -304,6 +332,30 @@ class Checkout:
             check=False,
         )
         return done.returncode, done.stdout, done.stderr
+
+
+def charged(folder):
+    """A brick without motors, whose battery is full."""
+    brick = Brick(folder)
+    battery = brick.sysfs / "power_supply" / "lego-ev3-battery"
+    write(battery / "voltage_now", "7900000\n")
+    write(battery / "technology", "Li-ion\n")
+    return brick
+
+
+@contextlib.contextmanager
+def deployed_once(brick, *arguments):
+    """A first deploy to a brick, which is on until the end of the block: the checkout."""
+    checkout = Checkout(brick.folder, brick)
+    brick.boot()
+    # Where a kickctl is on the path, deploy.sh has it keep the robot's name.
+    config = str(brick.folder / "config")
+    try:
+        status, output = checkout.deploy(*arguments, XDG_CONFIG_HOME=config)
+        assert status == 0, output
+        yield checkout
+    finally:
+        brick.shut_down()
 
 
 def wait_until(condition, seconds=30.0):

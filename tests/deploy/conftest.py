@@ -1,8 +1,10 @@
-"""A brick that was never deployed to, and a checkout to deploy from."""
+"""A brick that was never deployed to, one that was, and a checkout to deploy from."""
+
+import shutil
 
 import pytest
 
-from tests.deploy.brick import Brick, Checkout, write
+from tests.deploy.brick import Checkout, charged, deployed_once
 
 
 @pytest.fixture
@@ -11,10 +13,7 @@ def brick(tmp_path):
 
     The robot's program starts, says which cable is out, and can be talked to.
     """
-    brick = Brick(tmp_path)
-    battery = brick.sysfs / "power_supply" / "lego-ev3-battery"
-    write(battery / "voltage_now", "7900000\n")
-    write(battery / "technology", "Li-ion\n")
+    brick = charged(tmp_path)
     brick.boot()
     yield brick
     brick.shut_down()
@@ -25,10 +24,25 @@ def checkout(tmp_path, brick):
     return Checkout(tmp_path, brick)
 
 
+@pytest.fixture(scope="session")
+def card(tmp_path_factory):
+    """A brick that was deployed to once, and is off; and the checkout of its release."""
+    brick = charged(tmp_path_factory.mktemp("card"))
+    with deployed_once(brick) as checkout:
+        return brick, checkout
+
+
 @pytest.fixture
-def deployed(brick, checkout):
-    """A brick with a release that runs, and a checkout with another."""
-    status, output = checkout.deploy()
-    assert status == 0, output
-    checkout.change()
+def running(brick, checkout, card):
+    """A brick on which the checkout's release runs, as after a first deploy of it."""
+    brick.take_card(card[0])
+    shutil.copy2(card[1].token, checkout.token)
+    brick.start_program()
     return brick
+
+
+@pytest.fixture
+def deployed(running, checkout):
+    """A brick with a release that runs, and a checkout with another."""
+    checkout.change()
+    return running

@@ -20,9 +20,8 @@ pytestmark = needs_sshd
         ),
     ],
 )
-def test_a_release_that_is_not_well_is_rolled_back(brick, checkout, module, text, words):
-    checkout.deploy()
-    good = brick.release()
+def test_a_release_that_is_not_well_is_rolled_back(running, checkout, module, text, words):
+    good = running.release()
     # At its end, where the program begins to run, it is too late for a change.
     main = checkout.folder / "robot" / "__main__.py"
     begin = main.read_text(encoding="utf-8").partition('if __name__ == "__main__":')
@@ -38,7 +37,7 @@ def test_a_release_that_is_not_well_is_rolled_back(brick, checkout, module, text
     assert status == 1, output
     assert words in output
     assert f"{good} runs again" in output
-    assert (brick.runs(), brick.release()) == (good, good)
+    assert (running.runs(), running.release()) == (good, good)
     assert checkout.deploy("--status")[0] == 0
 
 
@@ -85,11 +84,10 @@ def test_arguments_that_kill_the_program_are_taken_back(deployed, checkout):
     assert "--sysfs" in (deployed.kickctl / "arguments").read_text(encoding="utf-8")
 
 
-def test_arguments_that_were_put_back_are_told(brick, checkout):
-    checkout.deploy()
+def test_arguments_that_were_put_back_are_told(running, checkout):
     status, output = checkout.deploy(KICK_ROBOT_ARGS="--left")
     assert status == 1
-    last = output[output.index(f"{brick.release()} runs again") :]
+    last = output[output.index(f"{running.release()} runs again") :]
     assert "arguments of before ('--sysfs" in last
     assert "instead of '--left'" in last
 
@@ -157,9 +155,8 @@ def test_a_broken_upload_is_noticed(deployed, checkout, tar):
     assert not [name for name in deployed.releases() if name.startswith(".")]
 
 
-def test_a_release_damaged_on_the_card_is_sent_again(brick, checkout):
-    checkout.deploy()
-    loop = brick.kickctl / "current" / "robot" / "loop.py"
+def test_a_release_damaged_on_the_card_is_sent_again(running, checkout):
+    loop = running.kickctl / "current" / "robot" / "loop.py"
     whole = loop.read_bytes()
     loop.write_bytes(whole[:1000])
     status, output = checkout.deploy()

@@ -29,9 +29,8 @@ def test_the_first_deploy_brings_a_whole_release_and_starts_it(brick, checkout):
     assert kept == {path.stem for path in (current / "robot").glob("*.py")} | {"fingerprint"}
 
 
-def test_host_and_brick_share_a_token_that_nobody_else_can_read(brick, checkout):
-    assert not checkout.token.exists()
-    checkout.deploy()
+def test_host_and_brick_share_a_token_that_nobody_else_can_read(card):
+    brick, checkout = card
     theirs = brick.home / ".config" / "kickctl" / "token"
     assert len(bytes.fromhex(checkout.token.read_text(encoding="ascii"))) == 32
     assert theirs.read_text(encoding="ascii") == checkout.token.read_text(encoding="ascii")
@@ -39,15 +38,14 @@ def test_host_and_brick_share_a_token_that_nobody_else_can_read(brick, checkout)
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
 
 
-def test_a_second_host_takes_over_the_bricks_token(brick, checkout):
-    checkout.deploy()
+def test_a_second_host_takes_over_the_bricks_token(running, checkout):
     first = checkout.token.rename(checkout.token.with_name("first"))
     status, output = checkout.deploy()
     assert status == 0, output
     assert checkout.token.read_text(encoding="ascii") == first.read_text(encoding="ascii")
     assert stat.S_IMODE(checkout.token.stat().st_mode) == 0o600
     assert (
-        checkout.kickctl("--brick", brick.uri(), "clear")[0] == 5
+        checkout.kickctl("--brick", running.uri(), "clear")[0] == 5
     )  # understood as a command: the motors are not there
 
 
@@ -60,33 +58,29 @@ def test_a_token_that_is_open_to_others_is_not_sent(brick, checkout):
     assert brick.runs() is None
 
 
-def test_a_second_deploy_of_the_same_keeps_the_release_and_starts_it_anew(brick, checkout):
-    status, output = checkout.deploy()
-    assert status == 0, output
-    first = brick.release(), brick.pid()
+def test_a_second_deploy_of_the_same_keeps_the_release_and_starts_it_anew(running, checkout):
+    first = running.release(), running.pid()
     status, output = checkout.deploy()
     assert status == 0, output
     assert "is there already" in output
-    assert brick.runs() == brick.release() == first[0]
-    assert brick.pid() != first[1]
-    assert brick.release("previous") is None
-    assert first[1] not in brick.processes()
+    assert running.runs() == running.release() == first[0]
+    assert running.pid() != first[1]
+    assert running.release("previous") is None
+    assert first[1] not in running.processes()
 
 
-def test_upgrade_then_rollback_and_forth_again(brick, checkout):
-    checkout.deploy()
-    old = brick.release()
-    checkout.change()
+def test_upgrade_then_rollback_and_forth_again(deployed, checkout):
+    old = deployed.release()
     status, output = checkout.deploy()
     assert status == 0, output
-    new = brick.release()
+    new = deployed.release()
     assert new != old
-    assert (brick.runs(), brick.release("previous")) == (new, old)
+    assert (deployed.runs(), deployed.release("previous")) == (new, old)
     status, output = checkout.deploy("--rollback")
     assert status == 0, output
-    assert (brick.runs(), brick.release(), brick.release("previous")) == (old, old, new)
+    assert (deployed.runs(), deployed.release(), deployed.release("previous")) == (old, old, new)
     assert checkout.deploy("--rollback")[0] == 0
-    assert (brick.runs(), brick.release("previous")) == (new, old)
+    assert (deployed.runs(), deployed.release("previous")) == (new, old)
 
 
 def test_whoever_may_stand_beside_the_robot_is_warned_of_its_wheels(brick, checkout):
@@ -135,13 +129,13 @@ def test_the_closing_words_can_be_typed_as_they_stand(brick, checkout, installed
     assert done.stdout == f"--brick {robot} start\n"
 
 
-def test_only_the_release_before_is_kept(brick, checkout):
+def test_only_the_release_before_is_kept(deployed, checkout):
     seen = []
-    for _ in range(3):
+    for _ in range(2):
         assert checkout.deploy()[0] == 0
-        seen.append(brick.release())
+        seen.append(deployed.release())
         checkout.change()
-    assert brick.releases() == sorted(seen[1:])
+    assert deployed.releases() == sorted(seen)
 
 
 def test_rollback_of_a_first_release_is_refused(brick, checkout):
@@ -166,10 +160,7 @@ def test_every_motor_is_reset_whatever_its_port(brick, checkout):
     assert [motor.read_text(encoding="ascii") for motor in motors] == ["reset\n", "reset\n"]
 
 
-def test_arguments_stay_until_others_are_given(brick, checkout):
-    checkout.deploy(KICK_ROBOT_ARGS=f"--sysfs {brick.sysfs} --host 127.0.0.1 --port 0 --seed 77")
-    seed = '"seed": 77'
-    assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
+def test_arguments_stay_until_others_are_given(running, checkout):
     environment = checkout.environment()
     checkout.environment = lambda **more: {
         **environment,
@@ -177,7 +168,8 @@ def test_arguments_stay_until_others_are_given(brick, checkout):
     }
     status, output = checkout.deploy()
     assert status == 0, output
-    assert seed in checkout.kickctl("--brick", brick.uri(), "status", "--json")[1]
+    said = checkout.kickctl("--brick", running.uri(), "status", "--json")[1]
+    assert '"seed": 5,' in said  # that of the deploy before
 
 
 def test_status_and_logs(brick, checkout):
