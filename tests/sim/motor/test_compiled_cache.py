@@ -1,10 +1,10 @@
 """Compiled functions on disk: the same bits, not another function's, no harm if it fails."""
 
+import json
 import os
 import pwd
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -36,11 +36,29 @@ def homeless(monkeypatch):
     monkeypatch.setattr(pwd, "getpwuid", unknown)
 
 
-def run(script):
-    """What another process prints."""
-    command = [sys.executable, "-c", "from tests.sim.motor.compiled_line import *; " + script]
+# Other processes: each has loaded numba, and compiled nothing.
+PROCESSES = """
+import json, os, sys
+from tests.sim.motor.compiled_line import *
+number = 0
+for together in json.loads(sys.argv[1]):
+    for script in together:
+        if os.fork() == 0:
+            print(number, eval(script), flush=True)
+            os._exit(0)
+        number += 1
+    for _ in together:
+        assert os.wait()[1] == 0
+"""
+
+
+def run(*scripts):
+    """What other processes find: one after the other, those of a list at the same time."""
+    groups = [one if isinstance(one, list) else [one] for one in scripts]
+    command = [sys.executable, "-c", PROCESSES, json.dumps(groups)]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
-    return done.stdout.strip()
+    lines = [line.partition(" ") for line in done.stdout.splitlines()]
+    return [found for _, _, found in sorted(lines, key=lambda line: int(line[0]))]
 
 
 def test_a_function_is_compiled_once(folder):
@@ -73,38 +91,23 @@ def test_a_change_after_definition_is_neither_kept_nor_missed():
 
 
 def test_functions_of_the_same_name_loaded_side_by_side_stay_apart():
-    for factor in (3.0, 4.0):
-        run(f"line({factor})(2.0)")
-    script = "f, g = line(4.0), line(3.0); print(f(2.0), g(2.0), counts(f), counts(g))"
-    assert run(script) == "8.0 6.0 (0, 1) (0, 1)"
-
-
-BATCH = """
-import hashlib
-from numba.core import event
-from sim_motor.batch import run
-with event.install_recorder("numba:compile") as recorder:
-    result = run(64, 60, seed=1, record=64)
-print(hashlib.sha256(result.records.tobytes()).hexdigest(), bool(recorder.buffer))
-"""
+    both = "[call(f, 2.0) for f in (line(4.0), line(3.0))]"
+    *_, found = run("call(line(3.0), 2.0)", "call(line(4.0), 2.0)", both)
+    assert found == "[(8.0, (0, 1)), (6.0, (0, 1))]"
 
 
 def test_a_warm_start_has_the_same_bits_and_compiles_nothing():
-    cold, compiled = run(BATCH).split()
-    assert compiled == "True"
-    assert run(BATCH).split() == [cold, "False"]
+    cold, warm = run("motors_run()", "motors_run()")
+    assert cold.endswith(" True")
+    assert warm == cold.replace("True", "False")
 
 
 def test_processes_that_compile_at_the_same_time_do_not_harm_each_other(folder):
-    values = ("2.0", "2")
-    script = "f = line(3); print(f({}), counts(f))"
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(run, [script.format(value) for value in 2 * values]))
-    assert [one.split()[0] for one in found] == 2 * ["6.0", "6"]
+    scripts = ["call(line(3), 2.0)", "call(line(3), 2)"]
+    *at_once, real, whole = run(2 * scripts, *scripts)
+    assert [found.partition(",")[0] for found in at_once] == 2 * ["(6.0", "(6"]
+    assert (real, whole) == ("(6.0, (0, 1))", "(6, (0, 1))")
     assert len(list(folder.iterdir())) == 4
-    assert [run(script.format(value)) for value in values] == [
-        f"{result} (0, 1)" for result in ("6.0", "6")
-    ]
 
 
 def test_a_damaged_file_is_compiled_again(folder):
