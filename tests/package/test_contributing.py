@@ -26,7 +26,7 @@ def copy(tmp_path_factory):
     """A copy of the sources with all three examples in it."""
     folder = tmp_path_factory.mktemp("copy")
     for name in ("robot", "host", "sim_motor", "kickctl"):
-        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / name, folder / name)
     for path, code in re.findall(
         r"`(host/\S+\.py)`:\n\n```python\n(.*?)```", EXPERIMENT, re.DOTALL
     ):

@@ -7,7 +7,6 @@ import sys
 
 import matplotlib.pyplot as plt
 import pytest
-from myst_nb.core.read import read_myst_markdown_notebook
 
 from tests.package.conftest import ROOT
 
@@ -20,6 +19,9 @@ every_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: pat
 
 def cells(path, kind):
     """The texts of a notebook's cells of a kind, 'code' or 'markdown'."""
+    # It takes a second, which those who test something else need not wait for.
+    from myst_nb.core.read import read_myst_markdown_notebook
+
     notebook = read_myst_markdown_notebook(path.read_text(encoding="utf-8"))
     return [cell.source for cell in notebook.cells if cell.cell_type == kind]
 
