@@ -44,7 +44,7 @@ def rolls_by_scipy(wheel):
     turned_back.terminal = passed.terminal = True
     turned_back.direction = -1
     run = solve_ivp(
-        lambda _, y: rates(*y, *wheel),
+        lambda _, y: rates(*y.tolist(), *wheel),
         (0.0, 60.0),
         start,
         "DOP853",
@@ -166,7 +166,7 @@ def test_scipy_brings_a_rotation_back_after_a_turn(rolling_8):
     x1, x2, omega, quarter_s, k = rolling_8
     wheel = PAPER._replace(k=k)
     end = solve_ivp(
-        lambda _, y: rates(*y, *wheel),
+        lambda _, y: rates(*y.tolist(), *wheel),
         (0.0, 4 * quarter_s),
         [x1, x2, 0.0, omega],
         "DOP853",

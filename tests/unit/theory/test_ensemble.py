@@ -79,7 +79,7 @@ def test_states_agree_with_scipy():
     found = advance(starts(len(WHEELS)), columns(WHEELS), seconds, 4.0)
     for i, wheel in enumerate(WHEELS):
         theirs = solve_ivp(
-            lambda _, y, wheel=wheel: rates(*y, *wheel),
+            lambda _, y, wheel=wheel: rates(*y.tolist(), *wheel),
             (0.0, seconds),
             START,
             "DOP853",
@@ -95,7 +95,7 @@ def test_averages_agree_with_scipy():
     for i, wheel in enumerate(WHEELS):
 
         def field(_, y, wheel=wheel):
-            return *rates(*y[:4], *wheel), y[3] ** 2
+            return *rates(*y[:4].tolist(), *wheel), y[3] ** 2
 
         theirs = solve_ivp(
             field, (0.0, 7.0), [*START, 0.0], "DOP853", [2.0, 7.0], rtol=3e-14, atol=1e-14
