@@ -107,8 +107,8 @@ def _libraries() -> Iterator[Finding]:
     from host.util import requirements
 
     try:
-        absent = requirements.missing()
-        extras = {extra: requirements.missing(extra) for extra in requirements.extras()}
+        extras = requirements.missing()
+        absent = extras.pop("")
     except PackageNotFoundError:
         yield Finding(
             "libraries",

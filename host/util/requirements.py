@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from importlib import metadata
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from packaging.requirements import Requirement
 
 PACKAGE = "kickctl"
 
@@ -16,38 +20,48 @@ def extras() -> list[str]:
     return metadata.metadata(PACKAGE).get_all("Provides-Extra") or []
 
 
-def missing(extra: str = "") -> list[str]:
+def missing() -> dict[str, list[str]]:
     """Requirements that are not installed, or not in a version that fits, in pip's notation.
 
-    Args:
-        extra: Look at the requirements of this extra; without it, at those that kickctl always has.
+    Returns:
+        Those that kickctl always has, by "", and what each extra adds to them, by its name.
 
     Raises:
         metadata.PackageNotFoundError: kickctl is not installed, but run from its folder.
         ImportError: The library that reads requirements is missing itself.
     """
-    always = set() if not extra else _unmet(PACKAGE, "", set())
-    return sorted(_unmet(PACKAGE, extra, set()) - always)
+    packages = _Packages()
+    always = _unmet(PACKAGE, "", packages, set())
+    more = {extra: _unmet(PACKAGE, extra, packages, set()) - always for extra in extras()}
+    return {name: sorted(unmet) for name, unmet in {"": always, **more}.items()}
 
 
-def _unmet(package: str, extra: str, seen: set[tuple[str, str]]) -> set[str]:
+class _Packages(dict[str, tuple[str, list["Requirement"]]]):
+    """Version and requirements of packages by name. Each is read once, which takes some ms."""
+
+    def __missing__(self, name: str) -> tuple[str, list[Requirement]]:
+        from packaging.requirements import Requirement
+
+        found = metadata.distribution(name)
+        self[name] = found.version, [Requirement(text) for text in found.requires or ()]
+        return self[name]
+
+
+def _unmet(package: str, extra: str, packages: _Packages, seen: set[tuple[str, str]]) -> set[str]:
     """The requirements of an installed package, and of what it requires, that are not met."""
-    from packaging.requirements import Requirement
-
     seen.add((package, extra))
     unmet = set()
-    for requirement in map(Requirement, metadata.requires(package) or ()):
+    for requirement in packages[package][1]:
         if requirement.marker and not requirement.marker.evaluate({"extra": extra}):
             continue
-        name = f"{requirement.name}{requirement.specifier}"
         try:
-            fits = requirement.specifier.contains(metadata.version(requirement.name), True)
+            fits = requirement.specifier.contains(packages[requirement.name][0], True)
         except metadata.PackageNotFoundError:
             fits = False
         if not fits:
-            unmet.add(name)
+            unmet.add(f"{requirement.name}{requirement.specifier}")
             continue
         for wanted in ("", *requirement.extras):
             if (requirement.name, wanted) not in seen:
-                unmet |= _unmet(requirement.name, wanted, seen)
+                unmet |= _unmet(requirement.name, wanted, packages, seen)
     return unmet

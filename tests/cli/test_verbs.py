@@ -300,17 +300,16 @@ def test_status_start_stop_clear(kickctl):
 def test_doctor_finds_the_simulated_robot_well(kickctl):
     status, out, _ = kickctl("doctor", "--json")
     assert (status, json.loads(out)["well"]) == (0, True)
+    (same,) = [one for one in json.loads(out)["findings"] if one["what"] == "sources"]
+    assert same["found"].startswith("robot and host run the same (")
+    assert not same["remedy"]
 
 
 @pytest.mark.parametrize(
     ("own", "words"),
     [("0123456789abcdef", "different ones"), ("", "does not say them")],
 )
-def test_doctor_says_whether_robot_and_host_run_the_same_sources(kickctl, monkeypatch, own, words):
-    findings = json.loads(kickctl("doctor", "--json")[1])["findings"]
-    (same,) = [finding for finding in findings if finding["what"] == "sources"]
-    assert same["found"].startswith("robot and host run the same (")
-    assert not same["remedy"]
+def test_doctor_says_where_robot_and_host_run_other_sources(kickctl, monkeypatch, own, words):
     monkeypatch.setattr("robot.session._SOURCES", own)
     status, out, _ = kickctl("doctor", "--json")
     (other,) = [one for one in json.loads(out)["findings"] if one["what"] == "sources"]
