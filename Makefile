@@ -17,8 +17,9 @@ PYODIDE := build/pyodide
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint docs page bench bench-arm \
-	bench-theory faults soak stress mutants lock screenshots clean
+.PHONY: help setup demo reproduce test test-py35 lint lint-tests lint-types lint-style \
+	lint-scripts docs page bench bench-arm bench-theory faults soak stress mutants lock \
+	screenshots clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' Makefile | expand -t 14
@@ -50,14 +51,24 @@ test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 o
 		-W error -q $$($(BIN)/python -m tests.lint.sources)
 
 lint: $(STAMP) ## check style, types, Python 3.5 in robot/ and the rules of the house
+	@$(MAKE) --no-print-directory --keep-going --jobs=$$(nproc) --output-sync \
+		lint-tests lint-types lint-style lint-scripts
+
+lint-style: $(STAMP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+lint-types: $(STAMP)
+	$(BIN)/mypy
+
+lint-scripts:
 	@command -v shellcheck >/dev/null || { echo "make lint: needs shellcheck. Install it (Debian,\
 	 Ubuntu: apt-get install shellcheck) and try again." >&2; exit 1; }
 	shellcheck --check-sourced --external-sources deploy.sh .ci/run
 	cat robot/service/change.sh robot/service/brick.sh | shellcheck -
+
+lint-tests: $(STAMP)
 	$(BIN)/python -m pytest tests/lint
 
 docs: $(STAMP) ## make the site of the docs, with all notebooks, in build/docs/html (5 minutes)
