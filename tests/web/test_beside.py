@@ -90,6 +90,10 @@ def test_a_kick_goes_to_the_chosen_robot_and_each_stop_to_its_own(show, pair):
     page.click("#stop")
     visitor.until(f"{STATES} === 'stopped,stopped'")
     assert page.locator(".card .state").all_inner_texts() == ["Stopped", "Stopped"]
+    bert._link.loop.fail("the left motor does not answer")
+    bert.step(0.3)
+    visitor.until(f"{STATES} === 'stopped,fault'")
+    visitor.reads(".card.here", "he left motor does not answer")
 
 
 def test_without_a_link_a_stop_of_one_waits_and_stops_no_other(show, pair):

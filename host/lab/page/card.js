@@ -108,8 +108,10 @@ export class Card {
         show(this.#stop, !twin);
         this.#stop.setAttribute("aria-label", besideTexts.stopLabel(name));
         const stopping = twin ? null : this.stop.progress()[robot.name];
+        // What came after a stop counts more, as a fault.
+        const over = stopping === "confirmed" && is !== "stopped";
         const said = twin ? this.#twinSaid() : this.#robotSaid(is, page);
-        setText(this.#said, texts.stop[stopping] ?? said);
+        setText(this.#said, (over ? null : texts.stop[stopping]) ?? said);
         this.#said.classList.toggle("alarm", stopping === "unconfirmed" || stopping === "waiting");
         setText(this.#note, twin ? besideTexts.notPushed(robot.robot.name) : "");
         for (const hand of this.#hands) hand.update();
