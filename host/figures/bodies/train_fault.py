@@ -46,7 +46,8 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         _draw_measure(speed, faults, places, [[fault["speed_m_s"]] for fault in faults])
         _draw_measure(turning, faults, places, [fault["turning_rad_s"] for fault in faults])
         order.set(ylabel="order", ylim=(0, 1.05))
-        speed.set(ylabel="speed (m/s)", ylim=(0, None))
+        fastest = max(fault["speed_m_s"] for fault in faults)
+        speed.set(ylabel="speed (m/s)", ylim=(0, 1.15 * fastest or None))
         turning.set_ylabel("turning (rad/s)")
         turning.axhline(0, color="lightgrey", zorder=0)
         turning.set_xticks(
