@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -294,8 +294,17 @@ def finish(options: argparse.Namespace, summary: dict[str, Any], result: dict[st
         raise NotDone(f"not written: {' and '.join(missing)}", "the same command tries it again")
     if exit_status(summary["claims"]):
         failed = [claim["id"] for claim in summary["claims"] if claim["holds"] is False]
-        raise NotDone(f"the measurement contradicts the paper: {', '.join(failed)} does not hold")
+        raise contradiction(failed)
     return 0
+
+
+def contradiction(failed: Sequence[str]) -> NotDone:
+    """What a command ends with if these claims, at least one, do not hold."""
+    return NotDone(
+        f"the measurement contradicts the paper: {', '.join(failed)}"
+        f" {'does' if len(failed) == 1 else 'do'} not hold",
+        f"`kickctl help {failed[0]}` says what it claims, docs/claims.md what we have found",
+    )
 
 
 def _single_values(numbers: Any) -> Iterator[tuple[str, Any]]:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from host.commands._options import add_take_over
 from host.commands._recording import conclude, recorded
-from host.commands._terminal import robot_of, say
-from host.errors import NotDone
+from host.commands._terminal import contradiction, robot_of, say
 
 if TYPE_CHECKING:
     from host.client.robot import Robot
@@ -107,6 +106,6 @@ def run(options: argparse.Namespace) -> int:
     sentences = [*(claim.sentence() for claim in report), describe(outcome)]
     conclude(options, result, "\n".join(sentences), recording, draw)
     if failed:
-        raise NotDone(f"the measurement contradicts the paper: {', '.join(failed)} does not hold")
+        raise contradiction(failed)
     require_done(outcome)
     return 0
