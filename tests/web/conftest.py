@@ -1,5 +1,6 @@
 """A real Chromium for the pages' tests."""
 
+import asyncio
 import shutil
 from contextlib import ExitStack
 from urllib.parse import urlsplit
@@ -17,10 +18,9 @@ CHROMIUM = shutil.which("chromium")
 SHELL = shutil.which("chromium-headless-shell") or CHROMIUM
 
 
-# For a module, not for the session: while playwright runs in a thread, asyncio.run fails there.
-@pytest.fixture(scope="module")
-def browser():
-    """A headless Chromium."""
+@pytest.fixture(scope="session")
+def chromium():
+    """A headless Chromium, and the loop in which playwright talks to it, which rests."""
     if SHELL is None:
         pytest.skip("there is no Chromium here; get one by `apt-get install chromium`")
     with sync_playwright() as playwright:
@@ -28,8 +28,23 @@ def browser():
         chromium = playwright.chromium.launch(
             executable_path=SHELL, args=["--no-sandbox", "--disable-gpu"]
         )
-        yield chromium
+        loop = asyncio.get_running_loop()
+        asyncio._set_running_loop(None)
+        yield chromium, loop
+        asyncio._set_running_loop(loop)
         chromium.close()
+
+
+# While the loop runs in this thread, as playwright wants it, asyncio.run fails here.
+@pytest.fixture(scope="module")
+def browser(chromium):
+    """A headless Chromium without pages."""
+    chromium, loop = chromium
+    asyncio._set_running_loop(loop)
+    yield chromium
+    for context in chromium.contexts:
+        context.close()
+    asyncio._set_running_loop(None)
 
 
 @pytest.fixture
