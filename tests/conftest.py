@@ -65,6 +65,7 @@ REAL_TIME = (
     "tests/foxglove/test_viewers.py",
     "tests/lab/test_forecasts.py",
     "tests/lab/test_live.py",
+    "tests/lab/test_owed_stops.py",
     "tests/lab/test_serial_station.py",
     "tests/lab/test_web.py",
     "tests/link/test_own_motors.py",

@@ -20,6 +20,7 @@ from host.errors import KickctlError, NoLink, NotDone
 from host.kicking.steps import play
 from host.lab.station import (
     HARMLESS,
+    STARTING,
     STOP,
     Answer,
     Station,
@@ -110,9 +111,9 @@ class LiveStation(Station):
         self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
         self._stops = 0
         self._stop_wanted = threading.Event()
-        # How many of the stops have ended.
-        self._ended = 0
+        self._ended = 0  # so many of the stops
         self._stop_ended = threading.Condition()
+        self._stop_owed = False  # by a page, to a robot that was lost
         self._closed = threading.Event()
         self._attended_until = 0.0
         self._release_wanted = False
@@ -171,6 +172,8 @@ class LiveStation(Station):
                 due = self.clock() + STATUS_S
                 self._status = robot.status()
                 self.trouble = ""
+                if self._stop_owed:
+                    self._stop_wanted.set()
 
     def _connect(self, *, observe: bool) -> Robot:
         token = None if observe else self._token
@@ -252,6 +255,8 @@ class LiveStation(Station):
             return self._record(robot, bool(job.arguments["on"]))
         self._require_no_stop(job)
         self._await_stop(job)
+        if job.command in STARTING:
+            self._stop_owed = False
         if job.command == "primitive":
             return self._bring(job)
         if job.command == "release":
@@ -311,7 +316,7 @@ class LiveStation(Station):
     # Stop.
 
     def stop(self) -> None:
-        """Have the stop's own thread stop the robot, and cancel the commands that wait."""
+        """Stop the robot in the stop's own thread, or once it is back; cancel what waits."""
         self._stops += 1
         self._stop_wanted.set()
 
@@ -331,9 +336,15 @@ class LiveStation(Station):
 
     def _stop_once(self) -> bool:
         """Stop the robot, and tell the pages what they have to know. Returns whether it obeyed."""
+        owed, asker = self._stop_owed, self._asker
+        if owed and asker is not None:
+            self.note_asker(asker)  # it is still the stop of that page
         try:
             words = stop_words(self.stop_now())
-            if words:
+            self._stop_owed = False
+            if owed:
+                self._say("it is back, and was stopped: STOP was pressed while it was lost", words)
+            elif words:
                 self._say(words)
             return True
         except KickctlError as error:
@@ -341,6 +352,8 @@ class LiveStation(Station):
         except Exception as error:  # the thread must outlive everything
             logging.getLogger("kickctl").exception("a stop of the lab failed")
             self._say(f"the stop failed: {error!r}", "switch the robot off")
+        # The lab's own is for a robot that it drives, which may be another's by then.
+        self._stop_owed = owed or asker not in (None, LAB)
         return False
 
     def stop_now(self) -> Stopped:

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 STOP, CONTINUE = "stop", "continue"
 # Commands that a stop or a primitive under way leaves alone.
 HARMLESS = ("identify", "record")
+# Who wants one of these no longer wants the stop before it.
+STARTING = ("start", "primitive")
 
 Answer = Callable[[dict[str, Any] | KickctlError], None]
 

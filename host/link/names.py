@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from host.link.discovery import Found
 
 ALL = "all"
-# An address behind a comma; a comma may also stand within one.
+# An address behind a comma; a comma may also stand within one of these.
 _ADDRESS = re.compile(r",\s*[a-z]+://")
+_WITH_COMMA = re.compile(r"serial://|[a-z]+://[^,]*\?")
 
 
 class Chosen(NamedTuple):
@@ -89,7 +90,8 @@ def named(text: str | None) -> str | None:
 def is_several(text: str) -> bool:
     """Whether a text means several robots: 'all', or names or addresses with commas between."""
     first, comma, rest = text.partition(",")
-    return text == ALL or bool(comma and ("://" not in first or _ADDRESS.search("," + rest)))
+    within = _WITH_COMMA.match(first)
+    return text == ALL or bool(comma and (not within or _ADDRESS.search("," + rest)))
 
 
 def several(text: str) -> list[Chosen]:

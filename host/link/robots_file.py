@@ -118,10 +118,11 @@ def add(name: str, address: str, token: str | None = None, hardware_id: str | No
             return (
                 text if hardware_id is None else _set(text, robots, name, hardware_id=hardware_id)
             )
-        if name in robots:
+        same = _sounding_alike(name, robots)
+        if same is not None:
             raise WrongUse(
-                f"there is a robot '{name}' already, at {robots[name]['address']}",
-                "choose another name, or type first: kickctl robots remove " + name,
+                f"there is a robot '{same}' already, at {robots[same]['address']}",
+                "choose another name, or type first: kickctl robots remove " + same,
             )
         robots[name] = entry | ({} if hardware_id is None else {"hardware_id": hardware_id})
         lines = [f"{key} = {_quoted(value)}" for key, value in robots[name].items()]
@@ -179,7 +180,13 @@ def free_name(text: str, taken: Iterable[str]) -> str:
     name = re.sub("[^A-Za-z0-9_-]", "-", text.removesuffix(".local"))[:LONGEST_NAME].strip("-_")
     name = name if is_name(name) else "robot"
     names = (name, *(f"{name[: LONGEST_NAME - 4]}-{number}" for number in range(2, 1000)))
-    return next(one for one in names if one not in taken)
+    taken = list(taken)
+    return next(one for one in names if _sounding_alike(one, taken) is None)
+
+
+def _sounding_alike(name: str, others: Iterable[str]) -> str | None:
+    """The name among others that people cannot tell from a name when they hear it."""
+    return next((one for one in others if one.lower() == name.lower()), None)
 
 
 def rename(old: str, new: str) -> None:
@@ -193,8 +200,9 @@ def rename(old: str, new: str) -> None:
 
     def change(text: str, robots: dict[str, dict[str, str]]) -> str:
         _need(old, robots)
-        if new in robots:
-            raise WrongUse(f"there is a robot '{new}' already", "choose another name")
+        same = _sounding_alike(new, (one for one in robots if one != old or old == new))
+        if same is not None:
+            raise WrongUse(f"there is a robot '{same}' already", "choose another name")
         if token is not None and after is not None and after.exists():
             raise WrongUse(f"{after} is there already", "delete it, or choose another name")
         renamed = {new if name == old else name: entry for name, entry in robots.items()}

@@ -9,7 +9,7 @@ from host.lab.forecasts import MOST_WAITING, Forecasts, Question
 from robot.params import Params
 from robot.record import Record
 from sim_motor.constants import load
-from tests.lab.test_live import Answers
+from tests.lab.live import Answers
 
 TICK_S = 0.03
 

@@ -4,7 +4,7 @@ import pytest
 
 from host.lab.live_station import LiveStation
 from host.lab.station import STOP
-from tests.lab.test_live import Answers, Beating, Ears, started
+from tests.lab.live import Answers, Beating, Ears, started
 from tests.link.machines import Cable, Machine
 from tests.live import wait_until
 from tests.rig import TOKEN

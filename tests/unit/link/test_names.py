@@ -18,6 +18,7 @@ from host.link.robots_file import (
     Known,
     add,
     file_path,
+    free_name,
     is_name,
     read,
     remove,
@@ -28,7 +29,9 @@ from host.link.robots_file import (
 
 NAMES = st.from_regex("[A-Za-z0-9][A-Za-z0-9_-]{0,39}", fullmatch=True).filter(is_name)
 TEXTS = st.text(st.characters(codec="utf-8"), min_size=1, max_size=20).filter(str.isprintable)
-ROBOTS = st.dictionaries(NAMES, st.tuples(TEXTS, st.none() | TEXTS.map("/t/{}".format)), max_size=4)
+ROBOTS = st.dictionaries(
+    NAMES, st.tuples(TEXTS, st.none() | TEXTS.map("/t/{}".format)), max_size=4
+).filter(lambda robots: len({name.lower() for name in robots}) == len(robots))
 
 BY_HAND = """\
 # my robots
@@ -75,7 +78,7 @@ def test_what_was_added_is_read_again_and_what_was_removed_is_gone(robots, extra
         name: (address, token and str(Path(token))) for name, (address, token) in robots.items()
     }
     assert list(found) == list(robots)
-    if extra not in robots and robots:
+    if robots and extra.lower() not in map(str.lower, robots):
         first = next(iter(robots))
         rename(first, extra)
         renamed = [extra if name == first else name for name in robots]
@@ -189,8 +192,11 @@ def test_what_no_robot_can_be_named(name, by_hand):
 def test_a_name_stands_for_one_robot(by_hand):
     with pytest.raises(WrongUse, match=r"already, at tcp://10\.0\.0\.1"):
         add("anna", "tcp://h")
+    with pytest.raises(WrongUse, match="'anna' already"):
+        add("Anna", "tcp://h")  # nobody hears the difference
+    assert free_name("BERT", ["anna", "bert"]) == "BERT-2"
     with pytest.raises(WrongUse, match="'bert' already"):
-        rename("anna", "bert")
+        rename("anna", "Bert")
     with pytest.raises(WrongUse, match="no robot 'ana'") as error:
         remove("ana")
     assert error.value.hint == "did you mean anna?"
@@ -270,7 +276,9 @@ def test_several_robots(by_hand):
             several(text)
     with pytest.raises(WrongUse, match="means several robots"):
         chosen("anna,bert")
-    assert not is_several("serial:///dev/a,b")
+    assert [one.name for one in several("sim://,anna")] == ["sim://", "anna"]
+    assert is_several("sim://,anna")
+    assert not is_several("sim://?motor=a,b")
     by_hand.unlink()
     with pytest.raises(WrongUse, match="no robot has a name"):
         several("all")
