@@ -14,8 +14,9 @@ from host.client.watching import Watcher
 from host.errors import KickctlError, printable
 from host.lab import derived
 from host.lab.kicks import Kicks, stall
+from host.lab.page_words import for_page, reason
 from host.lab.ring import Ring
-from host.lab.stopper import of_this_lab, plain
+from host.lab.stopper import of_this_lab
 from host.logs.tap import Event
 from robot import __version__, params
 from robot.record import STATES, STRUCT, Record
@@ -147,7 +148,7 @@ class Observed:
         }
         status = dict(self._status)
         if lost and self.trouble:
-            message["hint"] = self.trouble
+            message["hint"] = for_page(self.trouble)
         if not status:
             return message
         state = str(status["state"])
@@ -156,7 +157,7 @@ class Observed:
         values = dict(self._follower.params)
         return message | {
             "state": state,
-            "reason": plain(printable(str(status["reason"]))),
+            "reason": reason(printable(str(status["reason"]))),
             "stopped_by": self._stopped_by if state == "stopped" else None,
             "remedy": _REMEDIES.get(state),
             "hint": hint,
@@ -237,7 +238,8 @@ class Observed:
 
     def _say(self, message: str, hint: str = "") -> None:
         """Tell the pages what a person should know of this robot."""
-        self._hear({"type": "note", "message": f"{self.name}: {message}", "hint": hint})
+        words = {"message": for_page(message), "hint": for_page(hint)}
+        self._hear({"type": "note", "robot": self.name, **words})
 
     def _say_error(self, error: KickctlError) -> None:
         self._say(error.message, error.hint)

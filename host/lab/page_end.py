@@ -9,6 +9,7 @@ from typing import Any
 
 from host.errors import KickctlError
 from host.lab.allowance import Allowance
+from host.lab.page_words import for_page
 
 # How many messages a second a page may send, and how many at once. Stops are not counted.
 RATE_PER_S, BURST = 150.0, 300.0
@@ -85,7 +86,7 @@ class Page:
     def answer(self, request: int | None, result: dict[str, Any] | KickctlError) -> None:
         """Answer a request; an error without one becomes a note."""
         if isinstance(result, KickctlError):
-            words = {"message": result.message, "hint": result.hint}
+            words = {"message": for_page(result.message), "hint": for_page(result.hint)}
             if request is None:
                 self.send({"type": "note", **words})
             else:

@@ -41,8 +41,13 @@ export function createNotices(root, lab) {
         show(ask, !you && !waits);
         show(take, store.role === "drive" && driver !== null);
         show(note.root, Boolean(store.note));
-        if (store.note) setText(note.words, sentences(store.note.message, store.note.hint));
+        if (store.note) setText(note.words, noteWords(store.note));
     };
+}
+
+// A robot's name stays as it is, though it begins a sentence.
+function noteWords({ message, hint, robots }) {
+    return robots ? message : sentences(message, hint);
 }
 
 function notice(className) {

@@ -28,6 +28,7 @@ export function createSaid(lab) {
             const now = message.link === "lost" ? "lost" : message.state;
             const then = before.get(robot);
             before.set(robot, now);
+            if (lab.store.byName(robot)?.unseen) before.delete(robot);
             if (now === then || then === undefined) return;
             if (now === "lost") say(texts.said.lost(robot));
             else if (now === "fault") say(texts.said.fault(robot, message.reason));

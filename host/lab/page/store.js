@@ -2,6 +2,7 @@
 
 import { RobotView } from "./robot_view.js";
 import { TwinView } from "./twin_view.js";
+import { sentences } from "./words.js";
 
 export class Store {
     constructor() {
@@ -103,10 +104,14 @@ export class Store {
     }
 
     _state(message) {
-        this.byName(message.robot)?.takeState(message);
+        const robot = this.byName(message.robot);
+        const back = robot?.lost && message.link === "up";
+        robot?.takeState(message);
+        if (back) this.#settle(message.robot);
     }
 
     _event({ robot, event }) {
+        if (["start", "resume", "clear"].includes(event.event)) this.#settle(robot);
         this.byName(robot)?.takeEvent(event);
         this.twinOf(robot)?.takeEvent(event);
     }
@@ -134,7 +139,8 @@ export class Store {
         if (view) view.missed += records;
     }
 
-    _baton({ driver, you, asking, why }) {
+    _baton({ driver, you, asking, why: given }) {
+        const why = given.replace(new RegExp(`^page ${this.page}\\b`), "this page");
         if (this.baton.you && !you && why) this.note = { message: why, hint: "" };
         else if (why !== this.baton.why && this.note?.message === this.baton.why) this.note = null;
         this.baton = { driver, you, asking, why };
@@ -148,7 +154,14 @@ export class Store {
         this.pages = { driving, watching };
     }
 
-    _note({ message, hint }) {
-        this.note = { message, hint };
+    _note({ robot, message, hint }) {
+        this.note = robot
+            ? { message: `${robot}: ${sentences(message, hint)}`, hint: "", robots: [robot] }
+            : { message, hint };
+    }
+
+    // What went wrong with a robot is over once it is back, or runs.
+    #settle(name) {
+        if (this.note?.robots?.includes(name)) this.note = null;
     }
 }
