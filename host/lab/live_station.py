@@ -28,7 +28,7 @@ from host.lab.station import (
     stop_words,
     stopped_meanwhile,
 )
-from host.lab.stopper import LAB
+from host.lab.stopper import BACK, LAB
 from host.link.addresses import make_link
 from host.logs.tap import Event
 from host.util.own_name import own_name
@@ -343,7 +343,7 @@ class LiveStation(Station):
             words = stop_words(self.stop_now())
             self._stop_owed = False
             if owed:
-                self._say("it is back, and was stopped: STOP was pressed while it was lost", words)
+                self._say(BACK, words, lasts=True)
             elif words:
                 self._say(words)
             return True

@@ -236,10 +236,10 @@ class Observed:
         """Seconds on the clock of this station."""
         raise NotImplementedError
 
-    def _say(self, message: str, hint: str = "") -> None:
-        """Tell the pages what a person should know of this robot."""
+    def _say(self, message: str, hint: str = "", *, lasts: bool = False) -> None:
+        """Tell the pages what to know of this robot, and whether it `lasts` once it is back."""
         words = {"message": for_page(message), "hint": for_page(hint)}
-        self._hear({"type": "note", "robot": self.name, **words})
+        self._hear({"type": "note", "robot": self.name, **words, "lasts": lasts})
 
     def _say_error(self, error: KickctlError) -> None:
         self._say(error.message, error.hint)

@@ -9,6 +9,8 @@ from robot.words import person
 
 # In the place of a page's number: the lab itself.
 LAB = 0
+# What is said of a robot that was lost when it was to be stopped.
+BACK = "it is back, and was stopped: STOP was pressed while it was lost"
 _ENDING = " stopped it"
 # Other names stay quoted, since a host may call itself anything.
 _PLAIN_NAME = re.compile(rf"'([\w.-]+)@([\w.-]+)'{_ENDING}")

@@ -13,7 +13,8 @@ from tests.web.test_page import Forecast
 from tests.web.visitor import Visitor
 
 STATES = "s.robots.map((one) => one.state).join()"
-READY = "r && s.beside.shown && s.beside.cards.every((one) => one.traced > 50)"
+FILLED = "r && s.beside.cards.length"
+READY = f"{FILLED} && s.beside.cards.every((one) => one.traced > 50)"
 # The parts of the first screen that must be seen without scrolling.
 SEEN = ".card canvas, .card .stop:not([hidden]), #stop, #kick-phase"
 
@@ -81,7 +82,7 @@ def test_a_kick_goes_to_the_chosen_robot_and_each_stop_to_its_own(show, pair):
     bert.step(2.5)
     visitor.until("s.robots[1].kicks[0].outcome")
     assert visitor.state()["robots"][0]["kicks"] == []
-    visitor.reads(".card.here", "Last: Membrane kick, 1 tick. Both reversed.")
+    visitor.reads(".card.here", "Last: Membrane kick, 1 tick. Both wheels reversed.")
     card(visitor, "anna").locator(".stop").click()
     visitor.until(f"{STATES} === 'stopped,running'")
     visitor.reads("#stop-words", "anna: Stopped.")
@@ -89,11 +90,95 @@ def test_a_kick_goes_to_the_chosen_robot_and_each_stop_to_its_own(show, pair):
     assert visitor.state()["selected"] == 1
     page.click("#stop")
     visitor.until(f"{STATES} === 'stopped,stopped'")
-    assert page.locator(".card .state").all_inner_texts() == ["Stopped", "Stopped"]
+    for name in ("anna", "bert"):
+        visitor.reads(f".card[aria-label='{name}'] .state", "Stopped")
     bert._link.loop.fail("the left motor does not answer")
     bert.step(0.3)
     visitor.until(f"{STATES} === 'stopped,fault'")
     visitor.reads(".card.here", "he left motor does not answer")
+
+
+LONG = "tcp://192.168.178.123:847"
+# Where each STOP stands, and what of a card's words is cut or covered.
+STOPS = """
+    () => [...document.querySelectorAll(".stop:not([hidden])")]
+        .map((one) => { const { x, y } = one.getBoundingClientRect(); return [x, y]; })
+"""
+HIDDEN = """
+    () => [...document.querySelectorAll(".card .info > *")].filter((one) => {
+        const box = one.getBoundingClientRect();
+        const card = one.closest(".card").getBoundingClientRect();
+        const note = document.querySelector(".notice.note").getBoundingClientRect();
+        const over = note.height && note.top < box.bottom && note.left < box.right;
+        return box.height && (box.bottom > card.bottom || box.bottom > innerHeight || over);
+    }).map((one) => one.innerText)
+"""
+
+
+def test_no_stop_moves_and_no_word_of_a_card_is_cut(show):
+    written = """
+        window.written = new Set();
+        const write = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function (words, ...rest) {
+            if (this.canvas.closest(".plane")) written.add(words);
+            write.call(this, words, ...rest);
+        };
+    """
+    stations = [robot(n, f"{LONG}{n}", LiveTwin()) for n in (2, 3)]
+    visitor = show(*stations, script=written, viewport={"width": 1366, "height": 768})
+    page = visitor.page
+    assert {"\u22123", "0", "3"} <= set(page.evaluate("[...written]"))
+    places = page.evaluate(STOPS)
+    assert len(places) == 3
+    stations[0].stop()
+    stations[1].stop = lambda: None
+    visitor.until(f"{STATES} === 'stopped,running'")
+    page.click("#stop")
+    visitor.reads(".card:nth-child(3)", "NOT confirmed. Look at the wheels")
+    assert page.evaluate(STOPS) == places
+    assert page.evaluate(HIDDEN) == []
+    card(visitor, f"{LONG}2").locator(".remedy").click()
+    visitor.until(f"{STATES} === 'running,running'")
+    assert page.evaluate(STOPS) == places
+
+
+def test_a_lost_robot_is_spoken_of_in_the_past_and_its_notice_goes_when_it_is_back(show, pair):
+    anna, bert = pair
+    third = robot(3, "carl")
+    third.step, third._status = lambda seconds: None, {}
+    ready = f"{FILLED} && s.robots[0].records > 50 && s.robots[1].records > 50"
+    visitor = show(*pair, third, ready=ready)
+    page = visitor.page
+    visitor.reads(".card:nth-child(3)", "Not there yet\n")
+    visitor.reads(".card:nth-child(3)", "The page finds it when it comes.")
+    card(visitor, "bert").locator(".stop").click()
+    visitor.until("s.robots[1].state === 'stopped'")
+    card(visitor, "bert").locator(".choose").click()
+    clock = bert.clock
+    bert.clock = lambda: clock() + 30
+    visitor.reads(".card.here", "It had stopped when it was last heard, 3")
+    visitor.reads("#stop-words", "bert: It had stopped")
+    visitor.reads("#kicks", "bert is lost: no word from it for 3")
+    page.wait_for_selector("#kick-phase:disabled")
+    bert._say("the stop failed: [Errno 104] reset", "look into /root/secret/bert.token")
+    visitor.reads(".notice.note", "bert: The stop failed: reset. Look into bert.token.")
+    assert page.evaluate(HIDDEN) == []
+    page.check("#kick-all")
+    visitor.reads(".resting", "bert is lost: no word from it for 3")
+    page.wait_for_selector("#kick-phase:enabled")
+    anna.stop()
+    visitor.reads(".resting", "No robot runs. anna does not run. Press its Start. bert is lost")
+    bert.clock = clock
+    bert.step(0.1)
+    visitor.until("!s.robots[1].lost && !s.note")
+    bert.clock = lambda: clock() + 30
+    visitor.until("s.robots[1].lost")
+    bert._say("it is back, and was stopped", lasts=True)
+    visitor.until("s.note")
+    bert.clock = clock
+    bert.step(0.1)
+    visitor.until("!s.robots[1].lost")
+    assert visitor.state()["note"]
 
 
 def test_without_a_link_a_stop_of_one_waits_and_stops_no_other(show, pair):
@@ -138,7 +223,9 @@ def test_one_kick_goes_to_all_robots_and_who_refuses_is_named(show, pair):
     page.click("#kick-phase")
     visitor.until("s.robots[0].kicks.length && s.robots[1].kicks.length && s.note")
     assert anna.forecasts.asked == bert.forecasts.asked == ["phase"]  # not before the kick
-    assert visitor.state()["note"]["message"].startswith("carl: ")
+    refusal = "so it cannot be kicked. Press its Start."
+    visitor.reads(".notice.note", refusal)
+    assert page.locator(".notice.note").inner_text().startswith("carl: ")
     for station in pair:
         station.step(2.5)
     visitor.until("s.score.guesses === 2 && s.robots[2].kicks.length === 0")
@@ -227,8 +314,9 @@ def test_a_twin_does_the_same_under_the_same_kick(show):
     visitor.until("r.kicks.length === 1")
     anna.step(6.5)
     visitor.until("s.twins[0].compared && s.twins[0].record.tick === r.record.tick")
-    visitor.reads(".twin-card", "Last kick: both reversed. The same after 1 of 1 kick.")
-    visitor.reads("#said", "Last kick: both reversed.")
+    same = "Last kick, anna and its twin: both wheels reversed."
+    visitor.reads(".twin-card", f"{same} The same after 1 of 1 kick.")
+    visitor.reads("#said", same)
     assert_no_findings(page)
     page.keyboard.press("Escape")
     anna.step(0.5)
@@ -249,6 +337,6 @@ class Foreign(LiveTwin):
 
 
 def test_why_there_is_no_twin_stands_in_its_place(show):
-    visitor = show(robot(3, "anna", Foreign()), ready="s.beside.shown")
+    visitor = show(robot(3, "anna", Foreign()), ready=FILLED)
     visitor.reads(".twin-card", "does not know the motors of this robot, 'other'")
     visitor.reads(".twin-card", "--twin NAME")

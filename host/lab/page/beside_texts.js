@@ -7,14 +7,15 @@ const even = (deeds) => new Set(deeds.map(([, word]) => word)).size === 1;
 const deedsOf = ({ before, result }) =>
     Object.entries(result).map(([side, word]) => [side, atRest(before, side)[word]]);
 
-/** What came of a kick, in fewer words than in the panel of kicks. */
-const cameOf = (outcome) => {
-    if (outcome.why) return texts.noOutcome(outcome.why);
-    const deeds = deedsOf(outcome);
-    return deeds.length > 1 && even(deeds)
-        ? `both ${deeds[0][1]}`
-        : deeds.map(([side, word]) => `${texts.sides[side].toLowerCase()} ${word}`).join(", ");
+const didWhat = (deeds) => {
+    if (deeds.length > 1 && even(deeds)) return `both wheels ${deeds[0][1]}`;
+    const each = ([side, word]) => `${texts.sides[side].toLowerCase()} wheel ${word}`;
+    return deeds.map(each).join(", ");
 };
+
+/** What came of a kick, in fewer words than in the panel of kicks. */
+const cameOf = (outcome) =>
+    outcome.why ? texts.noOutcome(outcome.why) : didWhat(deedsOf(outcome));
 
 export const besideTexts = {
     title: "All robots",
@@ -22,6 +23,8 @@ export const besideTexts = {
     toggleLabel: "Side by side: all robots and their twins at once",
     here: "Kicks go here",
     choose: "Kick this one",
+    shown: "Chosen",
+    look: "Choose this one",
     chooseLabel: (words, name) => `${words}: ${name}`,
     stopLabel: (name) => `STOP ${name}`,
     whose: (name) => `: ${name}`,
@@ -37,12 +40,10 @@ export const besideTexts = {
     notPushed: (name) => `A hand or a wall that pushes ${name} does not push its twin.`,
     lastKick: (kick, outcome) => sentences(texts.lastKick(kick), outcome && cameOf(outcome)),
     compared: ({ robot_did, twin_did }, name) => {
-        const [own, other] = [deedsOf(robot_did), deedsOf(twin_did)];
-        const both = (did, does) => (did === does ? `both ${did}` : `${name} ${did}, twin ${does}`);
-        const pairs = own.map(([side, word], n) => [side, both(word, other[n][1])]);
-        return even(own) && even(other)
-            ? `Last kick: ${pairs[0][1]}.`
-            : sentences(...pairs.map(([side, words]) => `${texts.sides[side]}: ${words}`));
+        const [own, other] = [robot_did, twin_did].map((did) => didWhat(deedsOf(did)));
+        return own === other
+            ? `Last kick, ${name} and its twin: ${own}.`
+            : `Last kick, ${name}: ${own}; its twin: ${other}.`;
     },
     score: ({ same, kicks }) =>
         kicks ? `The same after ${same} of ${counted(kicks, "kick", "kicks")}.` : "",

@@ -7,7 +7,7 @@ import { draw as drawPlane } from "./draw/plane.js";
 import { draw as drawWheel } from "./draw/wheel.js";
 import { onBasins } from "./ground.js";
 import { Hand } from "./hand.js";
-import { shownState, whyOf } from "./now.js";
+import { help, lostWords, remedyOf, shownState, stateWord, whyOf } from "./now.js";
 import { texts } from "./texts.js";
 import { fitted } from "./theme.js";
 import { Views } from "./views.js";
@@ -20,9 +20,11 @@ export class Card {
     #state = element("b", { className: "state" });
     #kind = element("span", { className: "kind" });
     #choose = button("", () => this.#select(), "choose");
+    #remedy = button("", () => help(this.lab, this.robot), "remedy");
     #stop = button(texts.stopButton, () => {}, "stop");
     #said = element("p", { className: "card-said" });
     #note = element("p", { className: "card-note" });
+    #is;
     #canvases = {};
     #hands;
     #select;
@@ -39,8 +41,10 @@ export class Card {
         this.root = element("section", { className: "card" });
         this.#select = () => this.robot && !this.twin && select(this.robot);
         stop.obey(this.#stop, () => this.robot?.name);
-        this.#info.append(this.#title, this.#state, this.#kind, this.#stop, this.#choose);
-        this.#info.append(this.#said, this.#note);
+        const is = element("div", { className: "is" }, this.#state, this.#kind);
+        const what = element("div", { className: "do" }, this.#choose, this.#remedy);
+        this.#info.append(this.#title, is, this.#stop, what, this.#said, this.#note);
+        this.#is = is;
         this.root.append(this.#info);
         this.root.onclick = (event) => event.target.closest("button") || this.#select();
         const drawings = [
@@ -88,23 +92,30 @@ export class Card {
     /** Say what is known. */
     update() {
         const { robot, twin } = this;
-        const { robots, targets, page } = this.lab.store;
+        const { robots, targets, page, canDrive, mayDrive } = this.lab.store;
         const is = shownState(robot);
         const here = targets.includes(robot);
-        this.#info.dataset.state = is;
+        this.#is.dataset.state = is;
         this.root.classList.toggle("here", here && robots.length > 1);
         this.root.classList.toggle("twin-card", twin);
         this.root.classList.toggle("stale", robot.lost);
         const name = twin ? besideTexts.twinOf(robot.robot.name) : robot.name;
         this.root.setAttribute("aria-label", name);
         setText(this.#title, name);
-        setText(this.#state, twin && robot.lost ? besideTexts.paused : texts.states[is]);
+        setText(this.#state, twin && robot.lost ? besideTexts.paused : stateWord(robot));
         setText(this.#kind, twin ? besideTexts.twin : "");
         show(this.#choose, !twin && robots.length > 1);
-        const words = here ? besideTexts.here : besideTexts.choose;
+        const { here: drives, choose, shown, look } = besideTexts;
+        const words = canDrive ? (here ? drives : choose) : here ? shown : look;
         setText(this.#choose, words);
         this.#choose.setAttribute("aria-pressed", String(here));
         this.#choose.setAttribute("aria-label", besideTexts.chooseLabel(words, name));
+        const helps = twin || robots.length === 1 ? null : remedyOf(robot, this.lab.store);
+        show(this.#remedy, Boolean(helps));
+        setText(this.#remedy, texts.remedies[helps] ?? "");
+        const remedyLabel = besideTexts.remedy(texts.remedies[helps], name);
+        this.#remedy.setAttribute("aria-label", remedyLabel);
+        this.#remedy.disabled = !mayDrive;
         show(this.#stop, !twin);
         this.#stop.setAttribute("aria-label", besideTexts.stopLabel(name));
         const stopping = twin ? null : this.stop.progress()[robot.name];
@@ -120,7 +131,7 @@ export class Card {
 
     #robotSaid(is, page) {
         const { robot } = this;
-        if (is === "lost") return texts.lostFor(robot.lostFor());
+        if (is === "lost") return lostWords(robot);
         if (is !== "running") return whyOf(robot.status, page);
         const kick = robot.kicks.at(-1);
         return kick ? besideTexts.lastKick(kick, kick.outcome) : texts.noKick;

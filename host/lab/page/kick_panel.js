@@ -1,5 +1,6 @@
 /** Kicks: the guess, the three kicks of the paper, and what became of the last one. */
 
+import { absentTexts } from "./absent_texts.js";
 import { besideTexts } from "./beside_texts.js";
 import { createDesigner } from "./designer.js";
 import { button, choices, element, options, setText, show } from "./dom.js";
@@ -66,7 +67,7 @@ export function createKicks(root, lab) {
         big.append(element("b", {}, name), element("span"), element("small"));
         return big;
     });
-    const resting = element("p", { className: "resting" }, texts.startFirst);
+    const resting = element("p", { className: "resting" });
     const all = element("input", { type: "checkbox", id: "kick-all" });
     const everyone = element("label", { className: "check" }, all, besideTexts.kickAll);
     all.onchange = () => {
@@ -88,7 +89,8 @@ export function createKicks(root, lab) {
 
     const update = () => {
         const { robot, robots, targets, mayDrive, still } = lab.store;
-        const runs = targets.some(({ state }) => state === "running");
+        const absent = targets.filter(({ state, lost }) => lost || state !== "running");
+        const runs = absent.length < targets.length;
         for (const field of [...three, designer.commands]) field.disabled = !(mayDrive && runs);
         guess.disabled = wheel.disabled = !mayDrive;
         show(everyone, robots.length > 1);
@@ -101,11 +103,21 @@ export function createKicks(root, lab) {
             setText(beside, expected ? texts.expected(expected, wheel.value) : length);
             setText(below, expected ? texts.asExpected : what);
         });
-        show(resting, Boolean(robot) && mayDrive && !runs && !still);
+        show(resting, mayDrive && absent.length > 0 && !still);
+        // Then a projector shows the kicks all the same.
+        resting.classList.toggle("some", runs);
+        setText(resting, whyNot(absent, robots.length, targets.length));
         if (robot) {
             designer.update(robot);
             verdict.update(robot);
         }
     };
     return { update, verdict, usual: USUAL, wheel: () => wheel.value };
+}
+
+/** Why robots cannot be kicked, in sentences. */
+function whyNot(absent, robots, targets) {
+    if (robots === 1) return absent.map(absentTexts.notKickedAlone).join("");
+    const none = targets > 1 && absent.length === targets ? [absentTexts.noneRuns] : [];
+    return [...none, ...absent.map(absentTexts.notKicked)].join(" ");
 }

@@ -1,8 +1,10 @@
 /** The lab as the panels see it: what is known, and how to ask for something. */
 
+import { absentTexts } from "./absent_texts.js";
 import { besideTexts } from "./beside_texts.js";
 import { Store } from "./store.js";
 import { texts } from "./texts.js";
+import { sentences } from "./words.js";
 
 export class Lab {
     #waiting = new Map();
@@ -72,15 +74,14 @@ export class Lab {
      */
     async tryEach(robots, command, given = {}) {
         const refusals = [];
-        const ask = ({ name }) =>
+        const ask = ({ name, status }) =>
             this.do(command, given, name).catch(({ message, hint }) => {
-                const words = robots.length > 1 ? besideTexts.named(name, message) : message;
-                refusals.push({ message: words, hint });
+                const press = hint?.includes("kickctl ") && absentTexts.press[status?.remedy];
+                refusals.push({ robot: name, message, hint: press || hint });
                 return null;
             });
         const results = await Promise.all(robots.map(ask));
-        const joined = (part) => [...new Set(refusals.map((one) => one[part]))].join("; ");
-        if (refusals.length) this.tell({ message: joined("message"), hint: joined("hint") });
+        if (refusals.length) this.tell(noteOf(refusals, this.store.robots.length > 1));
         else if (this.store.note === this.#told) this.tell(null);
         return results;
     }
@@ -110,4 +111,13 @@ export class Lab {
         for (const { reject } of this.#waiting.values()) reject(texts.answerLost);
         this.#waiting.clear();
     }
+}
+
+/** What several robots have refused, a line for each. */
+function noteOf(refusals, named) {
+    const lines = refusals.map(({ robot, message, hint }) => {
+        const words = sentences(message, hint);
+        return named ? besideTexts.named(robot, words) : words;
+    });
+    return { message: lines.join("\n"), hint: "", robots: refusals.map(({ robot }) => robot) };
 }

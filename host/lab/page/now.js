@@ -1,5 +1,6 @@
 /** The top of the page: which robot is shown, what it does, and the button that helps. */
 
+import { absentTexts } from "./absent_texts.js";
 import { besideTexts } from "./beside_texts.js";
 import { button, byId, element, setText, show } from "./dom.js";
 import { texts } from "./texts.js";
@@ -13,11 +14,7 @@ export function createNow(lab) {
     const [tabs, root] = [byId("robots"), byId("now")];
     const state = element("b", { className: "state" });
     const reason = element("span", { className: "reason" });
-    const remedy = button("", () => help(), "remedy");
-    const help = () => {
-        const straight = remedy.value === "start" && lab.store.straight;
-        return straight ? lab.try("primitive", { name: "straight" }) : lab.try(remedy.value);
-    };
+    const remedy = button("", () => help(lab, lab.store.robot), "remedy");
     root.append(state, reason, remedy);
     let filled = null;
     let buttons = [];
@@ -29,11 +26,13 @@ export function createNow(lab) {
 
     return () => {
         const { robots, robot, mayDrive, page, held, still } = lab.store;
+        const several = robots.length > 1;
         if (filled !== robots) {
             filled = robots;
             buttons = robots.map(({ name }, index) => button(name, () => select(index)));
             tabs.replaceChildren(...buttons);
-            show(tabs, robots.length > 1);
+            show(tabs, several);
+            root.classList.toggle("several", several);
         }
         buttons.forEach((tab, index) => {
             tab.setAttribute("aria-current", String(robots[index] === robot));
@@ -43,19 +42,52 @@ export function createNow(lab) {
         if (!robot) return;
         const is = shownState(robot);
         root.dataset.state = is;
-        setText(state, texts.states[is]);
-        let helps = is === "lost" ? null : robot.status.remedy;
-        let why = is === "lost" ? texts.lostFor(robot.lostFor()) : whyOf(robot.status, page);
-        if (helps === "start" && (held || still)) {
-            [helps, why] = [null, held ? texts.startsAfterPrediction : texts.staysStill];
+        setText(state, stateWord(robot));
+        const helps = remedyOf(robot, lab.store);
+        let why = is === "lost" ? lostWords(robot) : whyOf(robot.status, page);
+        if (is !== "lost" && robot.status.remedy === "start" && !helps) {
+            why = held ? texts.startsAfterPrediction : texts.staysStill;
         }
         setText(reason, why);
-        show(remedy, Boolean(helps));
-        remedy.value = helps ?? "";
-        const words = texts.remedies[helps] ?? "";
-        setText(remedy, robots.length > 1 ? besideTexts.remedy(words, robot.name) : words);
+        // Of several, it keeps its room: names must not wrap when a robot stops.
+        show(remedy, several || Boolean(helps));
+        remedy.style.visibility = helps ? "" : "hidden";
+        const words = texts.remedies[helps ?? "start"];
+        setText(remedy, several ? besideTexts.remedy(words, robot.name) : words);
         remedy.disabled = !mayDrive;
     };
+}
+
+/**
+ * Do what makes a robot run again, or leads there.
+ * @param {import("./lab.js").Lab} lab
+ * @param {import("./robot_view.js").RobotView} robot
+ */
+export function help(lab, robot) {
+    const { remedy } = robot.status;
+    const straight = remedy === "start" && lab.store.straight;
+    if (straight) lab.tryEach([robot], "primitive", { name: "straight" });
+    else lab.tryEach([robot], remedy);
+}
+
+/** @returns {?string} The command that helps a robot now, as a key of `texts.remedies`. */
+export function remedyOf(robot, { held, still }) {
+    if (robot.lost) return null;
+    const { remedy = null } = robot.status;
+    return remedy === "start" && (held || still) ? null : remedy;
+}
+
+/** @returns {string} What a robot does, in a word or two. */
+export function stateWord(robot) {
+    return robot.unseen ? absentTexts.unseen : texts.states[shownState(robot)];
+}
+
+/** @returns {string} What is known of a robot that does not answer. */
+export function lostWords(robot) {
+    if (robot.unseen) return sentences(absentTexts.notThere, robot.status.hint);
+    const seconds = robot.lostFor();
+    const before = robot.state === "stopped" ? absentTexts.hadStopped(seconds) : "";
+    return sentences(before, texts.lostFor(seconds));
 }
 
 /** @returns {string} What a robot does, as a key of `texts.states`. */

@@ -53,6 +53,11 @@ export class RobotView {
         return this.status.link === "lost";
     }
 
+    /** @returns {boolean} Whether nobody has heard of the robot since the lab began. */
+    get unseen() {
+        return this.lost && !this.state;
+    }
+
     /** @returns {string} What the robot does: one of STATES, or empty before the first record. */
     get state() {
         return STATES[this.ring.newest("state")] ?? this.status.state ?? "";

@@ -3,6 +3,7 @@
  * is, and says in words what each of them has confirmed.
  */
 
+import { absentTexts } from "./absent_texts.js";
 import { byId, setText } from "./dom.js";
 import { AT_REST } from "./robot_view.js";
 import { texts } from "./texts.js";
@@ -70,13 +71,21 @@ export class Stop {
         const progress = Object.entries(this.progress());
         const all = progress.length === this.lab.store.robots.length;
         const same = new Set(progress.map(([, stage]) => stage)).size === 1;
-        const lines = progress.map(([name, stage]) =>
-            all && same ? texts.stop[stage] : `${name}: ${texts.stop[stage]}`,
-        );
+        const lines = progress.map(([name, stage]) => {
+            const words = this.#words(name, stage);
+            return all && same && !this.lab.store.byName(name).lost ? words : `${name}: ${words}`;
+        });
         if (this.#owed.size && !lines.length) lines.push(texts.stop.waiting);
         setText(this.words, [...new Set(lines)].join(" "));
         const worst = progress.some(([, stage]) => stage !== "confirmed" && stage !== "sent");
         this.words.classList.toggle("alarm", worst);
+    }
+
+    // What a robot has confirmed may be over by the time that it is lost.
+    #words(name, stage) {
+        const robot = this.lab.store.byName(name);
+        const past = stage === "confirmed" && robot.lost;
+        return past ? absentTexts.hadStopped(robot.lostFor()) : texts.stop[stage];
     }
 
     #progressOf(robot) {

@@ -107,7 +107,7 @@ export class Store {
         const robot = this.byName(message.robot);
         const back = robot?.lost && message.link === "up";
         robot?.takeState(message);
-        if (back) this.#settle(message.robot);
+        if (back && !this.note?.lasts) this.#settle(message.robot);
     }
 
     _event({ robot, event }) {
@@ -154,9 +154,10 @@ export class Store {
         this.pages = { driving, watching };
     }
 
-    _note({ robot, message, hint }) {
+    _note({ robot, message, hint, lasts }) {
+        const words = sentences(message, hint);
         this.note = robot
-            ? { message: `${robot}: ${sentences(message, hint)}`, hint: "", robots: [robot] }
+            ? { message: `${robot}: ${words}`, hint: "", robots: [robot], lasts }
             : { message, hint };
     }
 

@@ -124,7 +124,9 @@ function axes({ ctx, colours, theme }, state, box, x, y) {
         theme.write(ctx, label(theme, value, x.pi), at, bottom + 0.8 * text, how);
     }
     how.align = "right";
-    for (const value of theme.ticks(y.low, y.high, box.height / (2 * text), y.pi ? Math.PI : 1)) {
+    const levels = theme.ticks(y.low, y.high, box.height / (2 * text), y.pi ? Math.PI : 1);
+    // A low one has room for its ends at least.
+    for (const value of levels.length > 1 ? levels : [y.low, ...levels, y.high]) {
         const at = bottom - ((value - y.low) / y.long) * box.height;
         ctx.fillStyle = colours.grid;
         ctx.fillRect(box.left, at - 0.5, box.width, 1);
