@@ -218,7 +218,9 @@ def test_a_robot_that_is_not_there_is_lost_and_a_stop_says_so():
         assert "no robot" in station.state()["hint"]
         station.stop()
         wait_until(lambda: station.pages.heard, "the stop says that it has not arrived")
-        assert "anna: " in station.pages.heard[0]["message"]
+        note = station.pages.heard[0]
+        assert (note["type"], note["robot"]) == ("note", "anna")
+        assert "no robot" in note["message"]
     finally:
         station.end()
 
