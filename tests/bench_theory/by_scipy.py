@@ -24,7 +24,8 @@ def field(time, state, constants):
     """The rates of the four variables, and of the fifth, which makes the standard deviation."""
     out = np.empty_like(state)
     x1, x2, phi, omega = state[:4]
-    a, tau_s, k, inertia, friction, dry, around = constants
+    a, tau_s, k, inertia, friction, dry = constants[:6]
+    around = constants[-1]
     out[0], out[1], out[2], out[3] = _rates(x1, x2, phi, omega, a, tau_s, k, inertia, friction, dry)
     if len(state) == 5:
         out[4] = (omega - around) ** 2
