@@ -5,6 +5,7 @@ The robot's own functions compute: what the page draws of the model comes from h
 
 from __future__ import annotations
 
+import struct
 from functools import cache
 from math import atan2, ceil, cos, pi, sin
 from typing import Any, NamedTuple
@@ -14,7 +15,7 @@ from robot.blackbox import Snapshot
 from robot.controller import actual_positions, target_position
 from robot.kicks import WHEELS, Kick, apply_kick, seen_positions
 from robot.params import Params
-from robot.record import Record, channel, of_each_wheel
+from robot.record import STRUCT, Record, channel, of_each_wheel
 from sim_motor.constants import data
 
 _WHEEL = (
@@ -31,6 +32,15 @@ _PLACE = (
     channel("heading_rad", "f", "rad", "heading by odometry, to the left positive"),
 )
 CHANNELS = (*of_each_wheel(_WHEEL), *_PLACE)
+_VALUES = struct.Struct(f"<{len(CHANNELS)}f")
+# The bytes of what `pack` gives.
+SIZE = STRUCT.size + _VALUES.size
+
+
+def pack(record: Record, values: tuple[float, ...]) -> bytes:
+    """A record with its derived channels, as pages take it."""
+    own: bytes = STRUCT.pack(*record)
+    return own + _VALUES.pack(*values)
 
 
 class Body(NamedTuple):

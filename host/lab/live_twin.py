@@ -8,27 +8,25 @@ begins behind it.
 
 from __future__ import annotations
 
-import struct
 from collections import deque
 from typing import Any
 
 from host.errors import WrongUse
+from host.kicking.outcome import STOPPED
 from host.kicking.robot_motor import EV3
 from host.lab import derived
 from host.lab.allowance import Allowance
 from host.lab.kicks import Kicks, stall_of
-from host.lab.observed import HISTORY, VERDICTS_KEPT
+from host.lab.observed import VERDICTS_KEPT
 from host.lab.ring import Ring
 from host.lab.steady_clock import SteadyClock
 from host.lab.twin import Twin, motors_of
 from host.logs.tap import Event
-from robot.record import STRUCT, Record
+from robot.record import Record
 from sim_motor.constants import Constants
 
 # How many ticks a second are computed, and how many at once. The shortest control period is 10 ms.
 RATE_PER_S, BURST = 150.0, 300.0
-_DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
-_STOPPED = "stopped"
 
 
 class LiveTwin:
@@ -46,7 +44,7 @@ class LiveTwin:
     """
 
     def __init__(self, entry: str = "") -> None:
-        self.ring = Ring(STRUCT.size + _DERIVED.size)
+        self.ring = Ring(derived.SIZE)
         self.trouble: WrongUse | None = None
         self._wanted = self._entry = entry
         self._constants: Constants | None = None
@@ -74,7 +72,7 @@ class LiveTwin:
             "hint": "" if trouble is None else trouble.hint,
             "compared": list(self._compared),
             "score": dict(self._score),
-            "history": self.ring.end - self.ring.latest(HISTORY),
+            "history": self.ring.end - self.ring.recent,
         }
 
     def meet(self, hello: dict[str, Any], battery_v: float | None) -> None:
@@ -129,7 +127,7 @@ class LiveTwin:
                 twin.begin_again()
                 continue
             if values is not None:
-                self.ring.append(STRUCT.pack(*own) + _DERIVED.pack(*values))
+                self.ring.append(derived.pack(own, values))
             computed.append(own)
         return self._compare({"robot": records, "twin": computed})
 
@@ -164,6 +162,6 @@ class LiveTwin:
 def _deeds(outcome: dict[str, Any]) -> dict[str, tuple[str, bool]]:
     """What each kicked wheel did, and whether it did that from rest."""
     return {
-        side: (result, outcome["before"][side] == _STOPPED)
+        side: (result, outcome["before"][side] == STOPPED)
         for side, result in outcome["result"].items()
     }

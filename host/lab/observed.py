@@ -5,7 +5,6 @@ This part does no I/O and knows no threads.
 
 from __future__ import annotations
 
-import struct
 from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -19,13 +18,11 @@ from host.lab.ring import Ring
 from host.lab.stopper import of_this_lab
 from host.logs.tap import Event
 from robot import __version__, params
-from robot.record import STATES, STRUCT, Record
+from robot.record import STATES, Record
 from robot.record import describe as describe_channels
 
 # A robot whose records have not come for so long counts as lost (s).
 LOST_S = 1.0
-# How many records a page gets of what was before it came.
-HISTORY = 600
 EVENTS_KEPT = 100
 VERDICTS_KEPT = 40
 # How soon after a page has asked for it a stop is of that page (s).
@@ -49,7 +46,6 @@ _HINTS = {
 # The states in which the motors may turn.
 _MOVING = ("running", "held")
 _REMEDIES = {"idle": "start", "stopped": "start", "fault": "clear"}
-_DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
 
 
 class Pages(Protocol):
@@ -86,7 +82,7 @@ class Observed:
     def __init__(self, name: str, uri: str, label: str, walls_m: float | None = None) -> None:
         self.name = name
         self.uri = uri
-        self.ring = Ring(STRUCT.size + _DERIVED.size)
+        self.ring = Ring(derived.SIZE)
         self.pages: Pages | None = None
         self._label = label
         self._walls_m = walls_m
@@ -128,12 +124,8 @@ class Observed:
             "hand": self.hand_possible,
             "events": [*self._events, self._follower.snapshot(self._tick)],
             "verdicts": list(self.verdicts),
-            "history": self.ring.end - self.history(),
+            "history": self.ring.end - self.ring.recent,
         }
-
-    def history(self) -> int:
-        """The place in the ring at which a new page begins to read."""
-        return self.ring.latest(HISTORY)
 
     def state(self) -> dict[str, Any]:
         """What a `state` message says of the robot now."""
@@ -182,7 +174,7 @@ class Observed:
         for record in records:
             values = self._follower.derive(record)
             if values is not None:
-                self.ring.append(STRUCT.pack(*record) + _DERIVED.pack(*values))
+                self.ring.append(derived.pack(record, values))
         outcome = self._kicks.take_records(records)
         if outcome is not None:
             self._hear({"type": "outcome", "robot": self.name, **outcome})

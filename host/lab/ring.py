@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 # Half a minute at the usual control period of 30 ms. Who is further behind gets the present.
 CAPACITY = 1024
+# How many records a page gets of what was before it came.
+HISTORY = 600
 # What stands before the records of a message, and how many there may be.
 _HEADER, _RECORDS_KIND = struct.Struct("<BBHI"), 1
 MOST_RECORDS = 256
@@ -58,6 +60,11 @@ class Ring:
     def latest(self, count: int) -> int:
         """The place at which the latest `count` records begin, or fewer if there are fewer."""
         return max(0, self.end - min(count, self._capacity))
+
+    @property
+    def recent(self) -> int:
+        """The place at which a page that comes now begins to read."""
+        return self.latest(HISTORY)
 
     def read(self, place: int, most: int) -> Portion:
         """Records from a place on.

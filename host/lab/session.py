@@ -22,7 +22,6 @@ from host.lab.invitation import invitation
 from host.lab.keys import DRIVE, Keys
 from host.lab.lessons.marking import Marking
 from host.lab.lessons.texts import lessons
-from host.lab.observed import HISTORY
 from host.lab.page_end import Departed, Page
 from host.lab.poll import Poll
 from host.lab.presets import describe_presets, describe_primitives
@@ -250,7 +249,7 @@ class Session:
         self._counted = (-1, -1)  # the newcomer has to be told, too
 
     def _greet(self, page: Page) -> None:
-        page.places = {name: ring.latest(HISTORY) for name, ring in self.rings.items()}
+        page.places = {name: ring.recent for name, ring in self.rings.items()}
         page.send(
             {
                 "type": "welcome",

@@ -135,7 +135,7 @@ class ShownRobot(Observed):
             self._waiting.clear()
             robot = self.description()
             self._send({"type": "welcome", "robot": robot, "embedded": self._embedded}, None)
-            self._place = self.history()
+            self._place = self.ring.recent
             self._told = ("", "", "")
         if self.clock() - self._heard_of_page > PATIENCE_S:
             return

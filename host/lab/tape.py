@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import base64
 import gzip
-import struct
 from math import inf, isfinite, nan
 from typing import Any, NamedTuple
 
@@ -23,12 +22,11 @@ from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import LogFile
 from host.logs.replay import Mismatch, Replayer, other_sources, too_large
 from host.logs.tap import Event
-from robot.record import STRUCT, Record, describe
+from robot.record import Record, describe
 from robot.safety import RUNNING
 
 # Ten minutes of 30 ms ticks: as many as the robot's black box holds, and about 10 MB.
 MOST_TICKS = 20_000
-_DERIVED = struct.Struct(f"<{len(derived.CHANNELS)}f")
 _NO_SPEED = (nan,) * len(derived.CHANNELS)
 _COMPRESSION = 6
 
@@ -102,12 +100,11 @@ class _Writer:
         self.flush()
         # What the clock adds after a restart is 0 in all other logs: then the bits are the log's.
         shown = record._replace(t_s=t_s)
-        own = STRUCT.pack(*shown) + _DERIVED.pack(*values)
+        own = derived.pack(shown, values)
         self.packed.append(own + worked.STRUCT.pack(*numbers))
         if self.twin is not None:
             twin, its_values = self.twin.take_record(shown, t_s)
-            packed = STRUCT.pack(*twin) + _DERIVED.pack(*its_values or _NO_SPEED)
-            self.packed_twin.append(packed)
+            self.packed_twin.append(derived.pack(twin, its_values or _NO_SPEED))
             self.pair[0].append(shown)
             self.pair[1].append(twin)
 
