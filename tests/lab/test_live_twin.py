@@ -17,27 +17,16 @@ from host.lab.tape import make_tape
 from host.logs.log import Log
 from robot.record import NAMES, STRUCT, Record, unpack
 from tests.lab.conftest import Visit
+from tests.lab.live import Ears
 from tests.lab.own_lab import HEADER
 from tests.lab.tapes import twins_rows_of
 
 CHANNELS = [row.name for row in derived.CHANNELS]
-SIZE = STRUCT.size + struct.calcsize(f"<{len(CHANNELS)}f")
 
 
-class Ears:
-    """Hears what a station tells pages."""
-
-    def __init__(self):
-        self.heard = []
-
-    def hear(self, message):
-        self.heard.append(message)
-
-    def wake(self):
-        pass
-
-    def compared(self):
-        return [one for one in self.heard if one["type"] == "twin"]
+def compared(station):
+    """What pages have heard of kicks of the robot and its twin."""
+    return [one for one in station.pages.heard if one["type"] == "twin"]
 
 
 def rows_of(ring):
@@ -46,8 +35,8 @@ def rows_of(ring):
     while place < ring.end:
         portion = ring.read(place, 200)
         place = portion.place
-        for at in range(0, len(portion.data), SIZE):
-            packed = portion.data[at : at + SIZE]
+        for at in range(0, len(portion.data), derived.SIZE):
+            packed = portion.data[at : at + derived.SIZE]
             (record,) = unpack(packed[: STRUCT.size])
             values = struct.unpack(f"<{len(CHANNELS)}f", packed[STRUCT.size :])
             rows.append({**record._asdict(), **dict(zip(CHANNELS, values, strict=True))})
@@ -105,7 +94,7 @@ def test_it_does_bit_for_bit_what_the_twin_of_a_replay_does(run):
 
 def test_what_both_did_is_said_of_each_kick_with_an_outcome(run):
     station, _ = run
-    (message,) = station.pages.compared()
+    (message,) = compared(station)
     assert message["robot"] == "anna"
     assert message["robot_did"]["result"] == message["twin_did"]["result"] == {"left": "reverses"}
     assert message["same"]
@@ -139,7 +128,7 @@ def test_what_pushes_the_robot_does_not_push_its_twin():
     robot.kick("membrane", wheel="left")
     robot.link.brick.set_load(0, 0.2 if way > 0 else -0.2)  # it has to go on as before
     station.step(6.5)
-    (message,) = station.pages.compared()
+    (message,) = compared(station)
     assert message["robot_did"]["result"] == {"left": "continues"}
     assert message["twin_did"]["result"] == {"left": "reverses"}
     assert not message["same"]
