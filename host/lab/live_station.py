@@ -111,7 +111,7 @@ class LiveStation(Station):
         self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
         self._stops = 0
         self._stop_wanted = threading.Event()
-        self._ended = 0  # so many of the stops
+        self._ended = 0  # the number of ended stops
         self._stop_ended = threading.Condition()
         self._stop_owed = False  # by a page, to a robot that was lost
         self._closed = threading.Event()

@@ -20,8 +20,7 @@ def for_page(words: str) -> str:
 
 def reason(words: str) -> str:
     """A robot's reason. It knows this lab by the name of a person at a computer."""
-    began = f"{person(own_name())} was silent for "
-    if words.startswith(began):
-        silent = words[len(began) :]
-        return f"this lab was silent for {silent}, so the robot stopped by itself"
+    who, silent, seconds = words.partition(" was silent for ")
+    if silent and who == person(own_name()):
+        return f"this lab was silent for {seconds}, so the robot stopped by itself"
     return plain(words)

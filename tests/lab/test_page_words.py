@@ -1,4 +1,4 @@
-"""What pages are told of this computer and of why a robot stands."""
+"""How pages speak of this computer, and say why a robot has stopped."""
 
 import pytest
 

@@ -211,7 +211,7 @@ class Way:
         """Take the rows that follow.
 
         Args:
-            course: The rows, the first of which is the last one so far.
+            course: The rows. All parts but the first begin with the last row of the part before.
             every_s: Time between rows, s.
 
         Returns:
