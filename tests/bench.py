@@ -68,7 +68,7 @@ def main() -> None:
         "The lab page without a server": page_without_a_server,
     }
     machine = (
-        f"{processor()}, {os.cpu_count()} cores; Linux {platform.release()};"
+        f"{processor()}, {os.cpu_count()} cores; Linux {platform.release().partition('-')[0]};"
         f" Python {platform.python_version()}, numpy {version('numpy')}, numba {version('numba')},"
         f" MuJoCo {version('mujoco-core')}"
     )

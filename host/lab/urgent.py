@@ -9,7 +9,10 @@ PRIORITY = 1
 
 
 class UrgentThread(threading.Thread):
-    """A thread with real-time priority, if the system grants it; what it starts has none.
+    """A thread with real-time priority, if the system grants it, as are threads that it starts.
+
+    All of them need it: one without it that holds Python's lock and waits for its turn would hold
+    up the others. Processes that it starts give it back with `stand_back`.
 
     Linux shares out its processors among sessions first, so that an ordinary lab waits for a
     browser which draws, up to 100 ms at a time: then a STOP is late.
@@ -17,6 +20,12 @@ class UrgentThread(threading.Thread):
 
     def run(self) -> None:
         with suppress(AttributeError, OSError):  # it is not Linux, or this user may not
-            policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
-            os.sched_setscheduler(0, policy, os.sched_param(PRIORITY))
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
         super().run()
+
+
+def stand_back(niceness: int) -> None:
+    """Let other programs come before this process: no real-time priority, and nicer by so much."""
+    with suppress(AttributeError, OSError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    os.nice(niceness)
