@@ -34,7 +34,8 @@ INTRODUCTION = """# Benchmarks
 `make bench` measures what has to be fast. This page is its output of one run, as
 `.venv/bin/python -m tests.bench --page` has written it; nothing of it is typed by hand. Ratios of
 one run say more than times: times are those of this machine, and whatever else it does adds to
-them. What ticks cost on a real brick's processor is on [another page](arm.md).
+them. FAIL stands where this run missed a goal. What ticks cost on a real brick's processor is on
+[another page](arm.md).
 """
 
 

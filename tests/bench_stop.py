@@ -61,7 +61,7 @@ def stop_from_a_shell() -> None:
         )
     more_s = stop_s - start_s
     print(
-        f"kickctl stop from a shell, three robots on loopback: {stop_s:.2f} s, of that Python's"
+        f"stop from a shell, three robots on loopback: {stop_s:.2f} s, of that Python's"
         f" start {start_s:.2f} s ({'PASS' if more_s <= SHELL_S else 'FAIL'}: at most {SHELL_S:g} s"
         " more)",
         flush=True,
@@ -91,7 +91,7 @@ def stop_of_all() -> None:
             apart.append(max(off) - min(off))
     verdict = "PASS" if max(apart) <= APART_S else "FAIL"
     print(
-        f"kickctl stop for three robots on loopback: their first ticks with the motors off are"
+        f"stop for three robots on loopback: their first ticks with the motors off are"
         f" median {1000 * statistics.median(apart):.1f} ms apart, at most"
         f" {1000 * max(apart):.1f} ms ({verdict}: at most one tick + 50 ms ="
         f" {1000 * APART_S:.0f} ms; {STOPS_OF_ALL} stops)",

@@ -15,7 +15,7 @@ class UrgentThread(threading.Thread):
     up the others. Processes that it starts give it back with `stand_back`.
 
     Linux shares out its processors among sessions first, so that an ordinary lab waits for a
-    browser which draws, up to 100 ms at a time: then a STOP is late.
+    browser which draws, up to 0.2 s at a time: then a STOP is late.
     """
 
     def run(self) -> None:

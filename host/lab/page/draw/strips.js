@@ -9,8 +9,9 @@
 
 // A line does not bridge a longer gap, s: there, records are lost.
 const GAP_S = 0.25;
-// With more records than this for each column of pixels, a line shows only the extremes of each.
-const DENSE = 1.5;
+// With more records than this for each pixel, a line shows only the extremes of columns so many
+// pixels wide: rectangles cost more time than records.
+const [DENSE, COLUMN] = [1.5, 2];
 // How many records are drawn in one go: Chromium paints long paths slowly.
 const PIECE = 32;
 const LEAST = 1.2; // the height of a strip of weight 1 at least, in heights of the text
@@ -236,8 +237,7 @@ function limit(row, state, { first, last }) {
 
 /** A line through a channel's values, while they are few. */
 function polyline({ ctx, theme, right, now, pixels }, state, shown, line, zero, unit) {
-    const t = state.columns.t_s;
-    const data = state.columns[line.column];
+    const { t_s: t, [line.column]: data } = state.columns;
     let before = NaN;
     ctx.lineWidth = theme.line;
     ctx.lineCap = "butt";
@@ -263,25 +263,25 @@ function polyline({ ctx, theme, right, now, pixels }, state, shown, line, zero, 
 
 /** A bar from the least to the greatest value in each column of pixels, where values are many. */
 function bars({ ctx, theme, right, now, pixels }, state, shown, line, zero, unit) {
-    const t = state.columns.t_s;
-    const data = state.columns[line.column];
+    const { t_s: t, [line.column]: data } = state.columns;
     const { scale } = theme;
-    const rate = pixels * scale;
+    const rate = (pixels * scale) / COLUMN;
+    const wide = Math.max(1, COLUMN / scale);
     // Columns are fixed in time, and stand on whole pixels: nothing flickers while time goes on.
-    const shift = Math.round(right * scale - now * rate);
+    const shift = Math.round((right - now * pixels) * scale);
     let [column, least, greatest, last, before] = [NaN, 0, 0, NaN, NaN];
     const flush = () => {
         if (Number.isNaN(column)) return;
         // In place of dashes, which would hide a spike.
-        if (line.right) ctx.globalAlpha = (column / scale) % 8 >= 5 ? 0.4 : 1;
+        if (line.right) ctx.globalAlpha = (column / scale) % 10 >= 6 ? 0.4 : 1;
         const high = (greatest - least) * unit + theme.line;
-        ctx.fillRect((shift + column) / scale, zero - greatest * unit - theme.line / 2, 1, high);
+        ctx.fillRect((shift + column) / scale, zero - greatest * unit - theme.line / 2, wide, high);
     };
     let index = (state.start + shown.first) % data.length;
     for (let n = shown.first; n < shown.last; n++) {
         const [time, value] = [t[index], data[index]];
         if (++index === data.length) index = 0;
-        const here = Math.floor(time * rate);
+        const here = COLUMN * Math.floor(time * rate);
         if (here !== column || value - value !== 0) {
             flush();
             column = value - value === 0 ? here : NaN;
