@@ -93,9 +93,12 @@ REAL_TIME = (
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "realtime: runs in real time, see REAL_TIME in conftest.py")
-    # Whoever runs the tests in a shell's background has ^C ignored, and so have their children.
+    # Whoever runs the tests in a shell's background has ^C ignored, with nohup the terminal's end,
+    # and so have their children.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 # What collection makes stays until the end: the collector need not look through it as it grows,

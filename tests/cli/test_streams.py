@@ -69,19 +69,28 @@ def test_a_reader_that_leaves_is_no_error(shell):
     assert err.splitlines()[-1] in "01"
 
 
-def begin_recording(folder, **options):
+@pytest.fixture
+def begin_recording(tmp_path):
     """A recording in its own process, and its log, as soon as that has grown a little."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "host", "record", "900000", "--seed", "1", "--out", "log.mcap"],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        **options,
-    )
-    log = Path(folder, "log.mcap")
-    while not (log.exists() and log.stat().st_size > 50_000):
-        assert process.poll() is None
-        time.sleep(0.01)  # another process writes it
-    return process, log
+    processes = []
+
+    def begin(**options):
+        process = subprocess.Popen(
+            [sys.executable, "-m", "host", "record", "900000", "--seed", "1", "--out", "log.mcap"],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            **options,
+        )
+        processes.append(process)
+        log = tmp_path / "log.mcap"
+        while not (log.exists() and log.stat().st_size > 50_000):
+            assert process.poll() is None
+            time.sleep(0.01)  # another process writes it
+        return process, log
+
+    yield begin
+    for process in processes:
+        process.kill()
 
 
 def is_indexed(log):
@@ -90,8 +99,8 @@ def is_indexed(log):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_recording_that_is_ended_by_a_signal_leaves_an_indexed_log(tmp_path, number):
-    process, log = begin_recording(tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+def test_a_recording_that_is_ended_by_a_signal_leaves_an_indexed_log(begin_recording, number):
+    process, log = begin_recording(stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     for _ in range(5):
         process.send_signal(number)
     out, err = process.communicate(timeout=60)
@@ -101,10 +110,10 @@ def test_a_recording_that_is_ended_by_a_signal_leaves_an_indexed_log(tmp_path, n
     assert is_indexed(log)
 
 
-def test_a_terminal_that_closes_leaves_an_indexed_log(tmp_path):
+def test_a_terminal_that_closes_leaves_an_indexed_log(begin_recording):
     terminal, inside = pty.openpty()
     process, log = begin_recording(
-        tmp_path, stdin=inside, stdout=inside, stderr=inside, start_new_session=True
+        stdin=inside, stdout=inside, stderr=inside, start_new_session=True
     )
     os.close(inside)
     process.send_signal(signal.SIGHUP)  # as a shell does whose terminal closes
@@ -114,9 +123,9 @@ def test_a_terminal_that_closes_leaves_an_indexed_log(tmp_path):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_says_130_also_where_nobody_takes_the_answer(tmp_path, number):
+def test_a_signal_says_130_also_where_nobody_takes_the_answer(begin_recording, number):
     with Path("/dev/full").open("w") as full:
-        process, log = begin_recording(tmp_path, stdout=full, stderr=subprocess.PIPE)
+        process, log = begin_recording(stdout=full, stderr=subprocess.PIPE)
         process.send_signal(number)
         _, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -124,10 +133,10 @@ def test_a_signal_says_130_also_where_nobody_takes_the_answer(tmp_path, number):
     assert is_indexed(log)
 
 
-def test_nohup_goes_on(tmp_path):
+def test_nohup_goes_on(begin_recording):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
-        process, log = begin_recording(tmp_path, stderr=subprocess.DEVNULL)
+        process, log = begin_recording(stderr=subprocess.DEVNULL)
     finally:
         signal.signal(signal.SIGHUP, before)
     process.send_signal(signal.SIGHUP)
