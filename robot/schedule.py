@@ -18,10 +18,10 @@ COLLECT_S = 1.0
 
 
 def take_priority(priority):
-    """Have this process run before all ordinary ones.
+    """Have the calling thread, and those that it starts, run before all ordinary programs.
 
     Args:
-        priority: LOOP_PRIORITY or WATCHDOG_PRIORITY.
+        priority: 1 to 99, such as LOOP_PRIORITY and WATCHDOG_PRIORITY.
 
     Returns:
         Whether the kernel allows it.

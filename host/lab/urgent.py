@@ -4,7 +4,9 @@ import os
 import threading
 from contextlib import suppress
 
-# The lowest that is real time: a simulated robot's loop (robot.schedule) comes before the lab.
+from robot.schedule import take_priority
+
+# The lowest that is real time: a simulated robot's loop comes before the lab.
 PRIORITY = 1
 
 
@@ -19,8 +21,8 @@ class UrgentThread(threading.Thread):
     """
 
     def run(self) -> None:
-        with suppress(AttributeError, OSError):  # it is not Linux, or this user may not
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        with suppress(AttributeError):  # it is not Linux
+            take_priority(PRIORITY)
         super().run()
 
 
