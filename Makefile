@@ -33,12 +33,12 @@ demo: $(STAMP) ## watch the simulated robot being kicked
 reproduce: $(STAMP) ## measure all of the paper's claims, and write a report
 	$(BIN)/kickctl reproduce
 
-# Tests in real time mostly wait, so three processes share each core. Byte code is kept even where
+# Tests in real time mostly wait, so two processes share each core. Byte code is kept even where
 # the environment forbids it: without it, half of what pytest does before the first test is
 # compiling.
 test: export PYTHONDONTWRITEBYTECODE :=
 test: $(STAMP) ## run the tests (10 minutes)
-	$(BIN)/python -m pytest tests --ignore=tests/lint -n $$((3 * $$(nproc))) --dist worksteal
+	$(BIN)/python -m pytest tests --ignore=tests/lint -n $$((2 * $$(nproc))) --dist worksteal
 
 # Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
 test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 or newer
