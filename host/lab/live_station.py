@@ -29,7 +29,6 @@ from host.lab.station import (
     stopped_meanwhile,
 )
 from host.lab.stopper import BACK, LAB
-from host.lab.urgent import UrgentThread
 from host.link.addresses import make_link
 from host.logs.tap import Event
 from host.util.own_name import own_name
@@ -122,8 +121,12 @@ class LiveStation(Station):
         self._performs = False
         self._driven = False
         self._threads = [
-            UrgentThread(target=work, name=f"lab {what} {name}", daemon=True)
-            for what, work in (("watch", self._watch), ("drive", self._drive), ("stop", self._halt))
+            threading.Thread(target=work, name=f"lab {what} {name}", daemon=True)
+            for what, work in (
+                ("watch", self._watch),
+                ("drive", self._drive),
+                ("stop", self._stop_when_wanted),
+            )
         ]
 
     def start(self) -> None:
@@ -317,7 +320,7 @@ class LiveStation(Station):
         self._stops += 1
         self._stop_wanted.set()
 
-    def _halt(self) -> None:
+    def _stop_when_wanted(self) -> None:
         while True:
             self._stop_wanted.wait()
             if self._closed.is_set():
