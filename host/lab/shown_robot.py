@@ -11,7 +11,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from contextvars import copy_context
 from math import inf
 from typing import Any
 from weakref import ref
@@ -59,7 +58,6 @@ class ShownRobot(Observed):
         self._news = threading.Event()
         self._over = threading.Event()
         self._heard_of_page = -inf
-        self._context = copy_context()
         self._joins = False
         self._place = 0
         self._told = ("", "", "")
@@ -87,13 +85,8 @@ class ShownRobot(Observed):
     def take(self, message: dict[str, Any]) -> None:
         """Take a message of a page. It returns at once: a stop may be behind it."""
         kind, now = message.get("type"), self.clock()
-        # A kernel gives a page's next message to the subshell in whose context the widget has sent
-        # last. So all news is sent in that of the page's latest message, or a stop would wait for
-        # the cell that runs.
-        self._context = copy_context()
         if kind == "stop":
-            context = copy_context()
-            threading.Thread(target=context.run, args=(self._stop,), daemon=True).start()
+            threading.Thread(target=self._stop, daemon=True).start()
         elif kind == "leave":
             self._over.set()
         elif kind in ("join", "here"):
@@ -122,7 +115,7 @@ class ShownRobot(Observed):
         while not self._over.wait(EVERY_S):
             self._news.wait(LOOK_S)
             self._news.clear()
-            self._context.copy().run(self.tell)
+            self.tell()
         robot = self._robot()
         if robot is not None:
             robot.remove_tap(self)

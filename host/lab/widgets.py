@@ -51,9 +51,9 @@ class RobotWidget(anywidget.AnyWidget):
 
     def __init__(self, robot: Watcher) -> None:
         super().__init__()
-        # Since a cell has opened it, ipykernel would keep the page's first message for the time
-        # when no cell runs.
-        self.comm.__dict__.pop("_reply_subshell_id", None)
+        # A page's message goes to the subshell that it names. Otherwise ipykernel gives it to the
+        # one that has sent the last news, which may be the cells' own: a stop would wait there.
+        self.comm._reply_subshell_for = None  # noqa: SLF001
         try:
             self.shown = ShownRobot(robot, self.send, self.close)
         except BaseException:
