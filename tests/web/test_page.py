@@ -142,7 +142,7 @@ def test_a_page_takes_over_from_another_host(visit, station, monkeypatch):
         visitor.until("r.status.here")
         station.step(0.3)
         visitor.until("r.status.controller !== 'bert'")
-        assert not visitor.page.get_by_role("button", name="Take over").is_visible()
+        visitor.page.get_by_role("button", name="Take over").wait_for(state="hidden")
         with pytest.raises(LeaseLost):
             other.start()
 
