@@ -29,6 +29,7 @@ from host.lab.station import (
     stopped_meanwhile,
 )
 from host.lab.stopper import BACK, LAB
+from host.lab.urgent import UrgentThread
 from host.link.addresses import make_link
 from host.logs.tap import Event
 from host.util.own_name import own_name
@@ -121,12 +122,8 @@ class LiveStation(Station):
         self._performs = False
         self._driven = False
         self._threads = [
-            threading.Thread(target=work, name=f"lab {what} {name}", daemon=True)
-            for what, work in (
-                ("watch", self._watch),
-                ("drive", self._drive),
-                ("stop", self._stop_when_wanted),
-            )
+            UrgentThread(target=work, name=f"lab {what} {name}", daemon=True)
+            for what, work in (("watch", self._watch), ("drive", self._drive), ("stop", self._halt))
         ]
 
     def start(self) -> None:
@@ -320,7 +317,7 @@ class LiveStation(Station):
         self._stops += 1
         self._stop_wanted.set()
 
-    def _stop_when_wanted(self) -> None:
+    def _halt(self) -> None:
         while True:
             self._stop_wanted.wait()
             if self._closed.is_set():

@@ -19,6 +19,7 @@ from host.lab.page_files import PAGE_FOLDER
 from host.lab.replays import Replays
 from host.lab.session import Session
 from host.lab.station import Station
+from host.lab.urgent import UrgentThread
 from host.lab.web import Site
 from host.lab.worker import Worker
 
@@ -77,7 +78,7 @@ class Lab:
         self._end = asyncio.Event()
         self._failure: BaseException | None = None
         self._woken = False
-        self._thread = threading.Thread(target=self._run, name="lab server", daemon=True)
+        self._thread = UrgentThread(target=self._run, name="lab server", daemon=True)
 
     def __enter__(self) -> Self:
         self._thread.start()

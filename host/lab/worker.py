@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
@@ -12,6 +11,7 @@ from multiprocessing import active_children, get_context
 from typing import Any, TypeVar
 
 from host.errors import KickctlError, NotDone
+from host.lab.urgent import UrgentThread, stand_back
 from host.runs.processes import begin_process, beginning_processes
 
 Question = TypeVar("Question")
@@ -51,7 +51,10 @@ class Worker:
                 others = set(active_children())
                 # Spawned, because a fork would copy locks that other threads hold.
                 self._pool = ProcessPoolExecutor(1, get_context("spawn"), begin_process)
-                self._pool.submit(os.nice, self._niceness)
+                # The pool's threads bring answers in, for which a stop must not wait.
+                first = UrgentThread(target=self._pool.submit, args=(stand_back, self._niceness))
+                first.start()
+                first.join()
                 self._own = set(active_children()) - others
             if self._warm_up is not None:
                 self._pool.submit(self._warm_up)
