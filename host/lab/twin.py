@@ -9,6 +9,7 @@ weaker battery, does not push the twin.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from host.errors import WrongUse, printable
@@ -181,7 +182,7 @@ def compare_kicks(
     """
     news = [row for row in events if row["event"]["event"] in _NEWS]
     found = []
-    for row, after in zip(news, [*news[1:], {"place": len(robot)}], strict=True):
+    for row, after in pairwise([*news, {"place": len(robot)}]):
         place, kick = row["place"], row["event"].get("kick")
         if row["event"]["event"] != "kick" or place < DIRECTION_TICKS:
             continue

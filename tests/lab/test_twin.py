@@ -92,6 +92,14 @@ def test_a_part_of_a_log_has_a_twin_from_its_first_tick(log):
     assert travel(twin, 0, 30) == pytest.approx(travel(rows, 0, 30), rel=0.1)
 
 
+def test_a_log_in_which_nothing_happens_has_a_twin_too():
+    with connect("sim://?seed=3") as robot:
+        log = robot.record(1.0)
+    tape = make_tape(log, "log", motor="pybricks")
+    assert tape["twin"]["kicks"] == []
+    assert len(rows_of(tape)) == len(twins_rows_of(tape)) == len(log)
+
+
 def test_a_motor_that_nobody_knows_is_refused(log):
     with pytest.raises(WrongUse, match="none"):
         make_tape(log, "log", motor="none")
