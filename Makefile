@@ -17,7 +17,7 @@ PYODIDE := build/pyodide
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo reproduce test test-py35 lint lint-tests lint-types lint-style \
+.PHONY: help setup demo reproduce test test-long test-py35 lint lint-tests lint-types lint-style \
 	lint-scripts docs page bench bench-arm bench-theory faults soak stress mutants lock \
 	screenshots clean
 
@@ -39,6 +39,9 @@ reproduce: $(STAMP) ## measure all of the paper's claims, and write a report
 test: export PYTHONDONTWRITEBYTECODE :=
 test: $(STAMP) ## run the tests (10 minutes)
 	$(BIN)/python -m pytest tests --ignore=tests/lint -n $$((2 * $$(nproc))) --dist worksteal
+
+test-long: $(STAMP) ## run the tests that take long: commands of the docs (3 minutes)
+	$(BIN)/python -m pytest tests -m long -n $$(nproc)
 
 # Nothing of pyproject.toml: the last pytest for 3.5 knows half of it.
 test-py35: $(STAMP) ## run the robot's own tests on PYTHON35=..., a Python 3.5 or newer

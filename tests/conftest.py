@@ -57,6 +57,7 @@ REAL_TIME = (
     "tests/cli/test_foxglove.py",
     "tests/cli/test_lab.py",
     "tests/cli/test_lesson_desk.py",
+    "tests/cli/test_typed_pages.py",
     "tests/cli/test_watch_several.py",
     "tests/cli/test_watch_terminal.py",
     "tests/contract/test_motor.py",

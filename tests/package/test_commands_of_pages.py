@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from importlib.util import find_spec
 
 import pytest
 
@@ -47,6 +48,15 @@ def test_what_its_sentences_name_exists(page):
         except WrongUse as error:
             assert "arguments are required" in error.message, line
             assert not any(word.startswith("--") for word in words), line
+
+
+@pytest.mark.parametrize("page", TYPED)
+def test_what_make_and_python_are_to_run_is_there(page):
+    targets = re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert set(re.findall(r"^(?:\w+=\S+ )*make ([\w-]+)", text, re.MULTILINE)) <= {*targets}
+    for module in re.findall(r"python3? -m ([\w.]+)", text):
+        assert find_spec(module), module
 
 
 def test_the_first_kick_is_the_kick_of_the_lesson():
