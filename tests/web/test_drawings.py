@@ -162,15 +162,6 @@ def test_a_kick_is_named_and_framed(page):
     assert _pixel(page, 1, 360) == _colour(page, "kick")
 
 
-def test_a_point_on_the_wheel_is_an_angle(page):
-    _draw(page, "wheel", WHEEL, **SHARP)
-    ask = "([x, y]) => drawn.module.angleAt(drawn.canvas, drawn.theme, x, y)"
-    for angle in (-3.0, -1.0, 0.5, 2.0):
-        place = _wheel_at(page, 0.7 * cos(angle), 0.7 * sin(angle))
-        assert page.evaluate(ask, list(place)) == pytest.approx(angle)
-    assert page.evaluate(ask, list(_wheel_at(page, 1.3, 0))) is None
-
-
 def test_a_spike_of_one_tick_is_as_high_as_a_lasting_one(page):
     flat, spike, high = [0.0] * 6000, [0.0] * 6000, [1.0] * 6000
     spike[3000] = 1.0

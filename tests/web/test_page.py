@@ -313,8 +313,11 @@ def test_a_wheel_is_pulled_by_the_pointer_and_by_a_key(visit, station):
     )
     x, y = box["x"] + axle["x"], box["y"] + axle["y"]
     visitor.page.evaluate("scrollTo(0, 0)")
-    visitor.page.mouse.move(x + 0.8 * axle["radius"], y)
-    visitor.page.mouse.down()
+    for beside in (1.3, 0.8):
+        assert pulls == []
+        visitor.page.mouse.move(x + beside * axle["radius"], y)
+        visitor.page.mouse.up()
+        visitor.page.mouse.down()
     visitor.page.mouse.move(x, y - 0.8 * axle["radius"], steps=5)
     wait_for(visitor, lambda: len(pulls) > 1 and pulls[-1][1] - pulls[0][1] > 1.4)
     visitor.page.mouse.up()

@@ -3,6 +3,7 @@
 import pytest
 
 from tests.web.test_basins import Halves
+from tests.web.test_beside import robot, show  # noqa: F401 - a fixture
 from tests.web.test_page import Forecast, kick
 
 # Notes each text that a drawing writes: its height, and where its letters are, in CSS pixels. After
@@ -113,6 +114,28 @@ def test_texts_in_drawings_are_large_and_do_not_cover_each_other(projector, stat
     }
     assert {"M", "ω", "rad/s", "x₁", "forward"} <= set(texts["seen"]["left-wheel"])
     assert {"x", "M", "ω"} <= set(texts["seen"]["strips"])
+
+
+@pytest.mark.parametrize("names", [("anna", "bert"), ("anna", "bert", "carl")], ids=len)
+@pytest.mark.parametrize("size", [(1920, 1080), (1280, 720)], ids=["1080", "720"])
+def test_texts_of_robots_side_by_side_are_large_too(show, names, size):  # noqa: F811
+    stations = [robot(number, name) for number, name in enumerate(names)]
+    visitor = show(*stations, viewport={"width": size[0], "height": size[1]})
+    page = visitor.page
+    if page.get_attribute("#projector", "aria-pressed") == "false":
+        page.click("#projector")
+    page.wait_for_selector("html.projector")
+    page.evaluate(FRAMES, 3)
+    page.evaluate(LISTEN)
+    page.click("#kick-position")
+    visitor.until("s.robots[0].kicks.length === 1")
+    for _ in range(4):
+        for station in stations:
+            station.step(0.03)
+        page.evaluate(FRAMES, 3)
+    texts = page.evaluate("({ ...texts, complaints: [...texts.complaints] })")
+    assert texts["complaints"] == []
+    assert {"Left", "Right", "Position", "turns/s", "lag"} <= set(texts["seen"][""])
 
 
 def test_texts_beside_drawings_are_large_too(projector, station):

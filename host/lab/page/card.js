@@ -56,8 +56,11 @@ export class Card {
             const canvas = element("canvas", { role: "img" });
             this.#canvases[name] = canvas;
             this.root.append(element("figure", { className: name }, canvas));
-            // Of several drawings each is small, on a projector too.
-            const theme = () => fitted(screen.theme, canvas, letters, lines);
+            // Of several drawings each is small, on a projector too; a plane bears its large text.
+            const theme = () =>
+                name === "plane"
+                    ? screen.themeFor(canvas, letters, lines)
+                    : fitted(screen.theme, canvas, letters, lines);
             frames.add(canvas, draw, () => this.#views && [view(this.#views), theme()]);
         }
         this.#canvases.plane.setAttribute("aria-label", texts.lagPlane);

@@ -1,10 +1,12 @@
 /** The hand: pull a wheel of a simulated robot with the pointer, or with the arrow keys. */
 
-import { angleAt, layout } from "./draw/wheel.js";
+import { layout } from "./draw/wheel.js";
 
 const EVERY_MS = 50;
 // How far an arrow key pulls, rad.
 const KEY_PULL = 1;
+// How far from the axle a wheel can be grasped, in radii.
+const REACH = 1.2;
 
 export class Hand {
     #target = null;
@@ -54,20 +56,17 @@ export class Hand {
     }
 
     #grab(event) {
-        if (
-            !this.allowed ||
-            angleAt(this.canvas, this.screen.theme, ...this.#place(event)) === null
-        )
-            return;
+        const { angle, reach } = this.#pointed(event);
+        if (!this.allowed || reach > REACH) return;
         event.preventDefault();
         this.canvas.setPointerCapture(event.pointerId);
-        this.before = this.#pointed(event);
+        this.before = angle;
         this.#pull(this.angle());
     }
 
     #move(event) {
         if (this.#target === null || !this.canvas.hasPointerCapture(event.pointerId)) return;
-        const at = this.#pointed(event);
+        const { angle: at } = this.#pointed(event);
         const turned = Math.atan2(Math.sin(at - this.before), Math.cos(at - this.before));
         this.before = at;
         this.#target += turned;
@@ -97,15 +96,11 @@ export class Hand {
         this.lab.send({ type: "hand", robot, wheel, angle_rad: this.#target });
     }
 
-    #place(event) {
-        const box = this.canvas.getBoundingClientRect();
-        return [event.clientX - box.left, event.clientY - box.top];
-    }
-
-    /** The angle at which the pointer is, seen from the axle, rad. */
+    /** Where the pointer is, seen from the axle: the angle, rad, and the distance, in radii. */
     #pointed(event) {
         const axle = layout(this.canvas, this.screen.theme);
-        const [x, y] = this.#place(event);
-        return Math.atan2(axle.y - y, x - axle.x);
+        const box = this.canvas.getBoundingClientRect();
+        const [right, up] = [event.clientX - box.left - axle.x, axle.y - event.clientY + box.top];
+        return { angle: Math.atan2(up, right), reach: Math.hypot(right, up) / axle.radius };
     }
 }

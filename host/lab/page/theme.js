@@ -86,6 +86,7 @@ const PROJECTED = 1 / 40;
  * @property {Object<string, string>} grey the same names, for what is no longer up to date
  * @property {number} scale device pixels per CSS pixel
  * @property {number} text height of the text, CSS pixels
+ * @property {number} legible a smaller text cannot be read from where people are, CSS pixels
  * @property {number} least no text is smaller than this, in heights of the text
  * @property {number} line width of an ordinary line, CSS pixels
  * @property {number[]} dash of a dashed line, for setLineDash
@@ -129,9 +130,9 @@ export function theme({ dark, scale, height }, projector = false) {
     const text = projector ? Math.max(TEXT, height * PROJECTED) : TEXT;
     const line = text / 8;
     const dash = [3 * line, 2 * line];
-    const least = projector ? 1 : 0;
+    const [least, legible] = projector ? [1, text] : [0, 0];
     const tools = { start, write, measure, rule, arrowHead, ticks, number };
-    return { colours, grey, scale, text, least, line, dash, ...tools };
+    return { colours, grey, scale, text, legible, least, line, dash, ...tools };
 }
 
 /**

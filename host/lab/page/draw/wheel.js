@@ -56,21 +56,6 @@ export function layout(canvas, theme) {
 }
 
 /**
- * The wheel's angle at which its pin is nearest to a point.
- *
- * @param {HTMLCanvasElement} canvas the drawing's
- * @param {Object} theme see theme.js
- * @param {number} x from the canvas's left edge, CSS pixels
- * @param {number} y from its upper edge, CSS pixels
- * @returns {?number} rad, from -pi to pi; null beside the wheel
- */
-export function angleAt(canvas, theme, x, y) {
-    const at = layout(canvas, theme);
-    const [right, up] = [(x - at.x) / at.radius, (at.y - y) / at.radius];
-    return Math.hypot(right, up) > 1.2 ? null : Math.atan2(up, right);
-}
-
-/**
  * Draw a wheel.
  *
  * @param {HTMLCanvasElement} canvas its width and height are device pixels
@@ -80,6 +65,8 @@ export function angleAt(canvas, theme, x, y) {
 export function draw(canvas, state, theme) {
     const { ctx, width, height, colours } = theme.start(canvas, state.stale);
     const sheet = { ctx, colours, theme, line: theme.line, ...layout(canvas, theme) };
+    // Where there is no room for all that can be said, it says the least.
+    sheet.terse = theme.text < theme.legible;
     // Half the size of a mark, in radii; and what a kick's frame leaves free, CSS pixels.
     sheet.mark = Math.max(0.12, (0.36 * theme.text) / sheet.radius);
     sheet.edge = 3 * theme.line;
@@ -130,21 +117,24 @@ function dot({ ctx, x, y, radius, line: width }, [right, up], r, colour, edge) {
 }
 
 function scale(sheet, rod) {
-    const { ctx, colours, theme, x, y, radius, line: width, quiet } = sheet;
+    const { ctx, colours, theme, x, y, radius, line: width, quiet, terse } = sheet;
     line(sheet, [place(rod, -1, SCALE), place(rod, 1, SCALE)], colours.axis, 0.6 * width);
+    const write = (text, [right, up], aside, below, how) =>
+        theme.write(ctx, text, x + right * radius + aside, y - up * radius + below, how);
     for (const value of [-1, 0, 1]) {
-        const [right, up] = place(rod, value, SCALE + 0.08);
-        line(sheet, [place(rod, value, SCALE), [right, up]], colours.axis, 0.6 * width);
-        const [aside, below] = rod ? [0.4, 0] : [0, 0.75];
+        const end = place(rod, value, SCALE + 0.08);
+        line(sheet, [place(rod, value, SCALE), end], colours.axis, 0.6 * width);
+        if (terse) continue;
         const how = { ...quiet, size: 0.85, align: rod ? "left" : "center" };
-        const [px, py] = [x + right * radius + aside * theme.text, y - up * radius];
-        theme.write(ctx, theme.number(value), px, py + below * theme.text, how);
+        const [aside, below] = rod ? [0.4 * theme.text, 0] : [0, 0.75 * theme.text];
+        write(theme.number(value), end, aside, below, how);
     }
-    const [right, up] = place(rod, 1.12, SCALE);
+    if (terse) return;
     const how = { ...quiet, symbol: true, align: rod ? "center" : "left" };
-    const [left, top] = [x + right * radius, y - up * radius - 0.5 * rod * theme.text];
-    const last = ctx.canvas.width / theme.scale - sheet.edge - theme.measure(ctx, "x₁", how);
-    theme.write(ctx, rod ? "x₂" : "x₁", rod ? left : Math.min(left, last), top, how);
+    const end = place(rod, 1.12, SCALE);
+    const room = ctx.canvas.width / theme.scale - sheet.edge - theme.measure(ctx, "x₁", how);
+    const aside = rod ? 0 : Math.min(0, room - x - end[0] * radius);
+    write(rod ? "x₂" : "x₁", end, aside, -0.5 * rod * theme.text, how);
 }
 
 /** The spoke to the pin, and the neurons' memory beside it. */
@@ -228,8 +218,10 @@ function force(sheet, torque, pin) {
 function directions(sheet, { omega_rad_s: omega, labels }) {
     const { ctx, colours, theme, x, y, radius, quiet, edge } = sheet;
     arc(sheet, 3.4, 4.0, colours.faint, 0.8 * theme.line);
-    const left = x - 0.65 * radius - theme.measure(ctx, labels?.forward ?? "", quiet);
-    theme.write(ctx, labels?.forward ?? "", Math.max(edge, left), y + 1.42 * radius, quiet);
+    if (!sheet.terse) {
+        const left = x - 0.65 * radius - theme.measure(ctx, labels?.forward ?? "", quiet);
+        theme.write(ctx, labels?.forward ?? "", Math.max(edge, left), y + 1.42 * radius, quiet);
+    }
     const half = Math.max(-LONGEST_ARC, Math.min(LONGEST_ARC, omega * ARC_S)) / 2;
     if (!(Math.abs(half) > 0.02)) return;
     arc(sheet, Math.PI / 2 - half, Math.PI / 2 + half, colours.ink, 1.8 * theme.line);
@@ -249,18 +241,28 @@ function arc({ ctx, theme, x, y, radius }, from, to, colour, width) {
 }
 
 /** Numbers where the picture is empty, below on the right: as many as there is room for. */
-function readout({ ctx, colours, theme, x, y, radius }, state, width, height) {
-    const text = theme.text;
-    const left = x + Math.max(1.2 * radius, 0.8 * radius + 2 * text);
+function readout({ ctx, colours, theme, x, y, radius, terse }, state, width, height) {
+    const text = terse ? theme.legible : theme.text;
+    const size = text / theme.text;
+    const how = { colour: state.kick ? colours.paper : colours.ink, bold: true, size };
+    const title = state.kick || (state.title ?? "");
+    const last = width - theme.measure(ctx, title, how) - 0.5 * text;
+    const left = Math.min(x + Math.max(1.2 * radius, terse ? 0 : 0.8 * radius + 2 * text), last);
     const room = Math.min(width - left - 0.5 * text, 11 * text);
-    const step = 1.45 * text;
-    let line = y + 1.5 * radius;
+    const step = (terse ? 1.3 : 1.45) * text;
+    let line = y + (terse ? 1.8 : 1.5) * radius;
     if (state.kick) {
         ctx.fillStyle = colours.kick;
         ctx.fillRect(left - 0.4 * text, line - 0.7 * text, room + 0.4 * text, 1.4 * text);
     }
-    const how = { colour: state.kick ? colours.paper : colours.ink, bold: true };
-    theme.write(ctx, state.kick || (state.title ?? ""), left, line, how);
+    theme.write(ctx, title, left, line, how);
+    const { omega_rad_s: omega, labels } = state;
+    const turns = [theme.number(omega / 2 / Math.PI, 1, true), labels?.turns ?? ""];
+    if (terse) {
+        theme.write(ctx, turns[0], left, line + step, { colour: colours.ink, size });
+        theme.write(ctx, turns[1], left, line + 2 * step, { colour: colours.faint, size });
+        return;
+    }
     const row = (name, value, unit, colour) => {
         line += step;
         if (line > height - 0.5 * text) return;
@@ -269,12 +271,11 @@ function readout({ ctx, colours, theme, x, y, radius }, state, width, height) {
         theme.write(ctx, value, numbers, line, { colour, align: "right" });
         theme.write(ctx, unit, numbers + 0.4 * text, line, { colour: colours.faint });
     };
-    const { omega_rad_s: omega, labels } = state;
     const motor = state.torque !== undefined;
     if (motor) row("M", theme.number(state.torque, 2, true), "", colours.force);
     if (motor) gauge({ ctx, colours, theme }, left, (line += 0.85 * step), room, state);
     row("ω", theme.number(omega, 1, true), "rad/s", colours.ink);
-    row("", theme.number(omega / 2 / Math.PI, 1, true), labels?.turns ?? "", colours.ink);
+    row("", ...turns, colours.ink);
     if (motor) row(labels?.duty ?? "", theme.number(state.duty_pct, 0, true), "%", colours.ink);
 }
 
