@@ -24,6 +24,7 @@ class Notebook:
 
     def __init__(self, browser, url):
         self.complaints = []
+        self._ran = set()
         self.page = browser.new_page(viewport={"width": 1280, "height": 1000})
         self.page.set_default_timeout(PATIENCE_MS)
         self.page.on("console", self._hear)
@@ -39,8 +40,16 @@ class Notebook:
     def _until(self, expression, **values):
         self.page.wait_for_function(expression, **values)
 
+    def need(self, *numbers):
+        """Run those cells that have not run yet, one after the other."""
+        for number in numbers:
+            if number not in self._ran:
+                self.run(number)
+                self.ended(number)
+
     def run(self, number):
         """Run a cell, and look at it."""
+        self._ran.add(number)
         self.page.evaluate(
             """number => {
                 const notebook = jupyterapp.shell.currentWidget.content;

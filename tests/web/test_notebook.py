@@ -28,17 +28,25 @@ ROBOT, BUSY, EMBEDDED, LOG, COUNT = 1, 2, 3, 4, 5
 
 
 @pytest.fixture(scope="module")
-def robot():
+def program():
     """A robot in real time."""
-    robot = TcpRobot(tick_s=0.03)
-    yield robot
-    robot.close()
+    program = TcpRobot(tick_s=0.03)
+    yield program
+    program.close()
+
+
+@pytest.fixture
+def robot(program):
+    """The same robot, and it runs."""
+    if STATES[program.loop.safety.state] != "running":
+        program.loop.start()
+    return program
 
 
 @pytest.fixture(scope="module")
-def jupyter(robot, tmp_path_factory):
+def jupyter(program, tmp_path_factory):
     """The address of a notebook in a JupyterLab of its own."""
-    cells = [source.replace("{port}", str(robot.port)) for source in CELLS]
+    cells = [source.replace("{port}", str(program.port)) for source in CELLS]
     with jupyter_lab(tmp_path_factory.mktemp("jupyter"), cells) as url:
         yield url
 
@@ -69,7 +77,7 @@ def test_stop_stops_the_robot_at_once_while_python_is_busy(notebook, robot):
 
 
 def test_escape_stops_it_only_where_the_focus_is_in_the_widget(notebook, robot):
-    robot.loop.start()
+    notebook.need(ROBOT)
     # The widget was there before this cell has run.
     notebook.run(BUSY)
     notebook.until(ROBOT, "s.state === 'running' && s.stop === ''")
@@ -81,6 +89,7 @@ def test_escape_stops_it_only_where_the_focus_is_in_the_widget(notebook, robot):
     escape = {"key": "Escape", "bubbles": True, "cancelable": True}
     notebook.cell(ROBOT).locator(".stop").dispatch_event("keydown", escape)
     notebook.until(ROBOT, "s.state === 'stopped'")
+    assert STATES[robot.loop.safety.state] == "stopped"
     assert notebook.busy(BUSY)
     notebook.command("kernelmenu:interrupt")
     notebook.ended(BUSY)
@@ -97,6 +106,7 @@ def test_an_embedded_robots_seconds_are_shown_as_seconds_also_after_its_end(note
 
 
 def test_a_logs_slider_shows_the_ticks_own_numbers(notebook):
+    notebook.need(EMBEDDED)
     notebook.run(LOG)
     notebook.until(LOG, "s.frames > 2")
     with kickctl.connect("sim://?seed=1") as embedded, embedded.recording() as log:
@@ -118,6 +128,7 @@ def test_a_logs_slider_shows_the_ticks_own_numbers(notebook):
 
 
 def test_a_cell_that_runs_again_leaves_nothing_behind(notebook):
+    notebook.need(EMBEDDED)
     for _ in range(2):
         notebook.run(ROBOT)
         notebook.until(ROBOT, "s.records > 0")
