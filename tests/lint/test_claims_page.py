@@ -1,6 +1,9 @@
 """docs/claims.md and README.md say what `kickctl reproduce` has answered."""
 
-from docs.site.claims import PAGE, load, rendered
+import re
+
+from docs.site.badges import FOLDER, badges
+from docs.site.claims import PAGE, counted, load, rendered
 from host.perform.reproduce import claim_ids
 from host.runs.claim_sentences import SENTENCES
 from host.runs.claims import FAILS, HOLDS
@@ -28,8 +31,18 @@ def test_help_has_the_same_sentences():
 def test_the_readme_counts_them():
     verdicts = [claim["verdict"] for claim in load()["claims"]]
     rods = 1  # B4, which `kickctl rods` shows
-    count = f"{verdicts.count(HOLDS) + rods} of {len(verdicts) + rods} hold"
-    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    assert count in readme
+    assert counted() == f"{verdicts.count(HOLDS) + rods} of {len(verdicts) + rods} hold"
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert counted() in " ".join(readme.split())
     assert verdicts.count(FAILS) == 2
     assert "Two do not hold" in readme
+
+
+def test_the_badges_are_true_and_all_are_shown():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown = dict(re.findall(r"!\[(.*?)\]\(docs/pictures/(badge-.*?)\)", readme))
+    assert {*shown.values()} == {*badges()}
+    for words, name in shown.items():
+        svg = (FOLDER / name).read_text(encoding="utf-8")
+        assert svg == badges()[name], "write it by: python -m docs.site.badges"
+        assert f"<title>{words}</title>" in svg
