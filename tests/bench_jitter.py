@@ -62,7 +62,7 @@ def schedules(seconds: float = SECONDS) -> None:
             continue
         _show(title, late, missed, GOALS_MS.get(load), waits)
         print(
-            "  kick, from command to the begin of its tick: median"
+            "  kick, from command to the beginning of its tick: median"
             f" {1000 * statistics.median(kicks):.1f} ms, at most {1000 * max(kicks):.1f} ms"
             f" ({len(kicks)} kicks; the tick is 30 ms)",
             flush=True,
@@ -224,7 +224,7 @@ def _desk_robot(cores, seconds, priority, program=("-m", "sim_motor")):
 
 
 def _kick_latency(robot, log) -> float:
-    """From sending a kick to the begin of its tick, s, by this machine's clock."""
+    """From sending a kick to the beginning of its tick, s, by this machine's clock."""
     asked = time.monotonic()
     clock_s = robot.status()["clock_s"]
     sent = time.monotonic()

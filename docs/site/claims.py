@@ -29,9 +29,9 @@ def load() -> dict[str, Any]:
 
 
 def counted() -> str:
-    """How many claims hold, in words. Among them is B4, which `kickctl rods` shows."""
+    """How many claims hold, in words."""
     claims = [Claim.from_dict(claim) for claim in load()["claims"]]
-    return f"{sum(bool(claim.holds) for claim in claims) + 1} of {len(claims) + 1} hold"
+    return f"{sum(bool(claim.holds) for claim in claims)} of {len(claims)} hold"
 
 
 def rendered(page: str) -> str:
@@ -48,7 +48,7 @@ def rendered(page: str) -> str:
 
 def _table(claims: list[Claim], at_preset: dict[str, Claim], kind: str) -> str:
     chosen = [claim for claim in claims if claim.id.startswith(kind)]
-    head = ["id", "claim", "the paper has", "measured", "verdict"]
+    head = ["id", "claim", "asked for", "measured", "verdict"]
     rows = [_row(claim) for claim in chosen]
     if chosen[0].id in at_preset:
         head.append("in the setting `paper`")

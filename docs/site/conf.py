@@ -20,6 +20,7 @@ html_theme = "pydata_sphinx_theme"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_js_files = ["math.js"]
 html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_title = f"Kick control {release}"
 html_copy_source = False

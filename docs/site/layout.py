@@ -25,7 +25,7 @@ _RUN = re.compile(r"(?<=^\| )`([-\w]+)`(?= \|)", re.MULTILINE)
 # What stands above the first picture of the first page.
 _BEGIN = f"""\
 **Begin with [the first kick in ten minutes](docs/first-kick.md).** These pages are those of release
-{__version__}.
+{__version__}, and of what has come since, which stands first in [the changelog](CHANGELOG.md).
 
 ![The rods of a wheel, and a kick that reverses it](docs/rods.gif)
 

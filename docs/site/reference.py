@@ -25,8 +25,9 @@ _PARAMETERS = """\
 runs, and `--set NAME=VALUE` gives one to the robot that is simulated without `--brick`.
 """
 _CHANNELS = """\
-The robot records these in every tick. `kickctl log export` writes them as columns,
-`log.column(NAME)` in Python gives one as an array; [logs](../docs/logs.md) says more.
+The robot records these in every tick. `log.column(NAME)` in Python gives one as an array.
+`kickctl log export` writes them as columns, `kick` and `state` in words, and adds the wheels'
+speeds, `left_omega_rad_s` and `right_omega_rad_s`; [logs](../docs/logs.md) says more.
 """
 _FAULTS = """\
 What can go wrong with a robot, how long its motors may run on then, and the words by which you know

@@ -74,7 +74,7 @@ def _print(claims: list["Claim"], at_preset: dict[str, "Claim"], skipped: dict[s
 
     from host.runs.presets import ABOUT
 
-    table = Table("", "claim", "paper", "measured", "in the setting 'paper'", show_lines=True)
+    table = Table("", "claim", "asked for", "measured", "in the setting 'paper'", show_lines=True)
     for claim in claims:
         other = at_preset.get(claim.id)
         table.add_row(

@@ -153,7 +153,7 @@ def _angle_at(time: float, phi: Sequence[float], t: Sequence[float]) -> float:
 
 
 def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
-    """How long after the begin of a kick a wheel had settled.
+    """How long after the beginning of a kick a wheel had settled.
 
     Args:
         log: the log.

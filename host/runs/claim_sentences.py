@@ -40,7 +40,7 @@ SENTENCES = {
     "M6": "far above the onset, locomotion has the speed of the constant-velocity formula",
     "M7": "the plane (k, tau) has four phases, S, FB, LLM and C; rest ends near k tau = 2 f / a",
     "M8": "at k = 15 and tau = 1 s a wheel is chaotic: its largest Lyapunov exponent is positive",
-    "M9": "the membrane potentials of a wheel that turns steadily are those of eq. x-t",
+    "M9": "the membrane potentials of a wheel that turns steadily are those of the paper's formula",
     "B1": (
         "a car with one rod for each wheel follows intricate trajectories, and stays inside "
         "confining slopes"

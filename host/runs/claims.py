@@ -70,11 +70,11 @@ class Claim:
         return f"{self.measured:.3g}{unit}{interval}"
 
     def sentence(self) -> str:
-        """The verdict, the claim, what was measured and the paper's number, on one line."""
+        """The verdict, the claim, what was measured and what is asked for, on one line."""
         verdict = self.verdict.upper() if self.holds is False else self.verdict
         note = f", {self.note}" if self.note else ""
         return (
-            f"{self.id} {verdict}: {self.claim}. Measured: {self.number()}{note}. Paper:"
+            f"{self.id} {verdict}: {self.claim}. Measured: {self.number()}{note}. Asked for:"
             f" {self.paper}."
         )
 

@@ -104,7 +104,7 @@ def _table(claims: Sequence[Claim], at_preset: Mapping[str, Claim], skipped: dic
         _row(escape(number), "", "", "not measured", "", escape(reason))
         for number, reason in skipped.items()
     ]
-    names = ("", "claim", "paper", "measured", "in the setting 'paper'", "note")
+    names = ("", "claim", "asked for", "measured", "in the setting 'paper'", "note")
     head = "".join(f"<th>{name}</th>" for name in names)
     about = f"<p>{escape(ABOUT)}</p>\n" if at_preset else ""
     return f"<table>\n<tr>{head}</tr>\n{''.join(rows)}</table>\n{about}"

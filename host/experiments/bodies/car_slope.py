@@ -47,7 +47,7 @@ class Cell(TypedDict):
 
     Attributes:
         angle: of the slopes (rad).
-        number: of its random heading at the start.
+        number: number of the random heading at the start.
     """
 
     angle: float

@@ -37,7 +37,7 @@ class Position(TypedDict):
     """Where a body, or a part of it, is at one time.
 
     Attributes:
-        t_s: time (s).
+        t_s: time since the start (s).
         x_m: x (m).
         y_m: y (m).
     """

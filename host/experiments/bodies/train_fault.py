@@ -54,7 +54,7 @@ class Cell(Fault):
     """One train.
 
     Attributes:
-        number: of its random start, a slight bend, and of its wheels' radii.
+        number: number of the random start (a slight bend) and of the wheels' random radii.
     """
 
     number: int

@@ -28,7 +28,7 @@ class Train(TypedDict):
     """One kind of train.
 
     Attributes:
-        preset: its name.
+        preset: name of the preset.
         k: spring constant of its rods (N).
     """
 
@@ -50,7 +50,7 @@ class Cell(Kind):
     """One train.
 
     Attributes:
-        number: of its random phases and heading at the start.
+        number: number of the random phases and heading at the start.
     """
 
     number: int

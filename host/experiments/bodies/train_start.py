@@ -27,8 +27,8 @@ class Cell(TypedDict):
     """One train.
 
     Attributes:
-        preset: its name.
-        number: of its random start.
+        preset: name of the preset.
+        number: number of the random start.
     """
 
     preset: str
@@ -39,7 +39,7 @@ class Sample(TypedDict):
     """The train at one time.
 
     Attributes:
-        t_s: time (s).
+        t_s: time since the start (s).
         order: order parameter of the wheels, from 0 to 1 (1).
         omega_rad_s: their mean omega (rad/s).
     """

@@ -41,7 +41,7 @@ class Train(TypedDict):
     """One kind of train.
 
     Attributes:
-        preset: its name.
+        preset: name of the preset.
         drag: of the wheels (N s/rad); None is the preset's.
     """
 
@@ -99,7 +99,7 @@ class Moment(TypedDict):
     """The train at one time.
 
     Attributes:
-        t_s: time (s).
+        t_s: time since the start (s).
         x_m: x of its middle (m).
         omega_rad_s: mean omega of its wheels (rad/s).
     """

@@ -53,7 +53,7 @@ class Train(TypedDict):
     """One kind of train.
 
     Attributes:
-        preset: its name.
+        preset: name of the preset.
         drag: of wheels (N s/rad) for snake2019, of bodies (N s/m) for paper.
     """
 
@@ -109,7 +109,7 @@ class JointAngle(TypedDict):
 
     Attributes:
         joint: its number from the head, from 1 on.
-        t_s: time (s).
+        t_s: time since the start (s).
         deg: yaw (degrees).
     """
 

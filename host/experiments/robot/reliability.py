@@ -54,7 +54,7 @@ class Trial(TypedDict):
     Attributes:
         before: its direction before the kick, 1 forward or -1 backward.
         reversed: whether it runs in the other direction afterwards.
-        settling_s: time from the kick's begin until it has settled (s); None if it has not.
+        settling_s: time from the kick's beginning until it has settled (s); None if it has not.
     """
 
     before: int

@@ -22,7 +22,7 @@ class Slip(TypedDict):
     settle, what depends on it is None.
 
     Attributes:
-        settling_left_s: time from the kick's begin until the left wheel settled (s).
+        settling_left_s: time from the kick's beginning until the left wheel settled (s).
         settling_right_s: the same for the right wheel (s).
         relative_before_rad: relative phase before the kick (rad), from -pi to pi.
         relative_after_rad: relative phase after both wheels settled (rad), from -pi to pi.
@@ -99,7 +99,7 @@ class SettledKick(NamedTuple):
 
     Attributes:
         kick_s: length of the kick (s).
-        settling_s: time from the kick's begin until the slower wheel settled (s).
+        settling_s: time from the kick's beginning until the slower wheel settled (s).
         before_rad: relative phase before the kick (rad).
         after_rad: relative phase after both wheels settled (rad).
         slip_rad: change of the relative phase (rad).

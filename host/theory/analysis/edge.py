@@ -168,7 +168,7 @@ def departures(wheel: Wheel, path: EdgePath, memories: float) -> Iterator[tuple[
         memories: For how long after they have parted, in units of the wheel's memory.
 
     Yields:
-        Times from the path's begin, s, (points,), and states, (4, points): forward, then backward.
+        Times from the path's start, s, (points,), and states, (4, points): forward, then backward.
     """
     step_s = _STEP_MEMORIES * memory_s(wheel)
     pair = np.stack([path.forward, path.backward], axis=1)

@@ -40,7 +40,7 @@ class Clock(NamedTuple):
 
     Attributes:
         tick_s: How often it reads, s.
-        latency_s: How long after a tick's begin its decision acts, s.
+        latency_s: How long after a tick's beginning its decision acts, s.
         fresh: Whether the force is that of the potentials after this tick's step, as on the robot,
             else that of the tick before.
     """
@@ -55,7 +55,7 @@ class Clock(NamedTuple):
             raise WrongUse(f"a tick cannot last {self.tick_s!r} s", "give a finite number above 0")
         if not 0.0 <= self.latency_s <= self.tick_s:
             raise WrongUse(
-                f"a torque cannot act {self.latency_s!r} s after the begin of a tick of"
+                f"a torque cannot act {self.latency_s!r} s after the beginning of a tick of"
                 f" {self.tick_s:g} s",
                 "give 0 to a whole tick",
             )
@@ -300,7 +300,7 @@ def as_robot(
         kick: The kick, or None.
 
     Returns:
-        (phi, omega) at the begin of each tick, (2, ticks).
+        (phi, omega) at the beginning of each tick, (2, ticks).
     """
     neurons, params = robot.wheel.Wheel(WHEELS[0]), Params()
     params.a, params.tau_s, params.k = wheel.a, wheel.tau, wheel.k

@@ -24,7 +24,7 @@ def test_plain_data_has_the_verdict_beside_holds_and_comes_back(holds):
 def test_a_claim_that_does_not_hold_stands_out_in_its_sentence():
     sentence = claim(True, note="the mean of 9 wheels").sentence()
     measured = "Measured: 0.5 Hz (0.4 to 0.6), the mean of 9 wheels."
-    assert sentence == f"R8 holds: it reverses. {measured} Paper: always."
+    assert sentence == f"R8 holds: it reverses. {measured} Asked for: always."
     assert claim(False).sentence().startswith("R8 DOES NOT HOLD: ")
     assert claim(None).sentence().startswith("R8 undecided: ")
 
