@@ -34,7 +34,7 @@ _THEORY = "docs/theory.md"
 _BODIES = "docs/bodies.md"
 
 NOTES = {
-    "demo": Note("--seed 1", "6 s", "docs/first-kick.md"),
+    "demo": Note("--seed 1", "6 s", "docs/claims.md"),
     "kick": Note("--mode phase --ticks 4 --seed 6", "2 s", "docs/first-kick.md"),
     "plan": Note("--to backward", "1 s; with --search 10 to 60 s", _EXPERIMENTS),
     "drive": Note(

@@ -18,8 +18,17 @@ _OF_THE_BODY = ("polarity_left", "polarity_right")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The action and its names."""
-    parser.add_argument("action", choices=("list", "get", "set", "reset"))
-    parser.add_argument("names", nargs="*", metavar="NAME[=VALUE]")
+    parser.add_argument(
+        "action",
+        choices=("list", "get", "set", "reset"),
+        help="what to do; kickctl params list shows all names with their units and ranges",
+    )
+    parser.add_argument(
+        "names",
+        nargs="*",
+        metavar="NAME[=VALUE]",
+        help="a parameter, as in get k; for set with its value, as in set k=2.5 tau_s=1",
+    )
     add_take_over(parser)
 
 

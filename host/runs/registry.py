@@ -15,11 +15,6 @@ from host.errors import WrongUse
 from host.util.arguments import shown
 from host.util.numbers import Values
 
-# What people read about sweeps below the options.
-SWEEPS = (
-    "Several values of one number or of two make a sweep, with one table and one figure for all:"
-    " --k 1,2,4 or --k 0.5:5:10 (start:stop:count, with both ends)."
-)
 # Options of some runs that people look for in others, and what to tell them there.
 ELSEWHERE = {
     "noise": "for white noise of the torque there is: kickctl theory escape --noise 0.1",
@@ -132,10 +127,32 @@ def _single(option: Option, value: Any) -> Any:
     return _type(option)(value)
 
 
+def _sweeps(options: Iterable[Option]) -> str:
+    """What people read about sweeps below the options; empty if no option can be swept."""
+    numbers = [option for option in options if not option.choices]
+    if not numbers:
+        return ""
+    k = next((option for option in numbers if option.name == "k" and option.least <= 0.5), None)
+    flag, values, span = ("--k", "1,2,4", "0.5:5:10") if k else _sweep_of(numbers)
+    return (
+        "Several values of one number or of two make a sweep, with one table and one figure for"
+        f" all: {flag} {values} or {flag} {span} (start:stop:count, with both ends)."
+    )
+
+
+def _sweep_of(numbers: Iterable[Option]) -> tuple[str, str, str]:
+    """The flag of the first option with a default, two values, and evenly spaced ones."""
+    option = next(option for option in numbers if option.default is not None)
+    most = int(option.default or 0)
+    least = max(int(option.least), most // 2)
+    steps = next(count for count in (5, 4, 3, 2, 1) if (most - least) % count == 0)
+    flag = "--" + option.name.replace("_", "-")
+    return flag, f"{least},{most}", f"{least}:{most}:{steps + 1}"
+
+
 def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
     """Add a flag for each option of an entry, and the flags that all runs have."""
-    if any(not option.choices for option in entry.options):
-        parser.epilog = SWEEPS
+    parser.epilog = _sweeps(entry.options) or None
     for option in entry.options:
         own: dict[str, Any] = (
             {"choices": option.choices}
