@@ -14,6 +14,7 @@ from typing import Any, Self
 
 from host.errors import WrongUse, quotable
 from host.link.settings import number_or_text
+from host.link.sim_settings import settings
 from host.link.transport import LinkLost
 from host.util.arguments import need_seed
 from host.util.interrupts import uninterrupted
@@ -29,8 +30,11 @@ _READ_BYTES = 65536
 _SCENE = tuple(field.name for field in fields(Scene))
 # Fields of a scene that need walls.
 _OF_WALLS = ("across", "stiffness")
-_OPTIONS = ("seed", "idle", "motor", "battery", "dither", *_SCENE)
-_THEY_ARE = f"its options are {', '.join(_OPTIONS)}, and the robot's parameters: {', '.join(TABLE)}"
+_OPTIONS = tuple(setting.name for setting in settings())
+_THEY_ARE = (
+    f"its options are {', '.join(_OPTIONS)}, and the robot's parameters: {', '.join(TABLE)};"
+    " kickctl help explains each, as in kickctl help grip"
+)
 
 
 class SimLink:
@@ -70,8 +74,7 @@ class SimLink:
 
         Args:
             uri: The whole address, for messages.
-            options: seed, idle=1, motor=NAME, battery=V, dither=DEGREES, the fields of
-                sim_motor.scene.Scene, and the robot's parameters.
+            options: Those of `host.link.sim_settings.settings`, and the robot's parameters.
             seed: Overrides the seed among the options.
 
         Raises:
