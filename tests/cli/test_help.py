@@ -39,12 +39,14 @@ def names(kickctl):
         (("rod_lag_s",), "kickctl params set rod_lag_s=VALUE"),
         (("left", "torque"), "column of logs: left_torque"),
         (("R5",), "claim R5"),
-        (("k",), "kickctl params set k=VALUE"),
+        (("k",), "letter: k, spring constant"),
+        (("gain",), "letter: a, gain"),
+        (("grip",), "sim://?grip=VALUE"),
         (("seed",), "word: seed, random seed"),
         (("minutes",), "kickctl experiment NAME --minutes"),
         (("walls", "simulated", "distance"), "kickctl lab --walls"),
         (("recover", "damaged"), "kickctl log recover"),
-        (("cable", "off"), "what you see: fault: its cable came off"),
+        (("cable", "off"), "what you see: fault: left motor (outB): its cable came off"),
         (("motor", "blocked"), "what you see: it hums and does not start"),
     ],
 )
@@ -79,7 +81,7 @@ def test_all_words_must_be_found_and_a_beginning_is_enough(names):
 def test_many_places_are_named_below_the_first_ones(kickctl):
     status, out, _ = kickctl("help", "k")
     first, what, *_ = lines = out.splitlines()
-    assert (status, first) == (0, "kickctl params set k=VALUE")
+    assert (status, first) == (0, "letter: k, spring constant")
     assert "docs/model.md" in what
     assert len(lines) < 30
     assert any(line.endswith("more; one more word finds fewer:") for line in lines)

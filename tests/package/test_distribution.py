@@ -14,6 +14,7 @@ PACKAGES = [path.parent.name for path in ROOT.glob("*/py.typed")]
 # What lies in the folders of the packages and belongs into the wheel.
 WANTED = (
     "**/*.py",
+    "host/*.md",
     "robot/*.md",
     "robot/service/*",
     "sim_motor/**/*.toml",
@@ -48,6 +49,7 @@ def test_the_wheel_has_all_files_of_the_packages(wheel):
 def test_the_wheel_has_the_script_itself_and_no_tests(wheel):
     content = files_of(wheel)
     assert content["host/deploy.sh"] == (ROOT / "deploy.sh").read_bytes()
+    assert content["host/LETTERS.md"] == (ROOT / "docs" / "model.md").read_bytes()
     tops = {name.partition("/")[0] for name in content}
     assert tops == {*PACKAGES, f"kickctl-{robot.__version__}.dist-info"}
 
