@@ -19,8 +19,8 @@ INDEX = "docs/README.md"
 _LINK = re.compile(r"(?<=\]\()(?!\w+:|#)[^)#\s]+(?=[)#])|(?<=src=\")(?!\w+:)[^\"]+")
 # Words by which people look for what stands below them, in a comment that pages do not show.
 _SOUGHT = re.compile(r"^<!-- search: ([^>]+) -->$", re.MULTILINE)
-# The first column of a table of words.
-_GLOSSARY = re.compile(r"^\| word \|.*\n\|[-|]+\n(?:\|.*\n)+", re.MULTILINE)
+# Tables whose first column people look for: words, and what a robot shows and says in a fault.
+_LOOKED_UP = re.compile(r"^\| (?:word|what you see) \|.*\n\|[-|]+\n(?:\|.*\n)+", re.MULTILINE)
 _RUN = re.compile(r"(?<=^\| )`([-\w]+)`(?= \|)", re.MULTILINE)
 # What stands above the first picture of the first page.
 _BEGIN = f"""\
@@ -84,14 +84,15 @@ def _with_runs(page: str) -> str:
 
 
 def _with_entries(page: str) -> str:
-    """A page whose words the search shows first: those of comments, and those of its glossary."""
+    """A page whose words the search shows first: those of comments, and of its tables."""
 
     def with_words(found: re.Match[str]) -> str:
-        words = ",".join(row.split("|")[1] for row in found[0].splitlines()[2:])
+        cells = (row.split("|")[1].strip() for row in found[0].splitlines()[2:])
+        words = ",".join(cell.removeprefix("fault: ").replace("`", "") for cell in cells)
         return f"{_entries(words)}\n{found[0]}"
 
     page = _SOUGHT.sub(lambda found: _entries(found[1]), page)
-    return _GLOSSARY.sub(with_words, page)
+    return _LOOKED_UP.sub(with_words, page)
 
 
 def _entries(words: str) -> str:

@@ -30,8 +30,8 @@ The robot records these in every tick. `log.column(NAME)` in Python gives one as
 speeds, `left_omega_rad_s` and `right_omega_rad_s`; [logs](../docs/logs.md) says more.
 """
 _FAULTS = """\
-What can go wrong with a robot, how long its motors may run on then, and the words by which you know
-it. `make faults` causes each of them many times, and measures.
+What a robot says when something goes wrong, what to do then, and how long its motors may run on.
+`make faults` causes each of them many times, and measures.
 [When it does not move](../robot/README.md#when-it-does-not-move) has more of them.
 """
 _RESTART = "`kickctl deploy`, which starts the program again"
@@ -56,7 +56,7 @@ _REMEDIES = {
     "permission race after replug": "wait a second, and clear again",
     "EIO once": _CLEAR,
     "EIO six times": f"check the motor's cable, then {_CLEAR}",
-    "battery empty": f"charge or change it, then {_CLEAR}",
+    "battery empty": "charge or change it, then `kickctl start`; there is no fault to clear",
     "disk of the host full": "make room on this computer's disk, and record again",
     "clock jump": "nothing",
 }
@@ -129,14 +129,14 @@ def _channels() -> str:
 def _faults() -> str:
     rows: Sequence[Sequence[str]] = [
         (
-            row.name,
-            "they go on" if row.limit_s is None else f"{row.limit_s:g} s",
-            f"... {row.words} ..." if row.words else "",
+            f"... {row.words} ..." if row.words else "nothing",
             _REMEDIES[row.name],
+            "they go on" if row.limit_s is None else f"{row.limit_s:g} s",
+            row.name,
         )
         for row in ROWS
     ]
-    head = ("fault", "motors stop within", "it says", "what to do")
+    head = ("the robot says", "what to do", "motors stop within", "what causes it in the tests")
     return f"# Faults\n\n{_FAULTS}\n{table(head, rows)}"
 
 

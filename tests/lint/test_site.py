@@ -11,8 +11,10 @@ import pytest
 
 import kickctl
 import kickctl.theory
+from docs.site import reference
 from host.cli import VERBS
 from host.experiments.registry import TABLE as EXPERIMENTS
+from host.link.sim_settings import settings
 from host.perform.reproduce import claim_ids
 from host.theory.studies.registry import TABLE as STUDIES
 from robot.params import TABLE as PARAMS
@@ -100,6 +102,45 @@ def test_words_that_people_type_lead_to_their_answer_first(search):
     firsts = {word: found[word][0][: len(page)] for word, page in answers.items()}
     assert firsts == answers
     assert search(["xylophone"]) == {"xylophone": []}
+
+
+def test_what_a_robot_says_leads_to_what_to_do(search):
+    messages = [
+        "left motor (outB): its cable came off: plug it in",
+        "right motor (outC): it does not stop: pull its cable out",
+        "the watchdog has ended (signal 9)",
+        "the battery is empty (5.9 V): charge it",
+        "the battery is low (6.1 V): charge it",
+        "left motor (outA): a lego-ev3-m-motor is there: plug in a large motor",
+        "the left motor's angle is no number",
+        "EIO",
+        "was silent for 0.5 s",
+        *(row.words for row in ROWS if row.words),
+    ]
+    found = search(messages)
+    lost = [text for text, places in found.items() if not places[:1] or not leads(places[0])]
+    assert lost == []
+
+
+def leads(place):
+    """Whether a place is the robot guide or the page of faults."""
+    return place.startswith(("robot/README", "reference/faults"))
+
+
+def test_settings_of_the_simulated_robot_lead_to_their_page(search):
+    names = [setting.name for setting in settings()]
+    found = search(names)
+    page = "docs/simulated-robot"
+    assert [
+        name for name in names if not any(place.startswith(page) for place in found[name])
+    ] == []
+
+
+def test_the_page_of_faults_begins_with_what_the_robot_says():
+    page = reference.pages()["reference/faults.md"]
+    rows = {row.split(" | ")[-1].removesuffix(" |"): row for row in page.splitlines()}
+    assert [row.name for row in ROWS if row.words not in rows[row.name].split(" | ")[0]] == []
+    assert "clear`" not in rows["battery empty"]
 
 
 def test_tables_lead_to_the_pages_of_experiments(site):
