@@ -93,7 +93,11 @@ def _with_all(places: list[Place], wanted: list[str]) -> list[Place]:
 
 
 def _with_most(places: list[Place], wanted: list[str]) -> list[Place]:
-    """The places that have most of a message. Words that are in few places count more."""
+    """The places that have most of a message. Words that are in few places count more.
+
+    A single letter, as in 'how do I', means nothing in a message.
+    """
+    wanted = [word for word in wanted if len(word) > 1]
     if len(wanted) < _MESSAGE:
         return []
     known = {word: [place for place in places if place.has(word)] for word in wanted}
