@@ -62,7 +62,10 @@ def _verb(folder: str, name: str, parser: argparse.ArgumentParser) -> str:
 def _help(parser: argparse.ArgumentParser) -> str:
     style: Any = parser.formatter_class
     parser.formatter_class = partial(style, width=COLUMNS)
-    text = parser.format_help()
+    try:
+        text = parser.format_help()
+    finally:  # the program keeps its parser
+        parser.formatter_class = style
     pages = re.findall(r"^page: +(\S+)$", text, re.MULTILINE)
     links = "".join(f"\nMore: [](/{page})\n" for page in pages)
     return f"```text\n{text}```\n{links}"
