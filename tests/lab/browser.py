@@ -80,6 +80,13 @@ class Tab:
         await self.until(lambda tab: any(one["type"] == kind for one in tab.got))
         return [one for one in self.got if one["type"] == kind][-1]
 
+    async def until_nobody_drives(self):
+        """Read until the baton is free: the lab may not have noticed yet that a page has gone."""
+        await self.latest("baton")
+        await self.until(
+            lambda tab: [one for one in tab.got if one["type"] == "baton"][-1]["driver"] is None
+        )
+
     async def ask(self, kind, **fields):
         """The reply to a request."""
         number = len(self.got) + 1000
