@@ -70,15 +70,17 @@ class Baton:
             whence = "" if self.driver is None else f" from page {self.driver}"
             self._hand_to(page, now, f"page {page} has taken the baton{whence}")
 
-    def give(self, page: int, to: int, now: float) -> None:
-        """The driver hands the baton to a page that asks.
+    def give(self, page: int, role: str, to: int, now: float) -> None:
+        """Hand the baton to a page that asks: the driver, or a page that could take it.
 
         Raises:
-            RefusedByRobot: The page does not drive.
+            RefusedByRobot: The page neither drives nor has the drive key.
             NotDone: The other one does not ask.
         """
-        if self.driver != page:
-            raise RefusedByRobot("this page does not drive", "take the baton first")
+        if self.driver != page and role != DRIVE:
+            raise RefusedByRobot(
+                "this page does not drive", "a page with the drive key can hand over the baton"
+            )
         if to not in self.asking:
             raise NotDone(f"page {to} does not ask for the baton", "it may have left")
         self._hand_to(to, now, f"page {page} has given the baton to page {to}")

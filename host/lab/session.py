@@ -283,7 +283,7 @@ class Session:
         elif kind == "take":
             self.baton.take(page.number, page.role, now)
         elif kind == "give":
-            self.baton.give(page.number, requests.whole_of(message, "page"), now)
+            self.baton.give(page.number, page.role, requests.whole_of(message, "page"), now)
         else:
             self.baton.leave(page.number)
             self._abandon()

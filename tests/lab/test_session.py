@@ -86,22 +86,6 @@ def test_who_may_only_watch_does_nothing_but_stop(lab):
         assert lab.anna.take() == lab.bert.take() == [("stop",)]
 
 
-def test_the_driver_gives_the_baton_to_who_asks_and_the_teacher_takes_it_back(lab):
-    teacher, pupil = lab.driver(), lab.viewer()
-    teacher.send("ask", request=1)
-    assert teacher.drives
-    assert "does not ask" in teacher.ask("give", page=2)["error"]["message"]
-    pupil.send("ask", request=1)
-    assert teacher.latest("baton")["asking"] == [2]
-    assert "result" in teacher.ask("give", page=2)
-    assert (teacher.drives, pupil.drives) == (False, True)
-    pupil.send("do", request=2, **KICK)
-    assert lab.anna.take()
-    teacher.send("take", request=3)
-    assert (teacher.drives, pupil.drives) == (True, False)
-    assert "taken the baton from page 2" in pupil.latest("baton")["why"]
-
-
 def test_a_driver_that_leaves_gives_the_robots_back_by_their_rule(lab):
     visit = lab.driver()
     visit.send("ask", request=1)

@@ -42,6 +42,21 @@ def test_a_page_that_watches_says_why_and_gets_the_baton_when_it_asks(visit, lab
     pupil.until("s.baton.driver === null && s.note === null")  # what it said is over
 
 
+def test_a_page_that_asks_while_nobody_drives_is_seen_and_gets_the_baton(visit, lab):
+    pupil, teacher = visit(lab.view_url), visit()
+    assert teacher.state()["baton"]["driver"] is None
+    pupil.page.click("#notices >> text=Ask to drive")
+    pupil.reads("#who-drives", "Nobody drives. This page watches. You have asked to drive")
+    page = pupil.state()["page"]
+    teacher.reads("#baton", f"Page {page} asks to drive.")
+    teacher.page.reload()  # as a teacher does who has just seen it
+    teacher.page.click(f"text=Let page {page} drive")
+    pupil.until("s.baton.you")
+    pupil.page.wait_for_selector("#kick-phase:enabled")
+    teacher.reads("#who-drives", f"Page {page} drives.")
+    assert teacher.page.is_hidden(f"text=Let page {page} drive")
+
+
 def test_a_driver_may_leave(visit):
     driver = visit()
     take_baton(driver)

@@ -25,7 +25,8 @@ export function createBaton(root, lab) {
         const mine = baton.you ? texts.youDrive : canDrive ? texts.youMay : "";
         const other = baton.driver === null ? texts.nobodyDrives : texts.pageDrives(baton.driver);
         setText(who, sentences(mine || other, baton.you ? "" : baton.why));
-        const others = baton.you ? baton.asking : [];
+        // Who may take the baton may hand it on, too, also where nobody drives.
+        const others = baton.you || role === "drive" ? baton.asking : [];
         setText(asking, others.length ? texts.asks(others) : "");
         if (offered !== others.join()) {
             offered = others.join();

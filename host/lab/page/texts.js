@@ -224,14 +224,13 @@ export const texts = {
         (driving ? "One page drives, " : "No page drives, ") +
         `${counted(watching, "watches", "watch")}.`,
     ask: "Ask to drive",
-    asked: (page) => `You have asked to drive, as page ${page}. The page that drives can say yes.`,
+    asked: (page) =>
+        `You have asked to drive, as page ${page}. A page with the drive address can say yes.`,
     take: "Drive from here",
     leave: "Drive no more",
     give: (page) => `Let page ${page} drive`,
     asks: (pages) =>
-        pages.length === 1
-            ? `Page ${pages[0]} asks to drive.`
-            : `Pages ${pages.join(", ")} ask to drive.`,
+        `${pages.length > 1 ? `Pages ${pages.join(", ")} ask` : `Page ${pages[0]} asks`} to drive.`,
 
     stop: {
         sent: "STOP is on its way …",
