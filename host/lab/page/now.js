@@ -6,6 +6,9 @@ import { button, byId, element, setText, show } from "./dom.js";
 import { texts } from "./texts.js";
 import { sentences } from "./words.js";
 
+// A longer name has no room in a button between all others.
+const LONGEST_NAME = 16;
+
 /**
  * @param {import("./lab.js").Lab} lab
  * @returns {() => void} Brings the top up to date.
@@ -53,7 +56,9 @@ export function createNow(lab) {
         show(remedy, several || Boolean(helps));
         remedy.style.visibility = helps ? "" : "hidden";
         const words = texts.remedies[helps ?? "start"];
-        setText(remedy, several ? besideTexts.remedy(words, robot.name) : words);
+        const label = several ? besideTexts.remedy(words, robot.name) : words;
+        remedy.setAttribute("aria-label", label);
+        setText(remedy, robot.name.length > LONGEST_NAME ? words : label);
         remedy.disabled = !mayDrive;
     };
 }
