@@ -8,6 +8,8 @@ import { texts } from "./texts.js";
 export function createSaid(lab) {
     const region = byId("said");
     const before = new Map();
+    // Whether the link is lost that there once was.
+    let away = false;
 
     const say = (words) => {
         region.textContent = words;
@@ -33,8 +35,9 @@ export function createSaid(lab) {
             if (now === "lost") say(texts.said.lost(robot));
             else if (now === "fault") say(texts.said.fault(robot, message.reason));
             else if (then === "lost") say(texts.said.found(robot));
-        } else if (type === "link" && lab.store.link.ever) {
-            say(message.up ? texts.said.labFound : texts.said.labLost);
+        } else if (type === "link" && away === message.up) {
+            away = !message.up && lab.store.link.ever;
+            if (message.up || away) say(message.up ? texts.said.labFound : texts.said.labLost);
         }
     });
 }
