@@ -109,6 +109,7 @@ def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, A
     """The log and its tape. Says what is wrong with it."""
     from host.lab.tape import Cut, make_tape
     from host.logs.mcap_reading import LogFile
+    from host.logs.replay import nothing_compared
 
     from_s, to_s = options.from_s or 0.0, inf if options.to_s is None else options.to_s
     if from_s > to_s:
@@ -120,10 +121,11 @@ def _read(options: argparse.Namespace, path: Path) -> tuple[LogFile, dict[str, A
     tape = make_tape(log, path.name, Cut(from_s, to_s), options.twin)
     verdict = tape["verdict"]
     if not verdict["reproduced"]:
-        say(
-            f"{path} is not what the robot's program computes:"
-            f" {verdict['first_mismatch'] or 'nothing can be compared'}"
-        )
+        if verdict["compared"]:
+            say(f"{path} is not what the robot's program computes: {verdict['first_mismatch']}")
+        else:
+            nothing = nothing_compared(path if tape["part"] == "" else f"this part of {path}")
+            say(f"{nothing.message}; {nothing.hint}")
         for words in verdict["other_sources"]:
             say(words)
     return log, tape
@@ -147,7 +149,8 @@ def _export(options: argparse.Namespace, path: Path, source: Path) -> int:
         draft.write_bytes(page)
     facts = {"file": str(path), "bytes": len(page), **_facts(log, tape)}
     size = f"{len(page) / 1e6:.1f} MB"
-    answer(options, facts, f"{tape['ticks']} ticks in {path}, {size}; any browser opens it")
+    ticks = f"{tape['ticks']} tick{'s' * (tape['ticks'] != 1)}"
+    answer(options, facts, f"{ticks} in {path}, {size}; any browser opens it")
     return damage_status(log)
 
 

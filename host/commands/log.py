@@ -194,13 +194,13 @@ def _export(options: argparse.Namespace) -> int:
     else:
         ticks = save_parquet(log.stream(), log.info, out, new=new)
     facts = {"table": str(out), "ticks": ticks, **damage_facts(log)}
-    answer_beside(options, out, facts, f"{ticks} ticks in {out}")
+    answer_beside(options, out, facts, f"{ticks} tick{'s' * (ticks != 1)} in {out}")
     return damage_status(log)
 
 
 def _replay(options: argparse.Namespace) -> int:
     from host.logs.mcap_reading import LogFile
-    from host.logs.replay import other_sources, replay
+    from host.logs.replay import nothing_compared, other_sources, replay
 
     log = LogFile(options.log)
     others = other_sources(log.info)
@@ -228,10 +228,7 @@ def _replay(options: argparse.Namespace) -> int:
         say(result.why_behind_gaps)
     damage_status(log)
     if not result.compared:
-        raise NotDone(
-            f"no tick of {log.path} can be compared with the robot's program",
-            "give a longer log, or one without gaps: `kickctl record 10` writes one",
-        )
+        raise nothing_compared(log.path)
     if not result.reproduced:
         raise NotDone(f"the controller does not compute what {log.path} says", _verdict(result))
     return 0

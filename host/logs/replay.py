@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from struct import pack
 from typing import Any
 
+from host.errors import NotDone
 from host.logs.log import Gaps, Log
 from host.logs.mcap_files import LogError
 from host.logs.mcap_reading import LogFile
@@ -101,6 +102,14 @@ class ReplayResult:
         self.worst = max(self.worst, difference)
         if self.tolerance == 0.0 or not difference <= self.tolerance:
             self.beyond = self.beyond or mismatch
+
+
+def nothing_compared(path: object) -> NotDone:
+    """Why a replay says nothing of a log."""
+    return NotDone(
+        f"no tick of {path} can be compared with the robot's program",
+        "give a longer log, or one without gaps: `kickctl record 10` writes one",
+    )
 
 
 class Controller:

@@ -223,6 +223,17 @@ def test_an_export_says_its_size_and_replaces_no_file(kickctl, log):
     assert out.startswith("486 ticks in a.html, 0.")
 
 
+def test_of_one_tick_nothing_false_is_said(kickctl):
+    assert kickctl("record", "0.001", "--out", "one.mcap")[0] == 0
+    words = "no tick of one.mcap can be compared with the robot's program"
+    assert words in kickctl("log", "replay", "one.mcap")[2]
+    status, out, err = kickctl("lab", "--export", "one.html", "one.mcap")
+    assert status == 0
+    assert out.startswith("1 tick in one.html, ")
+    assert err.startswith(words)
+    assert "is not what the robot's program computes" not in err
+
+
 def test_a_replay_is_served_until_it_is_ended(log):
     with lab("--replay", str(log)) as (process, info):
         place, _, key = info["replay"].partition("#view=")
