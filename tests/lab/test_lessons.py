@@ -59,6 +59,10 @@ def test_who_does_an_exercise_passes(works, name):
     assert failed(LESSONS[name], works[name]) == []
 
 
+def test_a_check_counts_as_people_do():
+    assert [checks._times(count) for count in (0, 1, 9)] == ["0 times", "once", "9 times"]
+
+
 @pytest.mark.parametrize("name", LESSONS)
 def test_who_has_done_nothing_does_not_pass(name):
     assert failed(LESSONS[name], ([], None) if name in RUN else Log({}))

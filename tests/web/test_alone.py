@@ -127,6 +127,7 @@ def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
     visitor.until(ROLLS)
     assert visitor.robot()["name"] == "simulated"
     assert page.is_hidden("#state .identify")  # there is one robot only
+    assert "`" not in page.locator("body").inner_text()
     assert set(kick(visitor, "phase").values()) == {"reverses"}
     kept = page.evaluate("kept")
     records = [one for message in kept for one in records_of(base64.b64decode(message))]

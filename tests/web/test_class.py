@@ -23,7 +23,7 @@ def test_a_class_answers_before_the_kick_and_is_counted_after_it(visit, lab, sta
     pupil.reads(".bars", "1 of 1 say: reverse")
     pupil.page.wait_for_selector("#class .choices", state="hidden")
     station.step(2.5)
-    teacher.reads("#class", "Left wheel reversed, Right wheel reversed.")
+    teacher.reads("#class", "Left wheel reversed, right wheel reversed.")
     pupil.reads(".bars", "✓ right")
     pupil.reads("#class", "Your answer: reverse. Correct.")
     teacher.reads("#class", "the majority in 1 of 1 kick")

@@ -69,6 +69,7 @@ def test_stop_stops_the_robot_at_once_while_python_is_busy(notebook, robot):
     assert after["wheels"]["left"]["phi_rad"] > before["wheels"]["left"]["phi_rad"]
     notebook.cell(ROBOT).locator(".stop").click()
     after = notebook.until(ROBOT, "s.state === 'stopped' && s.stop.startsWith('Motors stopped')")
+    assert "stopped it from" not in notebook.cell(ROBOT).inner_text()  # it was this picture
     assert STATES[robot.loop.safety.state] == "stopped"
     assert notebook.busy(BUSY)
     assert (after["missed"], after["lost"]) == (0, False)

@@ -254,7 +254,7 @@ def test_a_guess_stands_beside_prediction_and_outcome(visit, lab, station):
     visitor.reads(".verdict", "Left reversed, as 31 of 32 predicted.")
     visitor.reads(".verdict", "Guess: reverse. Correct.")
     visitor.reads(".verdict", "Correct so far: you 1 of 1. The simulation 1 of 1.")
-    visitor.reads("#said", "Left wheel reversed, Right wheel reversed.")
+    visitor.reads("#said", "Left wheel reversed, right wheel reversed.")
     later = visit(lab.view_url)
     later.reads(".verdict", "Left reversed, as 31 of 32 predicted.")
     later.reads(".verdict", "Guess: reverse. Correct.")

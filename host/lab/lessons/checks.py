@@ -76,11 +76,15 @@ def _start(log: Log) -> list[Finding]:
         Finding(moved >= STARTS, f"starts after which it rolled: {moved}, needed: {STARTS}"),
         Finding(
             min(ways[FORWARD], ways[BACKWARD]) > 0,
-            f"the left wheel went forward {ways[FORWARD]} times and backward {ways[BACKWARD]}"
-            f" times. So few starts tell only this: of 100 starts, probably {100 * low:.0f} to"
-            f" {100 * high:.0f} go forward",
+            f"the left wheel went forward {_times(ways[FORWARD])} and backward"
+            f" {_times(ways[BACKWARD])}. So few starts tell only this: of 100 starts, probably"
+            f" {100 * low:.0f} to {100 * high:.0f} go forward",
         ),
     ]
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
 
 
 def _runs(log: Log) -> Iterator[list[float]]:

@@ -16,5 +16,5 @@ export const aloneTexts = {
     note:
         "The robot is simulated in this page: nothing is installed, and nothing leaves it. After" +
         " a reload another robot begins. Logs, basins, predictions, guided exercises and a class" +
-        " need the whole lab, `kickctl lab` on a computer.",
+        " need the whole lab, ‘kickctl lab’ on a computer.",
 };

@@ -53,7 +53,7 @@ class Known {
     }
 
     _stopped({ said }) {
-        this.stop = { asked: NaN, said: words.stopped(said) };
+        this.stop = { asked: NaN, said: words.stopped(said), done: true };
     }
 
     _unconfirmed(error) {
@@ -180,6 +180,8 @@ class View {
         const { robot, embedded } = this.known;
         if (robot.lost) return words.lost(robot.lostFor(), closed);
         if (!robot.ring.length) return embedded ? words.embeddedWaits : words.waiting;
+        // Of a stop from here all is said; the reason would name its own user as a stranger.
+        if (state === "stopped" && this.known.stop.done) return embedded ? words.embedded : "";
         if (reason && state === shown && state !== "running") return words.reason(reason);
         return embedded ? words.embedded : "";
     }

@@ -244,7 +244,7 @@ export const texts = {
     connecting: "Connecting to the lab …",
     noLab: (seconds) =>
         `No link to the lab for ${number(seconds, 0)} s. What you see is old. The page tries` +
-        ` again by itself; if this lasts, look whether \`kickctl lab\` still runs.`,
+        ` again by itself; if this lasts, look whether ‘kickctl lab’ still runs.`,
     notConnected: { message: "there is no link to the lab", hint: "wait until it is back" },
     answerLost: {
         message: "the link to the lab broke before the answer came",
@@ -287,8 +287,8 @@ export const texts = {
             why
                 ? texts.noOutcome(why)
                 : `${Object.entries(result)
-                      .map(([side, word]) => [side, atRest(before, side)[word]])
-                      .map(([side, word]) => `${texts.sides[side]} wheel ${word}`)
+                      .map(([side, word]) => [texts.sides[side], atRest(before, side)[word]])
+                      .map(([side, word], n) => `${n ? side.toLowerCase() : side} wheel ${word}`)
                       .join(", ")}.`,
         lost: (robot) => `${robot} does not answer.`,
         found: (robot) => `${robot} is back.`,

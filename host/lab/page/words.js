@@ -12,13 +12,15 @@ export const counted = (count, one, many) => `${count} ${count === 1 ? one : man
 export const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);
 
 /**
- * What happened, and what to do next, as sentences.
+ * What happened, and what to do next, as sentences. Commands stand in quotes in them: back-ticks
+ * are for a terminal.
  * @param {...(string | null | undefined)} parts
  * @returns {string}
  */
 export function sentences(...parts) {
     return parts
         .filter(Boolean)
+        .map((part) => part.replace(/`([^`]*)`/g, "‘$1’"))
         .map((part) => capital(part) + (/[.?!…]$/.test(part) ? "" : "."))
         .join(" ");
 }
