@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 from functools import cache
-from math import atan2, ceil, cos, pi, sin
+from math import atan2, ceil, cos, nan, pi, sin
 from typing import Any, NamedTuple
 
 from host.logs.tap import Event
@@ -105,15 +105,21 @@ class Follower:
         if before is None or record.t_s <= before.t_s:
             return None
         seconds = record.t_s - before.t_s
-        left, turn_left = self._wheel(0, record, before, seconds)
-        right, turn_right = self._wheel(1, record, before, seconds)
-        self._roll(turn_left, turn_right)
+        left_rad = record.left_phi_rad - before.left_phi_rad
+        right_rad = record.right_phi_rad - before.right_phi_rad
+        self._roll(left_rad, right_rad)
+        return self._values(record, left_rad / seconds, right_rad / seconds)
+
+    def without_speed(self, record: Record) -> tuple[float, ...]:
+        """The same of a record for which `derive` gives None: speeds are NaN, all else is known."""
+        return self._values(record, nan, nan)
+
+    def _values(self, record: Record, left_rad_s: float, right_rad_s: float) -> tuple[float, ...]:
+        left, right = self._wheel(0, record, left_rad_s), self._wheel(1, record, right_rad_s)
         return (*left, *right, self._x_m, self._y_m, self._heading_rad)
 
-    def _wheel(
-        self, index: int, record: Record, before: Record, seconds: float
-    ) -> tuple[tuple[float, ...], float]:
-        """A wheel's derived channels, and how far it has turned (rad)."""
+    def _wheel(self, index: int, record: Record, omega_rad_s: float) -> tuple[float, ...]:
+        """A wheel's derived channels."""
         side, params = WHEELS[index], self._snapshot.params
         phi_rad = getattr(record, side + "_phi_rad")
         x1, x2 = getattr(record, side + "_x1"), getattr(record, side + "_x2")
@@ -123,14 +129,13 @@ class Follower:
             numbers = kick.numbers(index)
             acting = apply_kick(numbers, record.tick, x1, x2, gain, params["tau_s"], params["k"])
             gain, seen = acting[2], seen_positions(phi_rad, *acting[5:])
-        turn_rad = phi_rad - getattr(before, side + "_phi_rad")
         return (
             target_position(x1, gain),
             target_position(x2, gain),
             *seen,
-            turn_rad / seconds,
+            omega_rad_s,
             wrapped(phi_rad - atan2(x2, x1)),
-        ), turn_rad
+        )
 
     def _roll(self, left_rad: float, right_rad: float) -> None:
         """Roll on both wheels, along an arc."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import base64
 import gzip
-from math import inf, isfinite, nan
+from math import inf, isfinite
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse, printable
@@ -27,7 +27,6 @@ from robot.safety import RUNNING
 
 # Ten minutes of 30 ms ticks: as many as the robot's black box holds, and about 10 MB.
 MOST_TICKS = 20_000
-_NO_SPEED = (nan,) * len(derived.CHANNELS)
 _COMPRESSION = 6
 
 
@@ -85,7 +84,7 @@ class _Writer:
         known_gaps = len(self._gaps.found)
         self._gaps.take(record)
         numbers = self._work_out(record)
-        values = self._follower.derive(record) or _NO_SPEED
+        values = self._follower.derive(record) or self._follower.without_speed(record)
         if since_s < self._cut.from_s:
             self._waiting.clear()
             if self.twin is not None:
@@ -104,7 +103,8 @@ class _Writer:
         self.packed.append(own + worked.STRUCT.pack(*numbers))
         if self.twin is not None:
             twin, its_values = self.twin.take_record(shown, t_s)
-            self.packed_twin.append(derived.pack(twin, its_values or _NO_SPEED))
+            its_values = its_values or self.twin.without_speed(twin)
+            self.packed_twin.append(derived.pack(twin, its_values))
             self.pair[0].append(shown)
             self.pair[1].append(twin)
 

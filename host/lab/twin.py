@@ -112,6 +112,10 @@ class Twin:
             motor.write_duty(getattr(record, side + "_duty_pct"))
         return record, self._follower.derive(record)
 
+    def without_speed(self, record: Record) -> tuple[float, ...]:
+        """Derived channels of a twin's record for which `take_record` gives none."""
+        return self._follower.without_speed(record)
+
     def _motor(
         self, side: str, record: Record, t_s: float, before: tuple[float, Record] | None
     ) -> SimMotor:

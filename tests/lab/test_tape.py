@@ -14,7 +14,7 @@ from host.logs.replay import replay
 from robot.record import NAMES, Record
 from robot.safety import RUNNING
 from tests.fakes import eventful
-from tests.lab.tapes import rows_of
+from tests.lab.tapes import rows_of, twins_rows_of
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +63,16 @@ def test_a_tick_whose_past_is_unknown_has_forces_but_no_step(rows):
     assert math.isnan(first["left_eq_rate1"])
     assert first["left_eq_force"] == first["left_force"] == whole["left_force"]
     assert [second["left_eq_x1"], second["compared"]] == [rows[61]["left_x1"], SAME]
+
+
+def test_the_first_tick_has_all_that_is_drawn_but_a_speed(rows):
+    tape = make_tape(eventful().log(60), "log", motor="pybricks")
+    for first in (rows_of(tape)[0], twins_rows_of(tape)[0]):
+        assert math.isnan(first["left_omega_rad_s"])
+        assert first["x_m"] == first["y_m"] == first["heading_rad"] == 0.0
+        for name in ("target1", "target2", "seen1", "seen2", "lag_rad"):
+            for side in ("left", "right"):
+                assert first[f"{side}_{name}"] == rows[60][f"{side}_{name}"], name
 
 
 def test_a_cut_knows_what_came_before_it(log, rows):
