@@ -2,11 +2,13 @@
 
 import { besideTexts } from "./beside_texts.js";
 import { Card } from "./card.js";
-import { byId, element, setText, show } from "./dom.js";
+import { button, byId, element, setText, show } from "./dom.js";
 import { keep, recall } from "./storage.js";
 
 const KEPT = "lab.beside";
 const OFF = "off";
+// What is cut off below the cards by less than this is their lowest edge.
+const LEAST_PX = 8;
 // The panels that are about one robot, by the ids of their titles.
 const PANELS = ["kicks", "moves", "recording", "parameters", "k-trace", "floor", "state"];
 
@@ -16,6 +18,7 @@ export class Beside {
     #cards = [];
     #known = null;
     #whose;
+    #below;
 
     /**
      * @param {HTMLElement} root
@@ -32,6 +35,11 @@ export class Beside {
             keep("localStorage", KEPT, this.#on ? "on" : OFF);
             this.lab.changed = true;
         };
+        // Where a system hides its scroll bars, a card that is cut off could seem to be all.
+        const down = () => root.scrollBy({ top: 0.7 * root.clientHeight });
+        this.#below = button(besideTexts.below, down, "below quiet");
+        root.after(this.#below);
+        root.onscroll = () => (this.lab.changed = true);
         this.#whose = PANELS.map((name) => {
             const whose = element("span", { className: "whose" });
             byId(`${name}-title`).append(whose);
@@ -71,9 +79,16 @@ export class Beside {
             const words = all ? besideTexts.all : robot?.name;
             setText(whose, robots.length > 1 ? besideTexts.whose(words) : "");
         }
+        show(this.#below, this.shown && this.#goesOn);
         if (!this.shown) return;
         if (this.#known !== robots) this.#fill(robots);
         for (const card of this.#cards) card.update();
+    }
+
+    /** Whether a card ends below what is seen of the cards. */
+    get #goesOn() {
+        const { root } = this;
+        return root.scrollHeight - root.clientHeight - root.scrollTop > LEAST_PX;
     }
 
     /** Give each robot and each twin a card. */

@@ -19,6 +19,7 @@ const cameOf = (outcome) =>
 
 export const besideTexts = {
     title: "All robots",
+    below: "More below ↓",
     toggle: "Side by side",
     toggleLabel: "Side by side: all robots and their twins at once",
     here: "Kicks go here",
@@ -38,6 +39,10 @@ export const besideTexts = {
     paused: "Paused",
     noTwin: (why, hint) => sentences(`no twin: ${why}`, hint),
     notPushed: (name) => `A hand or a wall that pushes ${name} does not push its twin.`,
+    twinsPlane: "a twin has no basins",
+    othersPlane: "basins once chosen",
+    computing: "basins: computing …",
+    noBasins: "no basins",
     lastKick: (kick, outcome) => sentences(texts.lastKick(kick), outcome && cameOf(outcome)),
     compared: ({ robot_did, twin_did }, name) => {
         const [own, other] = [robot_did, twin_did].map((did) => didWhat(deedsOf(did)));
