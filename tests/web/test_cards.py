@@ -3,7 +3,10 @@
 import pytest
 
 from host.lab.live_twin import LiveTwin
-from tests.web.test_beside import STATES, robot, show  # noqa: F401 - a fixture
+from host.lab.station import CONTINUE
+from host.lab.stepped_station import SteppedStation
+from tests.web.test_basins import Halves
+from tests.web.test_beside import STATES, card, robot, show  # noqa: F401 - a fixture
 
 # What is wider than its place or than the window. Of what scrolls by itself, the scroller counts.
 WIDE = """
@@ -41,3 +44,49 @@ def test_the_longest_names_wrap_and_nothing_scrolls_sideways(show, width):  # no
         assert page.evaluate("document.documentElement.scrollWidth") == width
         top = page.locator(".top").bounding_box()["height"]
         assert width < 700 or top < page.viewport_size["height"] / 2
+
+
+class Own(SteppedStation):
+    """A robot whose basins are not computed by the lab."""
+
+    basins = property(lambda self: self.halves, lambda self, worker: None)
+
+
+def test_a_plane_without_basins_says_why(show):  # noqa: F811
+    anna = Own("sim://?seed=1", "anna", CONTINUE, LiveTwin())
+    bert = Own("sim://?seed=2", "bert", CONTINUE, LiveTwin())
+    anna.halves, bert.halves = Halves(), Halves()
+    anna.halves.waits = True
+    visitor = show(anna, bert, viewport={"width": 1366, "height": 768})
+    notes = "s.beside.cards.map((one) => one.note).join()"
+    twin, other = "a twin has no basins", "basins once chosen"
+    visitor.until(f"{notes} === 'basins: computing …,{twin},{other},{twin}'")
+    visitor.page.click("[aria-label=bert] .choose")
+    visitor.until("s.robots[1].basins")
+    visitor.until(f"{notes} === '{other},{twin},a slice,{twin}'")
+    visitor.page.click("[aria-label=anna] .choose")
+    visitor.until(f"{notes} === 'basins: computing …,{twin},a slice,{twin}'")
+    label = card(visitor, "Twin of anna").locator(".plane canvas").get_attribute("aria-label")
+    assert label.endswith("A twin has no basins.")
+    visitor.page.evaluate("document.querySelector('#basins-switch').click()")
+    visitor.until(f"{notes} === 'a slice,a slice,a slice,a slice'")
+
+
+def test_cards_that_do_not_fit_say_that_there_are_more(show):  # noqa: F811
+    stations = [robot(n, name, LiveTwin()) for n, name in ((1, "anna"), (2, "bert"))]
+    visitor = show(*stations, viewport={"width": 1280, "height": 800})
+    page = visitor.page
+    assert page.is_hidden("text=More below")
+    page.click("#projector")
+    page.wait_for_selector("html.projector")
+    last = page.locator(".card >> nth=3")
+    page.wait_for_selector("text=More below")
+    lowest = page.locator(".below").bounding_box()
+    assert lowest["y"] + lowest["height"] <= 800
+    assert last.bounding_box()["y"] + last.bounding_box()["height"] > 800
+    page.click("text=More below")
+    page.wait_for_selector("text=More below", state="hidden")
+    assert last.bounding_box()["y"] + last.bounding_box()["height"] <= 800
+    page.click("#projector")
+    page.wait_for_selector("html:not(.projector)")
+    assert page.is_hidden("text=More below")

@@ -34,6 +34,7 @@ export function createBasins(root, canvas, lab) {
 
     return () => {
         const { robot } = lab.store;
+        lab.store.basins = on;
         // After a lost link, and once it is found, a robot is another object.
         const wanted = on && robot ? robot : null;
         if (wanted !== following) {

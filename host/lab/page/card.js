@@ -11,6 +11,7 @@ import { help, lostWords, remedyOf, shownState, stateWord, whyOf } from "./now.j
 import { texts } from "./texts.js";
 import { fitted } from "./theme.js";
 import { Views } from "./views.js";
+import { sentences } from "./words.js";
 
 const SIDES = ["left", "right"];
 
@@ -35,7 +36,7 @@ export class Card {
      * @param {(robot: import("./robot_view.js").RobotView) => void} select Has kicks go to a robot.
      */
     constructor({ lab, stop, frames, screen }, select) {
-        Object.assign(this, { lab, stop });
+        Object.assign(this, { lab, stop, screen });
         /** @type {?import("./robot_view.js").RobotView} What it shows. */
         this.robot = null;
         this.root = element("section", { className: "card" });
@@ -63,7 +64,6 @@ export class Card {
                     : fitted(screen.theme, canvas, letters, lines);
             frames.add(canvas, draw, () => this.#views && [view(this.#views), theme()]);
         }
-        this.#canvases.plane.setAttribute("aria-label", texts.lagPlane);
         this.#hands = SIDES.map((side) => {
             const angle = () => this.#views.angle(side);
             const shown = () => (this.twin ? null : this.robot);
@@ -128,6 +128,7 @@ export class Card {
         setText(this.#said, (over ? null : texts.stop[stopping]) ?? said);
         this.#said.classList.toggle("alarm", stopping === "unconfirmed" || stopping === "waiting");
         setText(this.#note, twin ? besideTexts.notPushed(robot.robot.name) : "");
+        this.#ground();
         for (const hand of this.#hands) hand.update();
         labelWheels(this.#views, (side) => this.#canvases[side], SIDES);
     }
@@ -138,6 +139,23 @@ export class Card {
         if (is !== "running") return whyOf(robot.status, page);
         const kick = robot.kicks.at(-1);
         return kick ? besideTexts.lastKick(kick, kick.outcome) : texts.noKick;
+    }
+
+    /** Say why a plane has no basins: a blank one among basins would mean that nothing lasts. */
+    #ground() {
+        const { robot, twin, lab } = this;
+        const { plane } = this.#canvases;
+        const why = (robot === lab.store.robot && robot.picture?.why) || "";
+        let note = texts.sliceNote;
+        if (lab.store.basins && !robot.basins) {
+            if (twin) note = besideTexts.twinsPlane;
+            else if (robot !== lab.store.robot) note = besideTexts.othersPlane;
+            else note = why ? besideTexts.noBasins : besideTexts.computing;
+        }
+        plane.setAttribute("aria-label", sentences(texts.lagPlane, note));
+        plane.title = why && texts.noBasins(why);
+        // The large text of a projector leaves no room for more.
+        this.#views.lag.note = this.screen.projector ? texts.sliceNote : note;
     }
 
     #twinSaid() {
@@ -151,6 +169,7 @@ export class Card {
     state() {
         const { robot, twin } = this;
         const { time = null, wheels, lag, stale } = this.#views ?? {};
-        return { name: robot.name, twin, time, wheels, traced: lag?.count ?? 0, stale };
+        const [traced, note] = [lag?.count ?? 0, lag?.note];
+        return { name: robot.name, twin, time, wheels, traced, note, stale };
     }
 }

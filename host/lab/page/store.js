@@ -18,6 +18,8 @@ export class Store {
         this.selected = 0;
         /** Whether kicks go to all robots. */
         this.all = false;
+        /** Whether this page shows basins: those of the chosen robot, which the lab computes. */
+        this.basins = true;
         this.baton = { driver: null, you: false, asking: [], why: "" };
         this.pages = { driving: 0, watching: 0 };
         this.score = { guesses: 0, right: 0, predicted: 0, simulation: 0 };
