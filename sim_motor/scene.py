@@ -38,12 +38,11 @@ class Scene:
                 raise ValueError(f"{name} cannot be {value!r}: give a number {bounds}")
 
 
-# Walls that leave room for the body, tyres that hold at all, as on ice, and springs that the steps
-# can follow.
+# Walls that leave room for the body, and springs that the steps can follow.
 LIMITS = {
     "walls": (0.4, 100.0, "m"),
     "across": (0.4, 100.0, "m"),
-    "grip": (0.01, 10.0, ""),
+    "grip": (0.0, 10.0, ""),
     "stiffness": (100.0, 100000.0, "N/m"),
     "bumper": (0.05, 0.4, "m"),
     "axle": (50.0, 100000.0, "N/m"),

@@ -92,6 +92,10 @@ REAL_TIME = (
 )
 
 
+# A fault's failure says what it found, as a test's does.
+pytest.register_assert_rewrite("tests.faults")
+
+
 def pytest_configure(config):
     config.addinivalue_line("markers", "realtime: runs in real time, see REAL_TIME in conftest.py")
     # Whoever runs the tests in a shell's background has ^C ignored, with nohup the terminal's end,

@@ -71,8 +71,8 @@ def settings() -> tuple[Setting, ...]:
         _of_scene(
             "grip",
             f"{smooth:g}",
-            f"friction coefficient of the tyres: {smooth:g} on a smooth floor, {carpet:g} on"
-            " carpet",
+            f"friction coefficient of the tyres: 0 without any, {smooth:g} on a smooth floor,"
+            f" {carpet:g} on carpet",
         ),
         _of_scene(
             "stiffness",

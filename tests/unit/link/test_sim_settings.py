@@ -36,8 +36,3 @@ def test_the_ends_of_a_range_are_accepted_and_more_is_refused_with_the_range(nam
     for value in (least - 0.01, most + 1):
         with pytest.raises(WrongUse, match=re.escape(f"from {least:g} to {most:g} {unit}".strip())):
             make_link(f"sim://?{walls}{name}={value}", seed=1)
-
-
-def test_a_floor_without_grip_is_refused():
-    with pytest.raises(WrongUse, match=r"grip cannot be 0: give a number from 0\.01 to 10"):
-        make_link("sim://?grip=0")
