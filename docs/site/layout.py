@@ -11,14 +11,13 @@ from pathlib import Path
 from docs.site import ROOT
 from docs.site.markdown import toctree
 from docs.site.reference import pages as reference
+from host.commands._help_tables import SOUGHT
 from host.experiments.registry import TABLE as EXPERIMENTS
 from host.theory.studies.registry import TABLE as STUDIES
 from robot import __version__
 
 INDEX = "docs/README.md"
 _LINK = re.compile(r"(?<=\]\()(?!\w+:|#)[^)#\s]+(?=[)#])|(?<=src=\")(?!\w+:)[^\"]+")
-# Words by which people look for what stands below them, in a comment that pages do not show.
-_SOUGHT = re.compile(r"^<!-- search: ([^>]+) -->$", re.MULTILINE)
 # Tables whose first column people look for: words, and what a robot shows and says in a fault.
 _LOOKED_UP = re.compile(r"^\| (?:word|what you see) \|.*\n\|[-|]+\n(?:\|.*\n)+", re.MULTILINE)
 _RUN = re.compile(r"(?<=^\| )`([-\w]+)`(?= \|)", re.MULTILINE)
@@ -91,7 +90,7 @@ def _with_entries(page: str) -> str:
         words = ",".join(cell.removeprefix("fault: ").replace("`", "") for cell in cells)
         return f"{_entries(words)}\n{found[0]}"
 
-    page = _SOUGHT.sub(lambda found: _entries(found[1]), page)
+    page = SOUGHT.sub(lambda found: _entries(found[1]), page)
     return _LOOKED_UP.sub(with_words, page)
 
 

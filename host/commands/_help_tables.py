@@ -16,7 +16,8 @@ _FAULT = re.compile(r"^\| (?!what you see)(.+?) \| (.+) \|$", re.MULTILINE)
 _FAULTS = "## When it does not move"
 _LINK = re.compile(r"\[([^]]+)\]\((?:\.\./)?([^)#]+)[^)]*\)")
 _PAGE = re.compile(r"^\| \[(.+?)\]\((.+?)\) \| (.+) \|$", re.MULTILINE)
-_SOUGHT = re.compile(r"^<!-- search: ([^>]+) -->$", re.MULTILINE)
+# Words by which people look for what stands below them, in a comment that pages do not show.
+SOUGHT = re.compile(r"^<!-- search: ([^>]+) -->$", re.MULTILINE)
 # An installed package has no docs, or another's.
 _INDEX_BEGINS = "# The pages\n"
 
@@ -83,7 +84,7 @@ def pages(root: Path | None = None) -> Iterator[Page]:
             text = (root / path).read_text(encoding="utf-8")
         except OSError:
             continue
-        yield Page(path, f"{title}: {has}", ", ".join(_SOUGHT.findall(text)).replace("\n", " "))
+        yield Page(path, f"{title}: {has}", ", ".join(SOUGHT.findall(text)).replace("\n", " "))
 
 
 def _read(package: object, name: str) -> str:

@@ -63,13 +63,11 @@ def run(options: argparse.Namespace) -> int:
     text = " ".join(options.words)
     wanted, bare = split_words(text), split_words(_DETAILS.sub(" ", text))
     places = list(places_of(parser))
-    pages = [Place("page: ", page.path, page.text) for page in _pages_about(bare or wanted)]
-    found = _with_all(places, wanted) or _with_all(places, bare)
-    if not found and not pages:
+    found = _with_all(places, wanted) or _with_all(places, bare) or _pages_about(bare or wanted)
+    if not found:
         found = _with_most(places, bare)
         if found:
             say("nothing has all of these words; most of them are here:")
-    found = found or pages
     if not found:
         raise _nothing(options.words, wanted, places)
     found.sort(
@@ -112,10 +110,10 @@ def _with_most(places: list[Place], wanted: list[str]) -> list[Place]:
     return [place for place in places if scores.get(place) == best]
 
 
-def _pages_about(wanted: list[str]) -> list[tables.Page]:
+def _pages_about(wanted: list[str]) -> list[Place]:
     """The pages of the docs with all words in their titles or among those they are sought by."""
     return [
-        page
+        Place("page: ", page.path, page.text)
         for page in tables.pages()
         if wanted and all(Place("", page.text, page.sought).has(word) for word in wanted)
     ]

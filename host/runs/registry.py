@@ -132,8 +132,8 @@ def _sweeps(options: Iterable[Option]) -> str:
     numbers = [option for option in options if not option.choices]
     if not numbers:
         return ""
-    k = next((option for option in numbers if option.name == "k" and option.least <= 0.5), None)
-    flag, values, span = ("--k", "1,2,4", "0.5:5:10") if k else _sweep_of(numbers)
+    takes_k = any(option.name == "k" and option.least <= 0.5 for option in numbers)
+    flag, values, span = ("--k", "1,2,4", "0.5:5:10") if takes_k else _sweep_of(numbers)
     return (
         "Several values of one number or of two make a sweep, with one table and one figure for"
         f" all: {flag} {values} or {flag} {span} (start:stop:count, with both ends)."

@@ -18,7 +18,7 @@ import pytest
 from robot.program import own_address
 from tests.cli.test_desk import desk_robot
 from tests.lint.sources import ROOT
-from tests.package.test_commands_of_pages import BLOCK, TYPED
+from tests.package.test_commands_of_pages import TYPED, lines
 
 ELSEWHERE = {
     "docs/lesson.md": "tests/cli/test_lesson.py",
@@ -50,15 +50,14 @@ BEFORE = {
 ADDRESSES = re.compile(r"tcp://[\d.]+(:\d+)?|ssh://[\w.@-]+")
 
 
-def lines(page):
+def typed_lines(page):
     """The lines of a page's blocks that run kickctl, or set what it is to know."""
-    for block in BLOCK.findall((ROOT / page).read_text(encoding="utf-8")):
-        for line in block.replace("\\\n", "").splitlines():
-            if re.match(r"(\.venv/bin/)?kickctl |export ", line):
-                yield line.removeprefix(".venv/bin/").partition("  #")[0].strip()
+    for line in lines(page):
+        if re.match(r"(\.venv/bin/)?kickctl |export ", line):
+            yield line.removeprefix(".venv/bin/").partition("  #")[0].strip()
 
 
-PAGES = [page for page in TYPED if list(lines(page))]
+PAGES = [page for page in TYPED if list(typed_lines(page))]
 HERE = [page for page in PAGES if page not in ELSEWHERE]
 
 
@@ -145,7 +144,7 @@ def lasts(words):
 def test_a_page(page, typed):
     for line in BEFORE.get(page, []):
         typed(line)
-    for line in lines(page):
+    for line in typed_lines(page):
         if line.startswith(NEEDS_A_BRICK + NEEDS_A_NETWORK + NEEDS_A_TERMINAL) or line in LONG:
             continue
         if "--class" in line and own_address().startswith("127."):
@@ -161,7 +160,7 @@ def test_a_long_command(line, typed):
 
 
 def test_what_is_not_typed_here_is_somewhere():
-    everything = [line for page in PAGES for line in lines(page)]
+    everything = [line for page in PAGES for line in typed_lines(page)]
     for left_out in (*NEEDS_A_BRICK, *NEEDS_A_NETWORK, *NEEDS_A_TERMINAL, *LONG, *FAILS):
         assert any(line.startswith(left_out) for line in everything), left_out
     for page, test in ELSEWHERE.items():

@@ -18,13 +18,17 @@ BLOCK = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 PLACEHOLDER = re.compile(r"\b[A-Z]+\b|\.\.\.")
 
 
+def lines(page):
+    """The lines of a page's blocks; one that ends with a backslash goes on."""
+    for block in BLOCK.findall((ROOT / page).read_text(encoding="utf-8")):
+        yield from block.replace("\\\n", "").splitlines()
+
+
 def commands(page):
     """The words of each command, without what the shell does with it."""
-    text = (ROOT / page).read_text(encoding="utf-8")
-    for block in BLOCK.findall(text):
-        for line in block.replace("\\\n", "").splitlines():
-            if found := re.match(r"(?:\.venv/bin/)?kickctl ([^#>|;]*)", line):
-                yield shlex.split(found[1])
+    for line in lines(page):
+        if found := re.match(r"(?:\.venv/bin/)?kickctl ([^#>|;]*)", line):
+            yield shlex.split(found[1])
 
 
 @pytest.mark.parametrize("page", TYPED)
