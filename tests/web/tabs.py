@@ -51,6 +51,12 @@ class Tab:
                 return
             await asyncio.sleep(0.02)
 
+    async def press(self, selector):
+        """Click on a button once the page lets it be clicked on: a click before that is lost."""
+        button = f"document.querySelector({selector!r})"
+        await self.until_true(f"{button}?.disabled === false")
+        await self.ask(f"{button}.click()")
+
     async def show(self):
         """Bring the tab to the front."""
         await self._call("Target.activateTarget", targetId=self._target)
@@ -74,7 +80,9 @@ async def open_browser(chromium):
     """
     async with AsyncExitStack() as stack:
         folder = stack.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True))
-        options = ["--headless=new", "--no-sandbox", "--remote-debugging-port=0"]
+        # The window that it would begin with shows itself late, also a page minimized by then.
+        options = ["--headless=new", "--no-sandbox", "--no-startup-window"]
+        options.append("--remote-debugging-port=0")
         process = await asyncio.create_subprocess_exec(
             chromium, *options, f"--user-data-dir={folder}", stderr=asyncio.subprocess.PIPE
         )

@@ -60,7 +60,7 @@ def visit(lab, story):
 )
 def test_a_hidden_page_draws_nothing_and_gives_the_robot_back(lab, station, way):
     async def story(tab, hide, show):
-        await tab.ask("document.querySelector('#kick-phase').click()")
+        await tab.press("#kick-phase")
         await tab.until("s.baton.you && r.kicks.length === 1")
         await hide(way)
         drawn = await tab.ask("lab.state().drawing.frames")
@@ -74,9 +74,9 @@ def test_a_hidden_page_draws_nothing_and_gives_the_robot_back(lab, station, way)
         await show(way)
         await tab.until(f"s.drawing.frames > {drawn + 3}")
         if station.rule == STOP:
-            await tab.ask("document.querySelector('.remedy').click()")
+            await tab.press(".remedy")
         else:
-            await tab.ask("document.querySelector('#kick-membrane').click()")
+            await tab.press("#kick-membrane")
         await tab.until("s.baton.you && r.state === 'running'")
 
     visit(lab, story)
