@@ -8,15 +8,14 @@ import pytest
 
 from host.cli import main
 from tests.lint.sources import ROOT
+from tests.small_figures import small_figures
 
 
 @pytest.fixture
-def figures(monkeypatch):
-    """Figures are small and not laid out: a module whose subject they are has a `figures` too."""
-    from host.figures import style
-
-    monkeypatch.setitem(style.SIZE, "dpi", 40)
-    monkeypatch.setitem(style.SIZE, "layout", None)
+def figures():
+    """Figures are small: a module whose subject they are has a `figures` too."""
+    with small_figures():
+        yield
 
 
 @pytest.fixture

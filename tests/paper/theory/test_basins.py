@@ -52,6 +52,11 @@ TICK_S = 0.03
 
 
 @pytest.fixture(scope="module")
+def figures():
+    """They are as users see them."""
+
+
+@pytest.fixture(scope="module")
 def rolling():
     """Wheels that roll forward, of either model."""
     return [rolling_states(model, WHEEL, PHASES) for model in MODELS]

@@ -39,6 +39,11 @@ CLOCKS = [
 ]
 
 
+@pytest.fixture(scope="module")
+def figures():
+    """They are as users see them."""
+
+
 def random_states(count, seed=3):
     rng = np.random.default_rng(seed)
     return rng.uniform(

@@ -1,0 +1,11 @@
+"""What a study draws is no subject in here: its numbers are."""
+
+import pytest
+
+from tests.small_figures import small_figures
+
+
+@pytest.fixture(scope="package", autouse=True)
+def figures():
+    with small_figures():
+        yield

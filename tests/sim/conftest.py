@@ -1,0 +1,11 @@
+"""What is drawn is no subject in here: what moves is."""
+
+import pytest
+
+from tests.small_figures import small_figures
+
+
+@pytest.fixture(scope="package", autouse=True)
+def figures():
+    with small_figures():
+        yield
