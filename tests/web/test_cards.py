@@ -90,3 +90,30 @@ def test_cards_that_do_not_fit_say_that_there_are_more(show):  # noqa: F811
     page.click("#projector")
     page.wait_for_selector("html:not(.projector)")
     assert page.is_hidden("text=More below")
+
+
+@pytest.mark.parametrize("width", [360, 1280, 1920])
+def test_one_key_below_all_cards_says_what_their_colours_are(show, width):  # noqa: F811
+    anna, bert = (
+        Own(f"sim://?seed={n}", name, CONTINUE) for n, name in enumerate(("anna", "bert"))
+    )
+    anna.halves, bert.halves = Halves(), Halves()
+    bert.halves.waits = True
+    visitor = show(anna, bert, viewport={"width": width, "height": max(640, 9 * width // 16)})
+    page = visitor.page
+    key = page.locator(".first > .key")
+    marks = ["target", "actual", "seen in a kick", "force", "memory"]
+    visitor.until("s.robots[0].basins")
+    page.wait_for_selector(".first > .key > .forward")
+    shown = key.locator("li:visible")
+    assert shown.all_inner_texts() == [*marks, "forward", "backward", "rest"]
+    box = key.bounding_box()
+    assert box["x"] >= 0
+    assert box["x"] + box["width"] <= width
+    if width > 1000:  # all of it is on the first screen
+        assert box["y"] + box["height"] <= page.viewport_size["height"]
+    page.click("[aria-label=bert] .choose")
+    page.wait_for_selector(".first > .key > .forward", state="hidden")
+    assert shown.all_inner_texts() == marks
+    page.click("#beside-switch")
+    page.wait_for_selector(".first > .key", state="hidden")

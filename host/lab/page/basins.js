@@ -8,6 +8,9 @@ import { sentences } from "./words.js";
 const KEPT = "lab.basins";
 const OFF = "off";
 
+/** An item of a key: where starts lead that are drawn so. */
+export const endItem = (end, ...words) => element("li", { className: `end ${end}` }, ...words);
+
 /**
  * @param {HTMLElement} root
  * @param {HTMLCanvasElement} canvas The plane, which gets a description.
@@ -26,7 +29,7 @@ export function createBasins(root, canvas, lab) {
     };
     const parts = Object.entries(texts.ends).map(([end, name]) => {
         const share = element("span");
-        return { end, name, share, item: element("li", { className: end }, name, share) };
+        return { end, name, share, item: endItem(end, name, share) };
     });
     const key = element("ul", { className: "key" }, ...parts.map(({ item }) => item));
     const words = element("p", { className: "fine" });

@@ -1,9 +1,12 @@
 /** All robots and their twins at once, beside each other, in place of one that is shown large. */
 
+import { endItem } from "./basins.js";
 import { besideTexts } from "./beside_texts.js";
 import { Card } from "./card.js";
 import { button, byId, element, setText, show } from "./dom.js";
+import { markItems } from "./drawings.js";
 import { keep, recall } from "./storage.js";
+import { texts } from "./texts.js";
 
 const KEPT = "lab.beside";
 const OFF = "off";
@@ -19,6 +22,8 @@ export class Beside {
     #known = null;
     #whose;
     #below;
+    #ends = Object.entries(texts.ends).map(([end, name]) => ({ end, item: endItem(end, name) }));
+    #key = element("ul", { className: "key" }, ...markItems());
 
     /**
      * @param {HTMLElement} root
@@ -38,7 +43,8 @@ export class Beside {
         // Where a system hides its scroll bars, a card that is cut off could seem to be all.
         const down = () => root.scrollBy({ top: 0.7 * root.clientHeight });
         this.#below = button(besideTexts.below, down, "below quiet");
-        root.after(this.#below);
+        this.#key.append(...this.#ends.map(({ item }) => item));
+        root.after(this.#below, this.#key);
         root.onscroll = () => (this.lab.changed = true);
         this.#whose = PANELS.map((name) => {
             const whose = element("span", { className: "whose" });
@@ -80,9 +86,11 @@ export class Beside {
             setText(whose, robots.length > 1 ? besideTexts.whose(words) : "");
         }
         show(this.#below, this.shown && this.#goesOn);
+        show(this.#key, this.shown);
         if (!this.shown) return;
         if (this.#known !== robots) this.#fill(robots);
         for (const card of this.#cards) card.update();
+        for (const { end, item } of this.#ends) show(item, Boolean(robot?.basins?.counts[end]));
     }
 
     /** Whether a card ends below what is seen of the cards. */

@@ -35,12 +35,14 @@ export function addDrawings(frames, screen, views, find = byId) {
             return now && [view(now), screen.themeFor(canvas, letters, lines)];
         });
     }
-    find("key").append(
-        ...Object.entries(texts.key).map(([mark, words]) =>
-            element("li", { className: `mark-${mark}`, title: texts.keyHints[mark] ?? "" }, words),
-        ),
-    );
+    find("key").append(...markItems());
 }
+
+/** The items of a key: what the wheels' colours are. */
+export const markItems = () =>
+    Object.entries(texts.key).map(([mark, words]) =>
+        element("li", { className: `mark-${mark}`, title: texts.keyHints[mark] ?? "" }, words),
+    );
 
 /** Say by the labels of the wheels' canvases how they turn. */
 export function labelWheels(views, find = byId, ids = ["left-wheel", "right-wheel"]) {

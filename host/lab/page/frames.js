@@ -68,6 +68,8 @@ export class Frames {
         for (const { canvas, draw, view } of this.#drawings) {
             if (!this.#visible.has(canvas)) continue;
             if (fit(canvas)) this.appeared();
+            // One that is being hidden, of which the browser has not told yet, covers nothing.
+            if (!(canvas.width && canvas.height)) continue;
             const seen = view();
             if (seen) draw(canvas, ...seen);
         }

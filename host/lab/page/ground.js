@@ -20,12 +20,14 @@ export function onBasins(drawPlane) {
             const part = (2 * basins.fastest) / (y.maximum - y.minimum);
             const size = [box.width * scale, box.height * part * scale].map(Math.round);
             const now = [basins, stale, text, colours, ...size];
-            if (now.some((one, place) => one !== drawn[place])) {
-                [sheet.width, sheet.height] = size;
-                drawBasins(sheet, { ...basins, stale }, theme);
-                drawn = now;
+            if (Math.min(...size) > 0) {
+                if (now.some((one, place) => one !== drawn[place])) {
+                    [sheet.width, sheet.height] = size;
+                    drawBasins(sheet, { ...basins, stale }, theme);
+                    drawn = now;
+                }
+                state.ground = { sheet, high: basins.fastest };
             }
-            state.ground = { sheet, high: basins.fastest };
         }
         drawPlane(canvas, state, theme);
     };
