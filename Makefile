@@ -126,7 +126,9 @@ $(STAMP): requirements.lock pyproject.toml
 		exit 1; }
 	@test -f $@ && $(BIN)/python -m pip --version >/dev/null || $(PYTHON) -m venv --clear .venv
 	@rm -f $@
-	$(BIN)/python -m $(INSTALL) --require-hashes -r requirements.lock
+	$(BIN)/python -m $(INSTALL) --no-compile --require-hashes -r requirements.lock
+	@# pip would do so on one core. As with pip, what cannot be compiled is no matter.
+	@$(BIN)/python -m compileall -qq -j 0 .venv/lib || :
 	$(BIN)/python -m $(INSTALL) --no-deps --no-build-isolation --editable .
 	@touch $@
 
