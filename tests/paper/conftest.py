@@ -5,7 +5,7 @@ import pytest
 from tests.small_figures import small_figures
 
 
-@pytest.fixture(scope="package", autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def figures():
     with small_figures():
         yield
