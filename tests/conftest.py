@@ -118,9 +118,14 @@ def pytest_collection():
     gc.enable()
 
 
+# They mostly wait. At the end they would do so with nothing beside them that computes.
+FIRST = "tests/deploy/"
+
+
 # Before `-m` chooses by the marks.
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
     for item in items:
         if item.nodeid.startswith(REAL_TIME):
             item.add_marker("realtime")
