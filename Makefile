@@ -126,11 +126,10 @@ $(STAMP): requirements.lock pyproject.toml
 	@test -f $@ && $(BIN)/python -m pip --version >/dev/null || $(PYTHON) -m venv --clear .venv
 	@rm -f $@
 	@# uv takes a tenth of pip's time. But it does not know what is set for pip alone.
-	sed -n '/^uv==/,/[^\\]$$/p' requirements.lock | \
+	@sed -n '/^uv==/,/[^\\]$$/p' requirements.lock | \
 		$(BIN)/python -m $(INSTALL) --require-hashes -r /dev/stdin
-	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements.lock || { \
-		echo 'make setup: uv could not. pip tries next.' >&2; \
-		$(BIN)/python -m $(INSTALL) --require-hashes -r requirements.lock; }
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements.lock || \
+		$(BIN)/python -m $(INSTALL) --require-hashes -r requirements.lock
 	$(BIN)/python -m $(INSTALL) --no-deps --no-build-isolation --editable .
 	@touch $@
 
