@@ -19,7 +19,7 @@ from robot.params import Params
 from robot.safety import limit_duty
 from sim_motor.arrays import Array, scalars, tables
 from sim_motor.clock import lateness_s
-from sim_motor.compiled import compiled, jit, parallel_jit, prange
+from sim_motor.compiled import compiled, jit, over_cores, unlocked_jit
 from sim_motor.compiled_motor import advance, encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE
@@ -209,7 +209,7 @@ def run(
         times=times,
         records=np.empty((min(record, wheels), ticks, len(CHANNELS))),
     )
-    _run_all(
+    given = (
         start.states,
         start.potentials,
         duties,
@@ -227,6 +227,7 @@ def run(
         result.kick_phi_rad,
         result.records,
     )
+    over_cores(lambda core, cores: _run_some(*given, core, cores), wheels)
     return result
 
 
@@ -343,8 +344,8 @@ def _run_wheel(
             record[tick, 3], record[tick, 4], record[tick, 5] = force, torque, next_duty
 
 
-@parallel_jit
-def _run_all(
+@unlocked_jit
+def _run_some(
     states: Array,
     potentials: Array,
     duties: NDArray[np.int64],
@@ -361,10 +362,13 @@ def _run_all(
     settled_s: Array,
     kick_phi_rad: Array,
     records: Array,
+    first: int,
+    every: int,
 ) -> None:
+    """One of `every` wheels, from the first on."""
     ticks = times.shape[1]
     kicked, begin = kick[0] != NO_ACTION, kick[1]
-    for wheel in prange(len(states)):
+    for wheel in range(first, len(states), every):
         phis = np.empty(ticks)
         when = times[wheel % len(times)]
         variant = wheel % len(tables)

@@ -1,11 +1,14 @@
-"""The one place that knows how to compile functions.
+"""The one place that knows how to compile functions, and how to spread their work over all cores.
 
 What is compiled is kept on disk (sim_motor.compiled_cache), so that only the first process on a
 machine compiles it.
 """
 
+import os
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from typing import Any, TypeVar, cast
 
@@ -16,7 +19,8 @@ from sim_motor.function_digest import function_digest
 from sim_motor.mathematics import with_mathematics
 
 F = TypeVar("F", bound=Callable[..., Any])
-prange = numba.prange
+_CORES = len(os.sched_getaffinity(0))
+_most_cores: ContextVar[int] = ContextVar("_most_cores", default=_CORES)
 
 
 def njit(function: F, **options: Any) -> F:
@@ -45,9 +49,9 @@ def inlined_jit(function: F) -> F:
     return njit(function, error_model="numpy", forceinline=True)
 
 
-def parallel_jit(function: F) -> F:
-    """As `jit`, with its `prange` loops spread over all cores."""
-    return njit(function, error_model="numpy", parallel=True)
+def unlocked_jit(function: F) -> F:
+    """As `jit`, for `over_cores`: while the function runs, so may others of the same process."""
+    return njit(function, error_model="numpy", nogil=True)
 
 
 @cache
@@ -58,13 +62,31 @@ def compiled(function: F) -> F:
 
 @contextmanager
 def on_one_core() -> Iterator[None]:
-    """Let `parallel_jit` loops run on one core: to spread a short one takes longer than to run it.
+    """Let `over_cores` take one core: to spread short work takes longer than to do it.
 
     It counts for the calling thread.
     """
-    before = numba.get_num_threads()
-    numba.set_num_threads(1)
+    before = _most_cores.set(1)
     try:
         yield
     finally:
-        numba.set_num_threads(before)
+        _most_cores.reset(before)
+
+
+def over_cores(work: Callable[[int, int], None], count: int) -> None:
+    """Call work(core, cores) for every core, side by side, on as many as there are.
+
+    numba would do so inside of a compiled function, but takes several times as long to compile
+    that, as it compiles what is called there once more.
+
+    Args:
+        work: Does each of the `cores`-th parts of the work from part number `core` on, by a
+            function that is compiled without Python's lock.
+        count: How many parts there are. No more cores are taken.
+    """
+    cores = min(_most_cores.get(), count)
+    if cores <= 1:
+        work(0, 1)
+        return
+    with ThreadPoolExecutor(cores) as pool:
+        list(pool.map(work, range(cores), [cores] * cores))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_motor.arrays import Array, scalars, tables
-from sim_motor.compiled import parallel_jit, prange
+from sim_motor.compiled import over_cores, unlocked_jit
 from sim_motor.compiled_motor import advance, substep_at, substep_from
 from sim_motor.constants import Constants
 from sim_motor.motor import ANGLE
@@ -37,7 +37,7 @@ def replay(
     """
     ends = states.copy()
     angles = np.empty((len(states), len(times)))
-    _replay(
+    given = (
         ends,
         angles,
         times,
@@ -48,10 +48,11 @@ def replay(
         scalars(motors),
         volts,
     )
+    over_cores(lambda core, cores: _replay(*given, core, cores), len(ends))
     return ends, angles
 
 
-@parallel_jit
+@unlocked_jit
 def _replay(
     states: Array,
     angles: Array,
@@ -62,8 +63,11 @@ def _replay(
     tables: Array,
     scalars: Array,
     volts: Array,
+    first: int,
+    every: int,
 ) -> None:
-    for row in prange(len(states)):
+    """One of `every` motors, from the first on."""
+    for row in range(first, len(states), every):
         start = states[row]
         state = (start[0], start[1], start[2], start[3], start[4], start[5])
         table, constants = tables[row % len(tables)], scalars[row % len(tables)]

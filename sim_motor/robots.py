@@ -29,7 +29,7 @@ from sim_motor.batch import (
     signed,
     time_step,
 )
-from sim_motor.compiled import jit, parallel_jit, prange
+from sim_motor.compiled import jit, over_cores, unlocked_jit
 from sim_motor.compiled_motor import encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE
@@ -157,7 +157,7 @@ def run(
     changes = [(0, params), *then]
     records = np.empty((robots, 2, ticks, len(CHANNELS)))
     places = np.empty((robots, ticks, 3))
-    _run_all(
+    given = (
         start.states,
         start.potentials,
         start.headings,
@@ -175,6 +175,7 @@ def run(
         records,
         places,
     )
+    over_cores(lambda core, cores: _run_some(*given, core, cores), robots)
     return Course(times, records, places)
 
 
@@ -266,8 +267,8 @@ def _run_robot(
         turn = substep_from(now + latency_s)
 
 
-@parallel_jit
-def _run_all(
+@unlocked_jit
+def _run_some(
     states: Array,
     potentials: Array,
     headings: Array,
@@ -286,8 +287,11 @@ def _run_all(
     walls: WallNumbers,
     records: Array,
     places: Array,
+    first: int,
+    every: int,
 ) -> None:
-    for robot in prange(len(states)):
+    """One of `every` robots, from the first on."""
+    for robot in range(first, len(states), every):
         left, right = (2 * robot) % len(tables), (2 * robot + 1) % len(tables)
         place = np.zeros(6)
         place[2] = headings[robot]

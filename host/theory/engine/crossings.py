@@ -18,7 +18,7 @@ from host.theory.engine.flow import FINENESS
 from host.theory.engine.runge_kutta import STAGES, TABLEAU
 from host.theory.model.laws import Law, law_of, under
 from host.theory.model.wheel import OMEGA, PHI, Array, rates
-from sim_motor.compiled import jit, parallel_jit, prange
+from sim_motor.compiled import jit, over_cores, unlocked_jit
 
 # phi: a wheel comes to a multiple of a quarter turn. omega: it turns round.
 Surface = Literal["phi", "omega"]
@@ -107,7 +107,7 @@ def _nearest(first: float, rate: float, last: float, last_rate: float, step_s: f
     return step_s * -rate / (linear + (root if first > 0.0 else -root))
 
 
-def _follow_all(
+def _follow_some(
     states: Array,
     parameters: Array,
     steps_s: Array,
@@ -116,10 +116,15 @@ def _follow_all(
     times: Array,
     found: Array,
     seen: Any,
+    first: int,
+    every: int,
 ) -> None:
-    """Follow wheels, (4, wheels), in counts[wheel] steps; keep their first crossings."""
+    """Follow wheels, (4, wheels), in counts[wheel] steps; keep their first crossings.
+
+    It is one of `every` wheels, from the first on.
+    """
     most = times.shape[1]
-    for wheel in prange(states.shape[1]):
+    for wheel in range(first, states.shape[1], every):
         at, after, there = states[:, wheel].copy(), np.empty(4), np.empty(4)
         constants, step_s = parameters[:, wheel].copy(), steps_s[wheel]
         height, rate = _height(at, constants, turns)
@@ -152,12 +157,12 @@ def _follow_all(
 
 @cache
 def _following(law: Law) -> Any:
-    """`_follow_all` compiled, with the equations of a law."""
+    """`_follow_some` compiled, with the equations of a law."""
 
     def finish(function: Any) -> Any:
-        return (parallel_jit if function.__name__ == _follow_all.__name__ else jit)(function)
+        return (unlocked_jit if function.__name__ == _follow_some.__name__ else jit)(function)
 
-    return under(law, _follow_all, {}, finish)
+    return under(law, _follow_some, {}, finish)
 
 
 class Crossings(NamedTuple):
@@ -206,15 +211,10 @@ def crossings(
     ended = np.ascontiguousarray(states, dtype=np.float64).copy()
     times, found = np.empty((wheels, most)), np.empty((wheels, most, 4))
     seen = np.zeros(wheels, dtype=np.int64)
-    _following(law_of(parameters))(
-        ended,
-        np.ascontiguousarray(parameters),
-        seconds / counts,
-        counts,
-        surface == "omega",
-        times,
-        found,
-        seen,
+    follow_some = _following(law_of(parameters))
+    given = np.ascontiguousarray(parameters), seconds / counts, counts, surface == "omega"
+    over_cores(
+        lambda core, cores: follow_some(ended, *given, times, found, seen, core, cores), wheels
     )
     kept = np.minimum(seen, most).tolist()
     return Crossings(

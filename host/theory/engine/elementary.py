@@ -58,6 +58,11 @@ def vectorised(function: Any) -> Any:
     return njit(function, **OPTIONS)
 
 
+def unlocked(function: Any) -> Any:
+    """As `vectorised`, for `over_cores`."""
+    return njit(function, nogil=True, **OPTIONS)
+
+
 def inlined(function: Any) -> Any:
     """As `vectorised`, and compile the function into those that call it."""
     return njit(function, forceinline=True, **OPTIONS)

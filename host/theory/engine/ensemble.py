@@ -10,21 +10,19 @@ compiler lets one instruction do several of them.
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import get_num_threads
 from numpy.typing import NDArray
 
 from host.errors import WrongUse
-from host.theory.engine import runge_kutta, series, sliding, taylor
+from host.theory.engine import runge_kutta, sliding, taylor
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.taylor import AROUND, SQUARE
 from host.theory.model.laws import PAPER, Law, law_of, under
 from host.theory.model.wheel import OMEGA, PHI, Array, rates
-from sim_motor.compiled import on_one_core, parallel_jit, prange
+from sim_motor.compiled import over_cores
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
 # the fewest takes many more steps than it needs, for the sake of the others.
@@ -87,35 +85,6 @@ def _averaged_rates(law: Law) -> Any:
     return vectorised(averaged_rates)
 
 
-@cache
-def _advancing(method: Any, rates_of: Any) -> Any:
-    """The compiled function that advances blocks of wheels by a method, with these rates."""
-    steps = method.stepping(rates_of)
-
-    def advance_all(
-        states: Array,
-        parameters: Array,
-        seconds: float,
-        counts: Any,
-        edges: Any,
-        order: Any,
-        begins: Any,
-    ) -> None:
-        """Blocks of wheels, from edges[i] to edges[i + 1], in counts[i] steps each.
-
-        A core takes the blocks of `order` from begins[core] to begins[core + 1].
-        """
-        for core in prange(len(begins) - 1):
-            for place in range(begins[core], begins[core + 1]):
-                block = order[place]
-                first, end = edges[block], edges[block + 1]
-                own, constants = states[:, first:end].copy(), parameters[:, first:end].copy()
-                steps(own, constants, seconds / counts[block], counts[block])
-                states[:, first:end] = own
-
-    return parallel_jit(advance_all)
-
-
 def rate_per_s(parameters: Array) -> Array:
     """How fast a wheel changes, 1/s, (wheels,); its steps are chosen by that. Eq. F_tan_ana.
 
@@ -146,24 +115,23 @@ def _edges(needed: Array) -> Whole:
     return np.array(edges[::-1])
 
 
-def _shares(work: Whole) -> tuple[Whole, Whole]:
+def _shares(work: Whole, cores: int) -> list[list[int]]:
     """About the same work for each core: the longest blocks first, each to the core with the least.
 
     Args:
         work: That of each block.
+        cores: How many there are.
 
     Returns:
-        The blocks of all cores, one core after the other; where those of a core begin, and where
-        the last one's end.
+        The blocks of each core.
     """
-    shares: list[list[int]] = [[] for _ in range(get_num_threads())]
-    loads = [0] * len(shares)
+    shares: list[list[int]] = [[] for _ in range(cores)]
+    loads = [0] * cores
     for block in np.argsort(-work, kind="stable").tolist():
         core = loads.index(min(loads))
         shares[core].append(block)
         loads[core] += int(work[block])
-    begins = np.cumsum([0, *map(len, shares)])
-    return np.array([block for share in shares for block in share], dtype=np.int64), begins
+    return shares
 
 
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
@@ -226,16 +194,17 @@ def _advanced(
     edges = _edges(needed)
     counts = np.maximum(1, needed[edges[1:] - 1]).astype(np.int64)
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
-    # To wake the other cores takes longer than most steps of one block.
-    with on_one_core() if len(counts) == 1 else nullcontext():
-        _advancing(method, rates_of)(
-            found,
-            np.ascontiguousarray(parameters[:, order]),
-            float(seconds),
-            counts,
-            edges,
-            *_shares(counts * np.diff(edges)),
-        )
+    ordered = parameters[:, order]
+    steps = method.stepping(rates_of)
+
+    def advance_share(core: int, cores: int) -> None:
+        for block in _shares(counts * np.diff(edges), cores)[core]:
+            wheels = slice(edges[block], edges[block + 1])
+            own, constants = found[:, wheels].copy(), ordered[:, wheels].copy()
+            steps(own, constants, seconds / counts[block], counts[block])
+            found[:, wheels] = own
+
+    over_cores(advance_share, len(counts))
     return _back(found, order, parameters)
 
 
@@ -277,10 +246,8 @@ def _by_series(
     order = order[::-1]
     found = np.ascontiguousarray(states[:, order], dtype=np.float64)
     own = np.ascontiguousarray(parameters[:, order])
-    # To wake the other cores takes longer than most steps of a few wheels.
-    with on_one_core() if len(order) <= series.LANES else nullcontext():
-        accuracy = taylor.accuracy_of(fineness)
-        taylor.follow(found, own, seconds, 1.0 / rate_per_s(own), law, accuracy)
+    accuracy = taylor.accuracy_of(fineness)
+    taylor.follow(found, own, seconds, 1.0 / rate_per_s(own), law, accuracy)
     return _back(found, order, parameters)
 
 

@@ -23,7 +23,7 @@ from host.theory.engine.ensemble import rate_per_s, too_stiff
 from host.theory.engine.sliding import DRY
 from host.theory.model.laws import Law, law_of, under
 from host.theory.model.wheel import Array, rates
-from sim_motor.compiled import parallel_jit, prange
+from sim_motor.compiled import over_cores, unlocked_jit
 
 # Steps per unit of a wheel's rate (host.theory.engine.ensemble).
 FINENESS = 10.0
@@ -85,10 +85,11 @@ def _wandering(law: Law) -> Any:
 
     def wander(
         states: Array, parameters: Array, noise: Any, seeds: Any, step_s: float, count: int,
-        way: int, patience: int, times: Array, ended: Any,
+        way: int, patience: int, times: Array, ended: Any, first: int, every: int,
     ) -> None:  # fmt: skip
+        """One of `every` wheels, from the first on."""
         torque, angle = noise
-        for i in prange(states.shape[1]):
+        for i in range(first, states.shape[1], every):
             x1, x2, phi, omega = states[0, i], states[1, i], states[2, i], states[3, i]
             a, tau, k = parameters[0, i], parameters[1, i], parameters[2, i]
             inertia, f, dry = parameters[3, i], parameters[4, i], parameters[5, i]
@@ -125,7 +126,7 @@ def _wandering(law: Law) -> Any:
                         break
             states[0, i], states[1, i], states[2, i], states[3, i] = x1, x2, phi, omega
 
-    return parallel_jit(wander)
+    return unlocked_jit(wander)
 
 
 def escapes(
@@ -162,9 +163,9 @@ def escapes(
     found, times = np.array(states, dtype=np.float64), np.full(states.shape[1], float(seconds))
     ended = np.zeros(states.shape[1], dtype=np.bool_)
     patience = int(min(patience_s / step_s, count))
-    _wandering(law_of(parameters))(
-        found, parameters, tuple(noise), seeds, step_s, count, way, patience, times, ended
-    )
+    wander = _wandering(law_of(parameters))
+    given = found, parameters, tuple(noise), seeds, step_s, count, way, patience, times, ended
+    over_cores(lambda core, cores: wander(*given, core, cores), len(times))
     return Escapes(times, ended, found)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DOP853
 
-from host.theory.engine.elementary import vectorised
+from host.theory.engine.elementary import unlocked, vectorised
 from host.theory.model.wheel import Array
 
 # The tableau of Hairer, Norsett and Wanner's DOP853, without its error estimate; the last row is
@@ -92,4 +92,4 @@ def stepping(rates_of: Any) -> Any:
                 flat_states[i] = before + lost[i]
                 lost[i] -= flat_states[i] - before
 
-    return vectorised(steps)
+    return unlocked(steps)

@@ -26,7 +26,7 @@ from host.theory.model.wheel import PHI, Array, Wheel, torque
 from robot.controller import actual_positions, step_wheel
 from robot.kicks import WHEELS, Kick, seen_positions
 from robot.params import Params
-from sim_motor.compiled import compiled, parallel_jit, prange
+from sim_motor.compiled import compiled, over_cores, unlocked_jit
 
 HELD = 4
 # A run of more ticks takes too long.
@@ -146,18 +146,19 @@ _coast: Any = compiled(coast)
 
 @cache
 def _running(law: Law) -> Any:
-    """The compiled function that advances all wheels by some ticks, in place.
+    """The compiled function that advances wheels by some ticks, in place.
 
-    It returns the sums of omega^2 at the begins of these ticks, (wheels,).
+    It gives the sums of omega^2 at the begins of these ticks, (wheels,).
     """
     own_tick: Any = under(law, tick, MATHEMATICS, inlined)
 
     def run(
-        states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int
-    ) -> Array:
-        squares = np.zeros(states.shape[1])
+        states: Array, parameters: Array, seen: tuple[Any, ...], clock: tuple[Any, ...], ticks: int,
+        squares: Array, first: int, every: int,
+    ) -> None:  # fmt: skip
+        """One of `every` wheels, from the first on."""
         tick_s, latency_s, fresh = clock
-        for i in prange(states.shape[1]):
+        for i in range(first, states.shape[1], every):
             x1, x2, phi, omega, held = (
                 states[0, i],
                 states[1, i],
@@ -192,9 +193,8 @@ def _running(law: Law) -> Any:
                 held,
             )
             squares[i] = square
-        return squares
 
-    return parallel_jit(run)
+    return unlocked_jit(run)
 
 
 def ticks_in(seconds: float, clock: Clock) -> int:
@@ -253,7 +253,10 @@ def _advanced(
         raise WrongUse(
             "a wheel with functions of its own does not step by ticks", "follow it without ticks"
         )
-    return last, _running(law)(last, parameters, tuple(seen), tuple(clock), ticks)
+    run, squares = _running(law), np.empty(last.shape[1])
+    given = last, parameters, tuple(seen), tuple(clock), ticks, squares
+    over_cores(lambda core, cores: run(*given, core, cores), last.shape[1])
+    return last, squares
 
 
 def advance(

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from host.theory.engine import runge_kutta
-from host.theory.engine.elementary import vectorised
+from host.theory.engine.elementary import unlocked, vectorised
 from host.theory.model.wheel import OMEGA, Array, Wheel
 
 INERTIA, DRY = Wheel._fields.index("I"), Wheel._fields.index("dry_friction")
@@ -100,4 +100,4 @@ def stepping(rates_of: Any) -> Any:
                         own[OMEGA, 0] = 0.0
             states[:, wheel] = own[:, 0]
 
-    return vectorised(steps)
+    return unlocked(steps)

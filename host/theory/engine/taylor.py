@@ -14,16 +14,15 @@ from typing import Any, NamedTuple
 
 import numba.extending
 import numpy as np
-from numba import get_num_threads
 from numba.core import types
 
 from host.theory.engine import elementary, series
-from host.theory.engine.elementary import vectorised
+from host.theory.engine.elementary import unlocked
 from host.theory.engine.series import LANES, Lanes, Mathematics, Series, bits_of, float_of
 from host.theory.model.laws import Law, under
 from host.theory.model.wheel import OMEGA, Array, Wheel, rates
 from robot.sources import fingerprint
-from sim_motor.compiled import parallel_jit, prange
+from sim_motor.compiled import over_cores
 
 # numba gives intrinsics another signature than the one that they are written with.
 _intrinsic: Any = numba.extending.intrinsic
@@ -188,15 +187,7 @@ def _following(law: Law, accuracy: Accuracy) -> Any:
             while one_step(memory, constants) == 0:
                 pass
 
-    some = vectorised(follow_some)
-
-    def follow_all(
-        states: Array, parameters: Array, seconds: float, usual_s: Array, firsts: Any
-    ) -> None:
-        for core in prange(len(firsts)):
-            some(states, parameters, seconds, usual_s, firsts[core], len(firsts))
-
-    return parallel_jit(follow_all)
+    return unlocked(follow_some)
 
 
 def follow(
@@ -218,5 +209,9 @@ def follow(
         law: The wheels' equations, without functions of the user.
         accuracy: How exactly.
     """
-    cores = np.arange(get_num_threads())
-    _following(law, accuracy)(states, parameters, float(seconds), usual_s, cores)
+    follow_some = _following(law, accuracy)
+    # A step of a few wheels takes as long as one of LANES.
+    over_cores(
+        lambda core, cores: follow_some(states, parameters, float(seconds), usual_s, core, cores),
+        -(-states.shape[1] // LANES),
+    )

@@ -4,9 +4,9 @@ Its mathematics against `math`, its numbers against exact solutions and scipy.
 """
 
 import math
+from contextlib import nullcontext
 from functools import partial
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -17,6 +17,7 @@ from host.errors import WrongUse
 from host.theory.engine import elementary, series
 from host.theory.engine.ensemble import LANES, advance, averages, rate_per_s
 from host.theory.model.wheel import OMEGA, PHI, Wheel, rates
+from sim_motor.compiled import on_one_core
 
 # At rest, forth and back, rolling slowly and fast, and with a short memory.
 WHEELS = [Wheel(k=1.4), Wheel(k=1.65), Wheel(k=1.85), Wheel(k=14.0), Wheel(tau=0.03, k=12.0)]
@@ -203,11 +204,9 @@ def random_wheels(count):
 def test_the_same_bits_on_any_number_of_cores():
     parameters = random_wheels(5 * LANES + 3)
     found = []
-    before = numba.get_num_threads()
-    for threads in (1, numba.config.NUMBA_NUM_THREADS):
-        numba.set_num_threads(threads)
-        found.append(np.vstack(averages(starts(parameters.shape[1]), parameters, 2.0, 2.0)))
-    numba.set_num_threads(before)
+    for cores in (on_one_core(), nullcontext()):
+        with cores:
+            found.append(np.vstack(averages(starts(parameters.shape[1]), parameters, 2.0, 2.0)))
     assert np.array_equal(*found)
 
 
