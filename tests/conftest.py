@@ -28,6 +28,9 @@ settings.load_profile("house")
 # and with everything else.
 CACHES = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
 os.environ.setdefault("NUMBA_CACHE_DIR", CACHES)
+# The tests share the cores by themselves: for small matrices, BLAS's threads mostly wait for each
+# other.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Without a list of fonts each program that draws makes one first, and says so after five seconds.
 os.environ.setdefault("MPLCONFIGDIR", os.path.join(CACHES, "matplotlib"))  # noqa: PTH118
 # Whoever draws with OpenGL first in a process would make it in a test's own folder.
