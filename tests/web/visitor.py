@@ -1,9 +1,9 @@
 """A browser's page in the lab, for tests."""
 
-# A screen of 8 pictures in a second: drawing 60 takes most of what these tests compute.
+# A screen of 20 pictures in a second: drawing 60 takes most of what these tests compute.
 SLOW_SCREEN = """
 const frame = window.requestAnimationFrame.bind(window);
-window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 100);
+window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 40);
 window.cancelAnimationFrame = clearTimeout;
 """
 
