@@ -115,25 +115,6 @@ def _edges(needed: Array) -> Whole:
     return np.array(edges[::-1])
 
 
-def _shares(work: Whole, cores: int) -> list[list[int]]:
-    """About the same work for each core: the longest blocks first, each to the core with the least.
-
-    Args:
-        work: That of each block.
-        cores: How many there are.
-
-    Returns:
-        The blocks of each core.
-    """
-    shares: list[list[int]] = [[] for _ in range(cores)]
-    loads = [0] * cores
-    for block in np.argsort(-work, kind="stable").tolist():
-        core = loads.index(min(loads))
-        shares[core].append(block)
-        loads[core] += int(work[block])
-    return shares
-
-
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
     """The exception for a wheel with these constants that would take that many steps."""
     words = ", ".join(
@@ -197,14 +178,17 @@ def _advanced(
     ordered = parameters[:, order]
     steps = method.stepping(rates_of)
 
-    def advance_share(core: int, cores: int) -> None:
-        for block in _shares(counts * np.diff(edges), cores)[core]:
+    # The longest first, so that no core waits long for the others. Each takes the next of them.
+    blocks = iter(np.argsort(-counts * np.diff(edges), kind="stable").tolist())
+
+    def advance_blocks(_core: int, _cores: int) -> None:
+        for block in blocks:
             wheels = slice(edges[block], edges[block + 1])
             own, constants = found[:, wheels].copy(), ordered[:, wheels].copy()
             steps(own, constants, seconds / counts[block], counts[block])
             found[:, wheels] = own
 
-    over_cores(advance_share, len(counts))
+    over_cores(advance_blocks, len(counts))
     return _back(found, order, parameters)
 
 
