@@ -8,6 +8,8 @@ import sys
 import time
 from contextlib import closing, contextmanager
 
+from playwright import sync_api
+
 from tests.lint.sources import ROOT
 
 # Nothing takes so long; it is only so that what never happens ends.
@@ -38,7 +40,23 @@ class Notebook:
             self.complaints.append(f"{message.text} {message.location['url']}")
 
     def _until(self, expression, **values):
-        self.page.wait_for_function(expression, **values)
+        try:
+            self.page.wait_for_function(expression, **values)
+        except sync_api.TimeoutError as error:
+            raise AssertionError(f"{expression}: {self._seen()}") from error
+
+    def _seen(self):
+        """What each cell shows, for a failure."""
+        return self.page.evaluate(
+            """() => ({
+                kernel: jupyterapp.shell.currentWidget?.sessionContext.kernelDisplayStatus,
+                cells: [...document.querySelectorAll(".jp-Cell")].map((cell) => ({
+                    prompt: cell.querySelector(".jp-InputPrompt")?.innerText,
+                    words: cell.querySelector(".jp-OutputArea")?.innerText,
+                    known: cell.querySelector(".kickctl")?.kickctl?.(),
+                })),
+            })"""
+        )
 
     def need(self, *numbers):
         """Run those cells that have not run yet, one after the other."""
