@@ -1,11 +1,13 @@
 """Torque and speed against k, with k lowered and raised, over the paper's k, and near k_c.
 
+Near k_c there is nothing to see but limit cycles that were held, so without these no such panel.
 The measured limit cycles, those that feedback held and those that wheels ran on by themselves,
 scatter by some per mille in k. Each direction's line is a polynomial that is fitted to them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -27,8 +29,6 @@ from host.experiments.robot.bifurcation_rows import (
 from host.figures.style import COLOURS, SIZE, styled
 from host.kicking.robot_claims import STALL_TORQUE
 from host.runs.contract import Findings
-
-PANELS = ("torque", "torque-2", "torque-near", "speed", "speed-2", "speed-near")
 
 Quantity = Literal["torque", "hz"]
 
@@ -59,35 +59,54 @@ class Line(NamedTuple):
     fold: int
 
 
+def panels(options: Mapping[str, Any]) -> tuple[str, ...]:
+    """The panels of a run with these options."""
+    return _names(near=options["branch"] > 0)
+
+
+def _names(*, near: bool) -> tuple[str, ...]:
+    places = ("", "-2", "-near") if near else ("", "-2")
+    return tuple(f"{quantity}{place}" for quantity in ("torque", "speed") for place in places)
+
+
 def draw(rows: list[BifurcationRow], findings: Findings) -> Figure:
     """Draw the rows."""
     numbers: Numbers = findings.numbers
     k_c = numbers["k_c"]["by descent"]
     greatest_k = max((row["k"] for row in sweep_rows(rows)), default=8.0)
-    spans = ((-0.1, greatest_k + 0.2), _PAPER_K, (k_c + _NEAR_K[0], k_c + _NEAR_K[1]))
+    spans = [(-0.1, greatest_k + 0.2), _PAPER_K]
+    held = held_cycles(rows)
+    if held:
+        spans.append((k_c + _NEAR_K[0], k_c + _NEAR_K[1]))
     lines = {motion: line for motion in SIGN if (line := _fit(rows, motion)) is not None}
     with styled():
         figure = Figure(**SIZE)
-        grid = figure.subplots(2, 3, sharex="col")
+        grid = figure.subplots(2, len(spans), sharex="col")
+        for axes, name in zip(grid.flat, _names(near=bool(held)), strict=True):
+            axes.set_label(name)
         quantities: tuple[Quantity, ...] = ("torque", "hz")
         for panels, quantity in zip(grid, quantities, strict=True):
             label, absolute, most, most_near = _LABELS[quantity]
             for axes, span in zip(panels, spans, strict=True):
-                near = axes is panels[-1]
+                near = bool(held) and axes is panels[-1]
                 _draw_sweeps(axes, rows, quantity, signed=not near)
                 if axes is not panels[0]:
                     _draw_lines(axes, lines, quantity, signed=not near)
                 axes.axvline(k_c, color="dimgrey", linestyle=":", linewidth=1.4)
                 axes.set(xlim=span, ylim=(-0.03 * most_near, most_near) if near else (-most, most))
-            _draw_held(panels[-1], held_cycles(rows), quantity)
             panels[0].set_ylabel(label)
-            panels[-1].set_ylabel(absolute)
+            if held:
+                _draw_held(panels[-1], held, quantity)
+                panels[-1].set_ylabel(absolute)
         for axes in grid[0]:
             axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", linewidth=0, zorder=0)
         for axes in grid[1]:
             axes.set_xlabel("spring constant $k$")
-        grid[1, 2].xaxis.set_major_locator(MultipleLocator(0.01))
-        grid[0, 2].text(k_c - 0.001, 0.38, f"$k_c$ = {k_c:.3f}", ha="right", va="top", fontsize=11)
+        if held:
+            grid[1, 2].xaxis.set_major_locator(MultipleLocator(0.01))
+        last = grid[0, -1]
+        place: Any = {"ha": "right", "va": "top", "transform": last.get_xaxis_transform()}
+        last.text(k_c, 0.95, f"$k_c$ = {k_c:.3f} ", fontsize=11, **place)
         figure.align_ylabels()
         handles = _handles(rows, fitted=bool(lines))
         figure.legend(handles=handles, loc="outside lower left", ncols=5, fontsize=11)

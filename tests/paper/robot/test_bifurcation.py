@@ -9,7 +9,7 @@ from host.client.robot import connect
 from host.experiments.robot import bifurcation
 from host.experiments.robot.bifurcation_pieces import LEAST_K, MIDDLE_K
 from host.experiments.robot.bifurcation_rows import held_cycles, least_k
-from host.figures.robot.bifurcation import draw
+from host.figures.robot.bifurcation import draw, panels
 from host.logs.log import Log
 from host.runs.contract import Setting
 from robot.kicks import WHEELS
@@ -147,3 +147,9 @@ def test_a_ladder_has_as_many_rungs_as_asked_for_and_is_denser_at_small_k():
     assert steps[0] == LEAST_K
     assert steps[-1] == 8.0
     assert sum(k <= MIDDLE_K for k in steps) >= 16
+
+
+def test_without_held_cycles_the_figure_has_no_empty_panel(folds):
+    figure = draw(folds, bifurcation.report(folds, SETTING))
+    assert [axes.get_label() for axes in figure.axes] == ["torque", "torque-2", "speed", "speed-2"]
+    assert [panels({"branch": count})[-1] for count in (0, 1)] == ["speed-2", "speed-near"]
