@@ -85,19 +85,19 @@ def draw(rows: list[BifurcationRow], findings: Findings) -> Figure:
         for axes, name in zip(grid.flat, _names(near=bool(held)), strict=True):
             axes.set_label(name)
         quantities: tuple[Quantity, ...] = ("torque", "hz")
-        for panels, quantity in zip(grid, quantities, strict=True):
+        for across, quantity in zip(grid, quantities, strict=True):
             label, absolute, most, most_near = _LABELS[quantity]
-            for axes, span in zip(panels, spans, strict=True):
-                near = bool(held) and axes is panels[-1]
+            for axes, span in zip(across, spans, strict=True):
+                near = bool(held) and axes is across[-1]
                 _draw_sweeps(axes, rows, quantity, signed=not near)
-                if axes is not panels[0]:
+                if axes is not across[0]:
                     _draw_lines(axes, lines, quantity, signed=not near)
                 axes.axvline(k_c, color="dimgrey", linestyle=":", linewidth=1.4)
                 axes.set(xlim=span, ylim=(-0.03 * most_near, most_near) if near else (-most, most))
-            panels[0].set_ylabel(label)
+            across[0].set_ylabel(label)
             if held:
-                _draw_held(panels[-1], held, quantity)
-                panels[-1].set_ylabel(absolute)
+                _draw_held(across[-1], held, quantity)
+                across[-1].set_ylabel(absolute)
         for axes in grid[0]:
             axes.axhspan(-STALL_TORQUE, STALL_TORQUE, color="lightgrey", linewidth=0, zorder=0)
         for axes in grid[1]:
