@@ -49,7 +49,8 @@ class Notebook:
         """What each cell shows, for a failure."""
         return self.page.evaluate(
             """() => ({
-                kernel: jupyterapp.shell.currentWidget?.sessionContext.kernelDisplayStatus,
+                kernel: window.jupyterapp?.shell.currentWidget?.sessionContext
+                    ?.kernelDisplayStatus,
                 cells: [...document.querySelectorAll(".jp-Cell")].map((cell) => ({
                     prompt: cell.querySelector(".jp-InputPrompt")?.innerText,
                     words: cell.querySelector(".jp-OutputArea")?.innerText,
