@@ -95,7 +95,7 @@ def _fix_layout(figure: Figure) -> None:
     if not isinstance(engine, ConstrainedLayoutEngine):
         return
     engine.execute(figure)
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)  # with "none", matplotlib draws twice for each file
     for legend in figure.legends:
         if legend.get_bbox_to_anchor() is figure.bbox:
             legend.set_bbox_to_anchor((0.0, 0.0, 1.0, 1.0), figure.transFigure)

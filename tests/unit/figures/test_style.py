@@ -4,6 +4,7 @@ import re
 
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 from host.errors import WrongUse
@@ -53,6 +54,24 @@ def test_the_same_drawing_is_the_same_file_and_says_what_it_shows(tmp_path, endi
         assert CAPTION.command.encode() in first
         assert CAPTION.parameters.encode() in first
         assert b"CreationDate" not in first
+
+
+class CountedText(Text):
+    """A text that counts how often it is drawn."""
+
+    drawn = 0
+
+    def draw(self, renderer):
+        self.drawn += 1
+        super().draw(renderer)
+
+
+def test_each_file_is_drawn_once(tmp_path):
+    figure = pictures()
+    text = figure.add_artist(CountedText(0.5, 0.5, "x"))
+    for ending in ("png", "svg"):
+        save(figure, tmp_path / f"figure.{ending}", CAPTION)
+    assert text.drawn == 2
 
 
 def test_a_panel_alone_has_the_whole_figure_and_what_it_shared_with_others():
