@@ -11,7 +11,7 @@ from playwright.sync_api import sync_playwright
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
-from tests.web.visitor import Visitor
+from tests.web.visitor import DRAWN, Visitor
 
 CHROMIUM = shutil.which("chromium")
 # The same engine without windows and tabs: a page opens in it for a third of the work.
@@ -84,7 +84,7 @@ def visit(browser, lab):
     def visit(url=None, **context):
         visitor = Visitor(browser, lab, url or lab.drive_url, **context)
         visitors.append(visitor)
-        visitor.until("r && r.records > 0 && s.drawing.frames > 2")
+        visitor.until(DRAWN)
         return visitor
 
     yield visit

@@ -13,7 +13,7 @@ from tests.web.test_page import Forecast
 from tests.web.visitor import Visitor
 
 STATES = "s.robots.map((one) => one.state).join()"
-FILLED = "r && s.beside.cards.length"
+FILLED = "r && s.beside.cards.length && s.drawing.frames > 0"
 READY = f"{FILLED} && s.beside.cards.every((one) => one.traced > 50)"
 # The parts of the first screen that must be seen without scrolling.
 SEEN = ".card canvas, .card .stop:not([hidden]), #stop, #kick-phase"
@@ -244,21 +244,27 @@ def test_one_is_shown_large_instead_and_what_is_hidden_is_not_drawn(show, pair):
             fill.apply(this, box);
         };
     """
-    frames = """
-        () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {
-            drawn.clear();
-            requestAnimationFrame(() => requestAnimationFrame(() => done([...drawn])));
-        })))
-    """
     visitor = show(*pair, script=drawn)
     page = visitor.page
-    assert set(page.evaluate(frames)) == {"left", "right", "plane"}
+
+    def drawn_as_they_move(shown_s):
+        before = page.evaluate(
+            f"() => {{ drawn.clear(); const s = lab.state(); return {shown_s} }}"
+        )
+        for station in pair:
+            station.step(0.1)
+        visitor.until(f"{shown_s} > {before} + 0.05")
+        return set(page.evaluate("[...drawn]"))
+
+    cards_s = "Math.min(...s.beside.cards.map(({ time }) => time))"
+    assert drawn_as_they_move(cards_s) == {"left", "right", "plane"}
     page.click("#beside-switch")
     visitor.until("!s.beside.shown")
     page.click("#robots >> text=bert")
     visitor.until("r.name === 'bert'")
-    assert {"left-wheel", "strips"} <= set(page.evaluate(frames))
-    assert "plane" not in page.evaluate(frames)
+    large = drawn_as_they_move("s.drawing.shown_s")
+    assert {"left-wheel", "strips"} <= large
+    assert "plane" not in large
     visitor.come_back()
     visitor.until("r && !s.beside.shown")
 

@@ -8,6 +8,7 @@ from host.lab.station import CONTINUE, STOP
 from host.lab.stepped_station import SteppedStation
 from tests.web.conftest import CHROMIUM
 from tests.web.tabs import open_browser
+from tests.web.visitor import DRAWN
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None, reason="there is no Chromium here; get one by `apt-get install chromium`"
@@ -35,7 +36,7 @@ def visit(lab, story):
     async def visit():
         async with asyncio.timeout(PATIENCE_S), open_browser(CHROMIUM) as open_tab:
             tab = await open_tab(lab.drive_url)
-            await tab.until("r && r.records > 0 && s.drawing.frames > 2")
+            await tab.until(DRAWN)
 
             async def hide(way):
                 if way == "minimized":

@@ -51,7 +51,7 @@ def read(browser):
         home = SimpleNamespace(drive_url=url.partition("replay.html?")[0])
         reader = Reader(browser, home, url, **context)
         readers.append(reader)
-        reader.until("s.drawing.frames > 2")
+        reader.until("s.drawing.frames > 0")
         return reader
 
     yield read

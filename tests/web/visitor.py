@@ -7,6 +7,9 @@ window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 40);
 window.cancelAnimationFrame = clearTimeout;
 """
 
+# A page that shows its robot.
+DRAWN = "r && r.records > 0 && s.drawing.shown_s !== null && s.drawing.frames > 0"
+
 
 class Visitor:
     """A browser's page in the lab. It fails its test if it complains, or asks elsewhere.
@@ -60,9 +63,9 @@ class Visitor:
         return state["robots"][state["selected"]]
 
     def until(self, condition):
-        """Wait until a condition on `s`, the page's state, and `r`, its robot, is true."""
+        """Wait until a condition on `s`, the page's state, and `r`, its robot, is true and seen."""
         known = "const s = lab.state(), r = s.robots[s.selected]"
-        self.page.wait_for_function(f"() => {{ {known}; return {condition}; }}")
+        self.page.wait_for_function(f"() => {{ {known}; return !s.drawing.due && ({condition}); }}")
 
     def reads(self, selector, words):
         """Wait until a part of the page says some words."""

@@ -66,10 +66,11 @@ export class Beside {
     /**
      * Move all drawings to what is on the screen now.
      * @param {number} now_s The page's clock, s.
+     * @returns {boolean} Whether time has passed on one of them.
      */
     move(now_s) {
-        if (!this.shown || this.#known !== this.lab.store.robots) return;
-        for (const card of this.#cards) card.move(now_s);
+        if (!this.shown || this.#known !== this.lab.store.robots) return false;
+        return this.#cards.filter((card) => card.move(now_s)).length > 0;
     }
 
     /** Say what is known. */

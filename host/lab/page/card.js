@@ -86,10 +86,11 @@ export class Card {
     /**
      * Move all to what is on the screen now.
      * @param {number} now_s The page's clock, s.
+     * @returns {boolean} Whether time has passed on the screen.
      */
     move(now_s) {
         this.#views.linked = this.lab.store.link.up;
-        this.#views.update(now_s);
+        return this.#views.update(now_s);
     }
 
     /** Say what is known. */

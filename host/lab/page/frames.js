@@ -8,24 +8,23 @@ export class Frames {
     #visible = new Set();
     #times = new Float64Array(KEPT);
     #beaten = 0;
+    #appeared = false;
 
     /**
-     * @param {() => void} update Called before each frame's drawings.
+     * @param {() => boolean} update Called in each frame; whether there is something new to draw.
      * @param {() => void} beat Called several times a second as long as frames are drawn.
      */
     constructor(update, beat) {
         this.update = update;
         this.beat = beat;
-        /** Called when a canvas has come into view, or has another size: it is empty then. */
-        this.appeared = () => {};
-        /** How many frames were drawn. */
+        /** In how many frames something was drawn. */
         this.count = 0;
         this.#watch = new IntersectionObserver((entries) => {
             for (const { target, isIntersecting } of entries) {
                 if (isIntersecting) this.#visible.add(target);
                 else this.#visible.delete(target);
             }
-            this.appeared();
+            this.#appeared = true;
         });
         this.#next = requestAnimationFrame((now) => this.#frame(now));
     }
@@ -40,7 +39,7 @@ export class Frames {
     }
 
     /**
-     * Draw a canvas in each frame in which it can be seen.
+     * Draw a canvas in each frame in which there is something new and it can be seen.
      * @param {HTMLCanvasElement} canvas
      * @param {(canvas: HTMLCanvasElement, state: object, theme: object) => void} draw
      * @param {() => [object, object] | null} view What to draw, and its theme; null for nothing.
@@ -64,10 +63,13 @@ export class Frames {
             this.beat();
         }
         const began = performance.now();
-        this.update();
-        for (const { canvas, draw, view } of this.#drawings) {
-            if (!this.#visible.has(canvas)) continue;
-            if (fit(canvas)) this.appeared();
+        const news = this.update();
+        const inView = this.#drawings.filter(({ canvas }) => this.#visible.has(canvas));
+        // What has come into view, or has another size, is empty.
+        const empty = inView.filter(({ canvas }) => fit(canvas)).length > 0 || this.#appeared;
+        this.#appeared = false;
+        if (!inView.length || !(news || empty)) return;
+        for (const { canvas, draw, view } of inView) {
             // One that is being hidden, of which the browser has not told yet, covers nothing.
             if (!(canvas.width && canvas.height)) continue;
             const seen = view();

@@ -9,8 +9,8 @@ import { createModelBench } from "./model_bench.js";
  * @param {HTMLElement} root
  * @param {HTMLButtonElement} opener Opens and closes the panel.
  * @param {import("./lab.js").Lab} lab
- * @returns {{update: () => void, drawings: object[]}} `update` brings the panel up to date;
- *     `drawings` are those of the model wheel, see model_bench.js.
+ * @returns {{update: () => void, move: () => boolean, drawings: object[]}} `update` brings the
+ *     panel up to date; `move` and `drawings` are those of the model wheel, see model_bench.js.
  */
 export function createLessons(root, opener, lab) {
     const lesson = new Lesson(lab);
@@ -47,7 +47,7 @@ export function createLessons(root, opener, lab) {
         }
         if (focused) document.getElementById(focused)?.focus();
     };
-    return { update, drawings: bench.drawings };
+    return { update, move: bench.move, drawings: bench.drawings };
 }
 
 /** All exercises. */

@@ -40,7 +40,7 @@ const source = alone
     : new WebSocketSource(messagesAddress());
 const lab = new Lab(source);
 const stop = new Stop(lab);
-const screen = new Screen();
+const screen = new Screen(() => (lab.changed = true));
 const sound = new Sound(byId("sound"));
 createSaid(lab);
 const kicks = createKicks(byId("kicks"), lab);
@@ -66,27 +66,38 @@ const panels = [
 let views = null;
 let told = 0;
 
+/** @returns {boolean} Whether there is something new to draw. */
 function update() {
-    const { robot, link } = lab.store;
+    const { robot } = lab.store;
     if (robot && views?.robot !== robot) views = new Views(robot);
     const now = performance.now();
+    const { changed } = lab;
+    // What counts the time since something happened is renewed now and then, too.
+    const due = changed || now - told >= 250;
+    if (due) {
+        told = now;
+        tell();
+    }
+    // After the panels, which may change what there is to see.
+    const moved = [beside.move(now / 1000), lessons.move()];
     if (views) {
-        views.linked = link.up;
-        views.update(now / 1000);
+        views.linked = lab.store.link.up;
+        moved.push(views.update(now / 1000));
         sound.update(views);
     }
-    beside.move(now / 1000);
-    // What counts the time since something happened is renewed now and then, too.
-    if (!lab.changed && now - told < 250) return;
+    if (due) labelWheels(views);
+    return changed || moved.includes(true);
+}
+
+function tell() {
+    const { robot, link } = lab.store;
     lab.changed = false;
-    told = now;
     for (const panel of panels) panel();
     beside.update();
     for (const hand of hands) hand.update();
     document.body.classList.toggle("lost", !link.up || Boolean(robot?.lost));
     if (robot) setText(byId("delay"), texts.delay(1000 * DELAY_TICKS * robot.tick_s));
     byId("hand-note").hidden = !hands[0].allowed;
-    labelWheels(views);
 }
 
 const hands = ["left", "right"].map(

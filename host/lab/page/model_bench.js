@@ -14,9 +14,11 @@ const COMPARED = 2;
 
 /**
  * @param {import("./lesson.js").Lesson} lesson
- * @returns {{root: HTMLElement, update: () => void, drawings: [HTMLCanvasElement, Function,
- *     () => ?object, number, number][]}} `drawings`: each with its canvas, what draws it, what it
- *     shows now, and for how many letters and lines it needs room.
+ * @returns {{root: HTMLElement, update: () => void, move: () => boolean,
+ *     drawings: [HTMLCanvasElement, Function, () => ?object, number, number][]}} `move`: moves all
+ *     to what is on the screen now, and says whether that is something new; `drawings`: each with
+ *     its canvas, what draws it, what it shows now, and for how many letters and lines it needs
+ *     room.
  */
 export function createModelBench(lesson) {
     const choice = numberField("model-value", "", {});
@@ -38,6 +40,8 @@ export function createModelBench(lesson) {
     /** The runs of this exercise since the page was loaded, and when the last one began, ms. */
     let shown = [];
     let began = 0;
+    /** How many states of the newest run are on the screen. */
+    let reached = 0;
 
     own.input.oninput = () => {
         const { value, valueAsNumber } = own.input;
@@ -50,7 +54,7 @@ export function createModelBench(lesson) {
         const value = model.choose ? choice.input.valueAsNumber : lesson.state.runs.length + 1;
         lesson.run(value, (run) => {
             shown.push({ ...run, value });
-            began = performance.now();
+            [began, reached] = [performance.now(), 0];
         });
     }
 
@@ -85,18 +89,23 @@ export function createModelBench(lesson) {
         setText(all, state.runs.length ? words.all(state.runs) : "");
     }
 
-    /** How many states of the newest run are on the screen by now. */
-    function reached({ t_s }) {
-        if (STILL.matches) return t_s.length;
+    function move() {
+        const before = reached;
+        if (!shown.length || !lesson.texts) return false;
+        const { t_s } = shown.at(-1);
         const now_s = ((performance.now() - began) / 1000) * lesson.texts.model.speed;
-        return Math.min(t_s.length, 1 + Math.floor(now_s / t_s[1]));
+        const passed = STILL.matches ? t_s.length : 1 + Math.floor(now_s / t_s[1]);
+        reached = Math.min(t_s.length, passed);
+        return reached !== before;
     }
 
     function wheelView(n) {
         const run = shown.at(-1);
         if (!run?.wheels[n] || !lesson.texts) return null;
-        const at = reached(run) - 1;
-        const now = Object.entries(run.wheels[n]).map(([name, values]) => [name, values[at]]);
+        const now = Object.entries(run.wheels[n]).map(([name, values]) => [
+            name,
+            values[reached - 1],
+        ]);
         const title = modelTexts[name].wheels[n];
         return { ...Object.fromEntries(now), title, labels: texts.wheelLabels };
     }
@@ -118,7 +127,7 @@ export function createModelBench(lesson) {
             x: { symbol: "t", unit: "s", minimum: 0, maximum: run.t_s.at(-1) },
             y: { symbol: words.symbol, unit: words.unit, ...range },
             traces,
-            count: reached(run),
+            count: reached,
             even: true,
         };
     }
@@ -127,5 +136,5 @@ export function createModelBench(lesson) {
         ...wheels.map((canvas, n) => [canvas, drawWheel, () => wheelView(n), 21, 19]),
         [plane, drawPlane, planeView, 30, 14],
     ];
-    return { root, update, drawings };
+    return { root, update, move, drawings };
 }

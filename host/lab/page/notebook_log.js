@@ -45,7 +45,6 @@ export default () => {
                 shown_s: views.time,
                 state: stateNow(),
                 wheels: structuredClone(views.wheels),
-                frames: reel.frames.count,
             });
             onlookers.come();
             return () => {

@@ -152,12 +152,13 @@ class View {
         this.model.send({ type: "here" });
     }
 
+    /** @returns {boolean} Whether there is something new to draw. */
     #update() {
         const { robot } = this.known;
         const { theme } = this.board; // which also sets the colours of the words
         setText(this.words, this.known.stopWords());
         this.words.style.color = Number.isNaN(this.known.stop.asked) ? "" : theme.colours.kick;
-        if (!robot) return;
+        if (!robot) return false;
         if (this.#views?.robot !== robot) {
             this.#views = new Views(robot);
             this.#views.linked = true;
@@ -165,14 +166,15 @@ class View {
             setText(this.name, robot.name);
         }
         const now = performance.now();
-        this.#views.update(now / 1000);
+        const moved = this.#views.update(now / 1000);
         const state = robot.lost ? "lost" : this.#stateShown();
         this.state.dataset.state = state;
         setText(this.state, words.states[state]);
         setText(this.reason, this.#why(state, robot.status));
-        if (now - this.#labelled < LABEL_MS) return;
+        if (now - this.#labelled < LABEL_MS) return moved;
         this.#labelled = now;
         labelWheels(this.#views, this.board.find);
+        return true;
     }
 
     /** Why it is so, or what to know of it. */

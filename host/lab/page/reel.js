@@ -9,13 +9,11 @@ import { createPlayer } from "./player.js";
 import { RecordedRobot } from "./recorded.js";
 import { Views } from "./views.js";
 
-// How many frames are drawn after the last change: what scrolls into view is drawn, too.
-const FRAMES_AFTER = 30;
 // Half of the width of the slider's thumb, CSS pixels.
 const THUMB = 8;
 
 export class Reel {
-    #left = 0;
+    #changed = true;
     #drawn = [];
     #labelled = null;
 
@@ -42,35 +40,28 @@ export class Reel {
             () => this.#update(),
             () => {},
         );
-        this.frames.appeared = () => this.renew();
-        addDrawings(this.frames, screen, () => (this.due ? this.views : null), find);
+        addDrawings(this.frames, screen, () => this.views, find);
         const band = find("marks");
         const state = { marks: this.marks, count: tape.ticks, edge: THUMB };
-        this.frames.add(band, drawMarks, () => this.due && [state, screen.themeFor(band, 1, 1.5)]);
+        this.frames.add(band, drawMarks, () => [state, screen.themeFor(band, 1, 1.5)]);
     }
 
     #player;
     #screen;
     #find;
 
-    /** @returns {boolean} Whether this frame is drawn. */
-    get due() {
-        return this.#left > 0;
-    }
-
     /** Something has changed that is seen. */
     renew() {
-        this.#left = FRAMES_AFTER;
+        this.#changed = true;
     }
 
     #update() {
         const { robot, cursor, views } = this;
         cursor.advance(performance.now() / 1000);
-        this.#left -= 1;
         const now = [cursor.time_s, this.#screen.theme];
         if (now.some((one, n) => one !== this.#drawn[n])) this.renew();
-        this.#drawn = now;
-        if (!this.due) return;
+        if (!this.#changed) return false;
+        [this.#changed, this.#drawn] = [false, now];
         robot.setPlace(cursor.place);
         views.update();
         this.#player();
@@ -80,5 +71,6 @@ export class Reel {
             labelWheels(views, this.#find);
         }
         this.onframe(label);
+        return true;
     }
 }

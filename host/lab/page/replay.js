@@ -51,7 +51,7 @@ function begin(log) {
         showState(STATES[columns.state[cursor.place]]);
         if (label) twin?.label();
     };
-    twin?.add(frames, screen, () => reel.due);
+    twin?.add(frames, screen);
     show(byId("log"), true);
 
     window.lab = {

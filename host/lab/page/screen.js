@@ -12,7 +12,9 @@ const WIDE = matchMedia("(min-width: 1600px)");
 const NARROW = matchMedia("(max-width: 68rem)");
 
 export class Screen {
-    constructor() {
+    /** @param {() => void} changed Called when all is to be drawn anew. */
+    constructor(changed = () => {}) {
+        this.changed = changed;
         this.chosen = recall("localStorage", PROJECTOR);
         this.button = byId("projector");
         this.button.onclick = () => {
@@ -39,6 +41,7 @@ export class Screen {
             const colour = this.theme.colours[name];
             document.documentElement.style.setProperty(`--${name}`, colour);
         }
+        this.changed();
     }
 
     /**

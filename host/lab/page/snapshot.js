@@ -28,7 +28,12 @@ export function snapshot({ lab, stop, frames, views, kTrace, sound, beside }) {
         score,
         why: info.why,
     }));
-    const drawing = { frames: frames.count, p95_ms: frames.p95(), shown_s: views?.time ?? null };
+    const drawing = {
+        frames: frames.count,
+        p95_ms: frames.p95(),
+        shown_s: views?.time ?? null,
+        due: lab.changed,
+    };
     const known = { link, role, page, baton, refused, note, score, poll, selected };
     const shown = { robots, twins, drawing, stop: stop.progress(), k_trace: kTrace.state() };
     const parts = { sound: sound.state(), beside: beside.state() };

@@ -24,7 +24,7 @@ export function createTwin(tape, twin, cursor) {
     document.documentElement.classList.add("twins");
     for (const section of document.querySelectorAll(".twin, .twin-strips")) show(section, true);
     return {
-        add: (frames, screen, due) => {
+        add: (frames, screen) => {
             const drawings = [
                 ["twin-left", drawWheel, () => views.wheels.left, 21, 19],
                 ["twin-right", drawWheel, () => views.wheels.right, 21, 19],
@@ -33,7 +33,7 @@ export function createTwin(tape, twin, cursor) {
             for (const [id, draw, view, letters, lines] of drawings) {
                 const canvas = byId(id);
                 const seen = () => [view(), screen.themeFor(canvas, letters, lines)];
-                frames.add(canvas, draw, () => due() && seen());
+                frames.add(canvas, draw, seen);
             }
         },
         update: () => {

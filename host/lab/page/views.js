@@ -38,9 +38,11 @@ export class Views {
     /**
      * Move all views to what is on the screen now.
      * @param {number} now_s The page's clock, s.
+     * @returns {boolean} Whether time has passed on the screen.
      */
     update(now_s) {
         const { ring, playout } = this.robot;
+        const before = this.time;
         this.time = playout.time(now_s, ring.newest("t_s"));
         this.age = 0;
         const t = ring.columns.t_s;
@@ -48,6 +50,7 @@ export class Views {
         this.stale = this.robot.lost || !this.linked;
         for (const side of SIDES) this.#turn(side);
         this.#show();
+        return !Object.is(this.time, before);
     }
 
     /** @param {string} side @returns {number} The angle of a wheel on the screen, rad. */
