@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import io
 import os
@@ -47,6 +48,10 @@ VERBS = (
     "reproduce",
     "help",
 )
+
+# How many new objects make Python look for garbage. By itself it looks after 700, and what a verb
+# imports is half a million that stay.
+NEW_OBJECTS = 100_000
 
 # `stop` waits for nothing, `watch` has one table, `lab` one page and `foxglove` one server, so they
 # have ways of their own with several robots; `deploy` says itself that it has no robot.
@@ -122,6 +127,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     process_ends = arguments is None
     if arguments is None:
         prepare()
+        gc.set_threshold(NEW_OBJECTS)
         arguments = sys.argv[1:]
     with interruptible(process_ends=process_ends) as interrupts:
         try:
