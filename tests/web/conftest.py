@@ -82,7 +82,7 @@ def visit(browser, lab):
     visitors = []
 
     def visit(url=None, **context):
-        visitor = Visitor(browser, lab, url or lab.drive_url, **context)
+        visitor = Visitor(browser, url or lab.drive_url, **context)
         visitors.append(visitor)
         visitor.until(DRAWN)
         return visitor

@@ -121,8 +121,10 @@ def same_ticks(records, kick, until):
 
 def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
     url, script = served.drive_url + "?seed=1", KEEP_RECORDS + OTHER_CACHES
-    visitor = Visitor(browser, served, url, script=script, viewport=SMALL)
+    visitor = Visitor(browser, url, script=script, viewport=SMALL)
     page = visitor.page
+    asked = []
+    page.on("request", lambda request: asked.append(request.url))
     page.set_default_timeout(PATIENCE_MS)
     visitor.until(ROLLS)
     assert visitor.robot()["name"] == "simulated"
@@ -153,4 +155,7 @@ def test_a_page_without_a_server_kicks_stops_and_opens_offline(browser, served):
     page.goto(served.drive_url + "?seed=abc")
     visitor.until("s.note?.message.includes('abc')")
     assert visitor.complaints == []
+    # What keeps the page from asking elsewhere does not count for its worker.
+    assert any("pyodide" in one for one in asked)
+    assert [one for one in asked if not one.startswith(served.drive_url)] == []
     visitor.context.close()

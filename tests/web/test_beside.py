@@ -30,7 +30,7 @@ def show(browser):
                 stack.callback(station.close)
                 station.step(3.0)
             lab = stack.enter_context(Lab(stations, port=0))
-            visitor = Visitor(browser, lab, lab.drive_url, script, **context)
+            visitor = Visitor(browser, lab.drive_url, script, **context)
             stack.callback(visitor.context.close)
             visitors.append(visitor)
             visitor.until(ready)

@@ -37,6 +37,13 @@ def test_the_wheels_turn(visit, station):
     assert visitor.state()["drawing"]["shown_s"] <= after["t_s"]
 
 
+def test_a_page_that_asked_elsewhere_would_complain(visit):
+    visitor = visit()
+    visitor.page.evaluate("fetch('http://127.0.0.1:9/').catch(() => null)")
+    assert "Content Security Policy" in " ".join(visitor.complaints)
+    visitor.complaints.clear()
+
+
 @pytest.mark.parametrize("mode", ["membrane", "position", "phase"])
 def test_each_kick_of_the_paper_reverses(visit, station, mode):
     visitor = visit()

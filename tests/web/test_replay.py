@@ -1,7 +1,6 @@
 """A replay: a log in the place of a robot, from a server or from one file on a disk."""
 
 import json
-from types import SimpleNamespace
 
 import pytest
 
@@ -48,8 +47,7 @@ def read(browser):
     readers = []
 
     def read(url, **context):
-        home = SimpleNamespace(drive_url=url.partition("replay.html?")[0])
-        reader = Reader(browser, home, url, **context)
+        reader = Reader(browser, url, **context)
         readers.append(reader)
         reader.until("s.drawing.frames > 0")
         return reader
@@ -232,6 +230,13 @@ def test_a_twin_stands_beside_the_robot(read_file, log):
     reader.reads("#about", "No kick was left alone for a second")
 
 
+def test_a_file_that_asked_elsewhere_would_complain(read_file, tape):
+    reader = read_file(tape)
+    reader.page.evaluate("fetch('http://127.0.0.1:9/').catch(() => null)")
+    assert "Content Security Policy" in " ".join(reader.complaints)
+    reader.complaints.clear()
+
+
 def test_a_lab_without_robots_serves_a_replay(browser, read, tape):
     replays = Replays()
     replays.give(tape)
@@ -239,7 +244,7 @@ def test_a_lab_without_robots_serves_a_replay(browser, read, tape):
         url = lab.view_url.replace("/#", "/replay.html?log=eventful%20%3C/script%3E.mcap#")
         reader = read(url)
         assert reader.state()["log"] == tape["name"]
-        stranger = Visitor(browser, lab, url.partition("#")[0])
+        stranger = Visitor(browser, url.partition("#")[0])
         stranger.reads("#loading", "Logs need the lab's key: open the whole address")
         stranger.context.close()
 
@@ -247,7 +252,7 @@ def test_a_lab_without_robots_serves_a_replay(browser, read, tape):
 def test_a_log_just_recorded_opens_in_a_replay(browser, station):
     station.step(1)
     with Lab([station], port=0, replays=Replays()) as lab:
-        visitor = Visitor(browser, lab, lab.drive_url)
+        visitor = Visitor(browser, lab.drive_url)
         visitor.page.click(".record")
         visitor.until("r.status.recording")
         station.step(2)
