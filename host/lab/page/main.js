@@ -71,9 +71,8 @@ function update() {
     const { robot } = lab.store;
     if (robot && views?.robot !== robot) views = new Views(robot);
     const now = performance.now();
-    const { changed } = lab;
     // What counts the time since something happened is renewed now and then, too.
-    const due = changed || now - told >= 250;
+    const due = lab.changed || now - told >= 250;
     if (due) {
         told = now;
         tell();
@@ -86,7 +85,7 @@ function update() {
         sound.update(views);
     }
     if (due) labelWheels(views);
-    return changed || moved.includes(true);
+    return due || moved.includes(true);
 }
 
 function tell() {
