@@ -36,7 +36,7 @@ reproduce: $(STAMP) ## measure all of the paper's claims, and write a report
 	$(BIN)/kickctl reproduce
 
 # Tests in real time mostly wait, so two processes share each core.
-test: $(STAMP) ## run the tests (8 minutes)
+test: $(STAMP) ## run the tests (7 minutes)
 	$(BIN)/python -m pytest tests --ignore=tests/lint -n $$((2 * $$(nproc))) --dist worksteal
 
 test-long: $(STAMP) ## run the tests that take long: commands of the docs (3 minutes)
