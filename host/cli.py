@@ -50,7 +50,7 @@ VERBS = (
 )
 
 # How many new objects make Python look for garbage. By itself it looks after 700, and what a verb
-# imports is half a million that stay.
+# imports is some 300,000 that stay.
 NEW_OBJECTS = 100_000
 
 # `stop` waits for nothing, `watch` has one table, `lab` one page and `foxglove` one server, so they
