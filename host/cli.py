@@ -50,8 +50,8 @@ VERBS = (
 )
 
 # How many new objects make Python look for garbage. By itself it looks after 700, and what a verb
-# imports is some 300,000 that stay.
-NEW_OBJECTS = 100_000
+# imports is some 300,000 that stay. Looking through far more at once would keep a stop waiting.
+NEW_OBJECTS = 10_000
 
 # `stop` waits for nothing, `watch` has one table, `lab` one page and `foxglove` one server, so they
 # have ways of their own with several robots; `deploy` says itself that it has no robot.
