@@ -12,7 +12,7 @@ DRAWN = "r && r.records > 0 && s.drawing.shown_s !== null && s.drawing.frames > 
 
 
 class Visitor:
-    """A browser's page in the lab. It fails its test if it complains, as of asking elsewhere.
+    """A browser's page in the lab. It fails its test if it complains, as when it asks elsewhere.
 
     Attributes:
         page: The page, of playwright.

@@ -70,7 +70,7 @@ export class Beside {
      */
     move(now_s) {
         if (!this.shown || this.#known !== this.lab.store.robots) return false;
-        return this.#cards.filter((card) => card.move(now_s)).length > 0;
+        return this.#cards.map((card) => card.move(now_s)).includes(true);
     }
 
     /** Say what is known. */

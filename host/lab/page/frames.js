@@ -66,7 +66,7 @@ export class Frames {
         const news = this.update();
         const inView = this.#drawings.filter(({ canvas }) => this.#visible.has(canvas));
         // What has come into view, or has another size, is empty.
-        const empty = inView.filter(({ canvas }) => fit(canvas)).length > 0 || this.#appeared;
+        const empty = inView.map(({ canvas }) => fit(canvas)).includes(true) || this.#appeared;
         this.#appeared = false;
         if (!inView.length || !(news || empty)) return;
         for (const { canvas, draw, view } of inView) {
