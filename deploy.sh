@@ -133,7 +133,7 @@ give_token() {
         fi
     fi
     [ -e "$token" ] || step "making a token"
-    ours=$(python3 -B -c '
+    ours=$(python3 -BS -c '
 import sys
 from robot import token
 try:
@@ -286,7 +286,7 @@ case $token in
 esac
 command -v python3 >/dev/null || fail 2 "this machine has no python3" "install it; kickctl needs it"
 # By the rules of host/link/ssh.py, as words of this shell.
-ssh_options=$(python3 -B -c '
+ssh_options=$(python3 -BS -c '
 import os, shlex
 try:
     print(*map(shlex.quote, shlex.split(os.environ.get("KICK_SSH_OPTIONS", ""))))

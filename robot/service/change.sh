@@ -44,7 +44,7 @@ switch() { # switch LINK RELEASE: in one step, so that the link always leads som
 }
 
 check() { # whether this machine can run the program at all
-    version=$(python3 -c '
+    version=$(python3 -S -c '
 import sys
 print("%d.%d.%d" % sys.version_info[:3])
 sys.exit(sys.version_info < (3, 5))' 2>/dev/null) ||
@@ -103,7 +103,7 @@ adopt() { # adopt RELEASE FOLDER: make a release of an upload, if it is sound
     sha256sum --quiet -c SHA256SUMS ||
         discard "$2" "the upload arrived damaged" \
             "try again; if it happens each time, the card may be failing"
-    python3 -m robot.compile || {
+    python3 -S -m robot.compile || {
         card_takes_writes || discard "$2" "the brick's card cannot be written: $why" \
             "delete old files there; if it happens each time, the card may be failing"
         discard "$2" "the brick's Python cannot read this release" \
