@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterator
+from functools import cache
 from typing import NamedTuple
 
 from host.commands import _help_tables as tables
@@ -47,7 +48,7 @@ class Place(NamedTuple):
 
     def has(self, word: str) -> bool:
         """Whether one of its words begins with this one, or is it, if this is a single letter."""
-        return any(own == word or (len(word) > 1 and own.startswith(word)) for own in self.words())
+        return (f" {word}" if len(word) > 1 else f" {word} ") in _line_of(self)
 
     def is_called(self, words: list[str]) -> bool:
         """Whether these words are its name, which that of an option is not.
@@ -83,6 +84,12 @@ class Place(NamedTuple):
     def __str__(self) -> str:
         """As it is printed."""
         return f"{self.before}{self.name}\n    {self.text}"
+
+
+@cache
+def _line_of(place: Place) -> str:
+    """All that is searched in a place, each word between spaces."""
+    return f" {' '.join(place.words())} "
 
 
 def split_words(text: str) -> list[str]:
