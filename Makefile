@@ -130,7 +130,7 @@ $(STAMP): requirements.lock pyproject.toml
 		$(BIN)/python -m $(INSTALL) --require-hashes -r /dev/stdin
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements.lock || \
 		$(BIN)/python -m $(INSTALL) --require-hashes -r requirements.lock
-	@# By itself an editable install has each Python of .venv import a finder first, half of its start.
+	@# By itself an editable install brings a finder, which takes half of the start of each Python.
 	$(BIN)/python -m $(INSTALL) --no-deps --no-build-isolation \
 		--config-settings editable_mode=compat --editable .
 	@touch $@

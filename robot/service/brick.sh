@@ -73,10 +73,10 @@ examine() { # ask the program how it is; fault becomes yes if the robot is in fa
     # The program listens at each address of the brick, unless its arguments say otherwise. Releases
     # from before this question know no --host.
     case $host in 0.0.0.0 | 127.0.0.1) host='' ;; esac
-    # Python's own library is enough here, and in all that is asked of Python but the program itself.
-    # To look for more (without -S) takes a brick 0.4 s.
-    health=$(cd "$ROOT/current" &&
-        python3 -S -m robot.health ${host:+--host "$host"} --port "$(port)" --token "$TOKEN") || ill=$?
+    # Python's own library is enough here, and for all but the robot's program itself. To look for
+    # more (without -S) takes a brick 0.4 s.
+    health=$(cd "$ROOT/current" && python3 -S -m robot.health ${host:+--host "$host"} \
+        --port "$(port)" --token "$TOKEN") || ill=$?
     tell "$health"
     [ "$ill" != "$IN_FAULT" ] || fault=yes
     [ "$ill" = 0 ] || [ -n "$fault" ]
