@@ -25,6 +25,8 @@ THROUGH_S = 1.0
 LOOK_S = 0.005
 # How long closing waits for one who may be looking for a lost robot before it looks whether so.
 LEAVE_S = 0.1
+# Obeyed late, these would undo a stop that somebody has asked for since, or a fault that has come.
+AT_ONCE = ("start", "clear")
 
 
 class Connection(LastingLink):
@@ -113,7 +115,8 @@ class Connection(LastingLink):
         """Ask the robot something.
 
         What a broken link swallowed is sent again over the next one, and what a serial line did not
-        answer is sent again over the same one.
+        answer is sent again over the same one. But "start" and "clear" are sent once, at once: by
+        the time of a second try somebody may have stopped the robot.
 
         Args:
             command: One of the robot's commands.
@@ -128,13 +131,14 @@ class Connection(LastingLink):
         """
         if self._broken is not None:
             raise self._broken
+        asked_in = self._talk.session
         with self._lock:
             if not self._whole and self._broken is None:
                 self._reopen("it was left half open")
             if sealed and not self._talk.trusted:
                 raise self._untrusted()
             return self._exchange(
-                lambda: self._talk.request(command, arguments or {}, sealed), command
+                lambda: self._talk.request(command, arguments or {}, sealed), command, asked_in
             )
 
     def _untrusted(self) -> RefusedByRobot:
@@ -209,12 +213,21 @@ class Connection(LastingLink):
         finally:
             self._sending.release()
 
-    def _exchange(self, make: Callable[[], tuple[int, bytes]], what: str) -> dict[str, Any]:
+    def _exchange(
+        self, make: Callable[[], tuple[int, bytes]], what: str, asked_in: int
+    ) -> dict[str, Any]:
         if self._broken is not None:
             raise self._broken
+        once = what in AT_ONCE
         give_up = self.link.now() + self.answer_s + self.reconnect_s
         session, until = None, give_up
         while True:
+            if once and asked_in != self._talk.session:
+                raise NoLink(
+                    f"the link broke, so '{what}' may not have reached the robot; it is not sent"
+                    " again, as somebody may have stopped the robot since",
+                    _look(what),
+                )
             if session != self._talk.session:
                 session = self._talk.session
                 until = min(give_up, self.link.now() + self.answer_s)
@@ -226,14 +239,23 @@ class Connection(LastingLink):
                 continue
             now = self.link.now()
             repeat = now + self.silence_s
-            while session == self._talk.session and not (self.link.is_line and now > repeat):
+            while session == self._talk.session and (
+                once or not self.link.is_line or now <= repeat
+            ):
                 answer = self._talk.answer(number)
                 if answer is not None:
                     return answer
                 if now > until:
                     raise NoLink(
                         f"the robot does not answer to '{what}'",
-                        "is its program alive? `kickctl doctor` looks closer",
+                        _look(what)
+                        if once
+                        else "is its program alive? `kickctl doctor` looks closer",
                     )
                 self.pump(HEARTBEAT_S)
                 now = self.link.now()
+
+
+def _look(what: str) -> str:
+    """What to do where nobody knows whether the robot has obeyed."""
+    return f"see what it does: kickctl status. Then {what} it again, if you still want to"

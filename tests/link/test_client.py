@@ -81,6 +81,48 @@ def test_a_command_that_the_link_swallowed_is_done_once(robot, link):
         assert [event["tick"] for event in kicks] == [tick]
 
 
+@pytest.mark.parametrize("arrives", [False, True], ids=["lost", "its answer lost"])
+@pytest.mark.parametrize("command", ["start", "clear"])
+def test_what_a_stop_must_end_is_not_sent_again(robot, link, command, arrives):
+    """Somebody stops the robot, or a fault comes, while the link that swallowed it is down."""
+    robot.stop()
+    if command == "clear":
+        link.loop.fail("first")
+    send = link.send
+
+    def swallow(data):
+        link.send = send
+        if arrives:
+            send(data)
+            link.run_tick()
+        link.cut()
+        if command == "clear":
+            link.loop.fail("second")
+        else:
+            link.loop.stop("a person stopped it")
+
+    robot.lease()
+    link.send = swallow
+    with pytest.raises(NoLink, match=f"'{command}' may not have reached the robot; it is not sent"):
+        robot.command(command)
+    robot.wait(0.5)
+    state = {"start": "stopped", "clear": "fault"}[command]
+    assert robot.status()["state"] == state
+    assert robot.command(command) > 0
+    assert robot.status()["state"] != state
+
+
+def test_a_start_that_waits_for_a_lost_link_is_not_sent_when_it_is_back(robot, link):
+    robot.stop()
+    robot.lease()
+    link.cut()
+    with pytest.raises(NoLink, match="as somebody may have stopped the robot since"):
+        robot.start()
+    assert robot.status()["state"] == "stopped"
+    robot.start()
+    assert robot.status()["state"] == "running"
+
+
 def test_a_host_that_comes_back_still_controls(robot, link):
     robot.set(link_loss="hold")
     link.cut(away_s=1.0)

@@ -18,6 +18,7 @@ from host.logs.log import Log
 from robot import wire
 from robot.record import STATES, unpack
 from robot.server import LINE_SILENCE_S, Server
+from robot.session import Session
 from tests.link.machines import STOP, Cable, Machine, noisy
 from tests.rig import TOKEN, Rig
 
@@ -56,6 +57,38 @@ def test_a_whole_conversation_over_a_noisy_line(joined):
     assert [event["event"] for event in log.events] == ["snapshot", "params", "kick", "stop"]
     box = machine.loop.blackbox
     assert log.records[:30] == unpack(b"".join(box.read(tick, 1) for tick in ticks[:30]))
+
+
+def test_a_start_whose_answer_the_line_loses_is_not_sent_again(tmp_path, monkeypatch):
+    """Somebody may have stopped the robot meanwhile. A question is asked again."""
+    cable = Cable(tmp_path)
+    machine = Machine(cable.paths["robot"])
+    heard = []
+    receive = Session.receive
+
+    def mute(session, kind, payload):
+        answer = receive(session, kind, payload)
+        what = next((word for word in (b'"start"', b'"describe"') if word in payload), None)
+        if what is None:
+            return answer
+        heard.append(what)
+        return answer if what in heard[:-1] else b""
+
+    try:
+        with Robot(make_link(f"serial://{cable.paths['host']}"), TOKEN, "serial") as robot:
+            robot.stop()
+            robot.lease()
+            monkeypatch.setattr(Session, "receive", mute)
+            monkeypatch.setattr(Robot, "silence_s", 0.1)
+            assert robot.describe("channels")
+            monkeypatch.setattr(Robot, "answer_s", 0.5)
+            with pytest.raises(NoLink, match="does not answer to 'start'") as caught:
+                robot.start()
+    finally:
+        machine.close()
+        cable.close()
+    assert "Then start it again, if you still want to" in caught.value.hint
+    assert heard == [b'"describe"', b'"describe"', b'"start"']
 
 
 def test_a_line_that_comes_off_is_taken_up_again_without_a_gap(joined, monkeypatch):
