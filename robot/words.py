@@ -1,5 +1,8 @@
 """How the robot writes names and times for people, and prints its words."""
 
+import select
+from io import UnsupportedOperation
+
 
 def person(name):
     """A host's name in a sentence: quoted, since a host may call itself anything.
@@ -33,7 +36,8 @@ def duration(seconds):
 def say(text, stream):
     """Print a line, if it can be printed.
 
-    A full card, a closed terminal or a letter that it does not know must not end the program.
+    A full card, a closed terminal or a letter that it does not know must not end the program, and
+    a terminal that ^S has stopped must not hold it up: what that does not take is lost.
 
     Args:
         text: The line.
@@ -43,6 +47,19 @@ def say(text, stream):
         return
     encoding = stream.encoding or "ascii"
     try:
+        if not _takes(stream):
+            return
         print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
     except (OSError, ValueError):
         pass
+
+
+def _takes(stream):
+    """Whether a stream takes something now. Raises OSError or ValueError if it is closed."""
+    try:
+        number = stream.fileno()
+    except UnsupportedOperation:  # it is in memory
+        return True
+    poll = select.poll()
+    poll.register(number, select.POLLOUT)
+    return bool(poll.poll(0))

@@ -1,5 +1,10 @@
 """Names and times in words, and lines of them."""
 
+import io
+import os
+import termios
+import threading
+
 import pytest
 
 from robot.words import duration, person, say
@@ -28,7 +33,7 @@ def test_a_name_is_quoted_and_somebody_may_have_none():
 
 
 def test_a_line_is_printed_if_it_can_be():
-    class Latin:
+    class Latin(io.TextIOBase):
         encoding = "ascii"
 
         def __init__(self):
@@ -44,3 +49,20 @@ def test_a_line_is_printed_if_it_can_be():
     say("stopped by Zo\u00eb", stream)
     assert stream.text == "stopped by Zo\\xeb\n"
     say("nobody hears it", None)
+
+
+def test_a_terminal_that_is_stopped_holds_nothing_up():
+    """^S is typed there, and a robot says something: its loop must go on."""
+    mine, terminal = os.openpty()
+    with os.fdopen(terminal, "w") as stream:
+        termios.tcflow(terminal, termios.TCOOFF)
+        thread = threading.Thread(target=say, args=("lost", stream), daemon=True)
+        thread.start()
+        thread.join(10.0)
+        held_up = thread.is_alive()
+        termios.tcflow(terminal, termios.TCOON)
+        thread.join(10.0)
+        say("heard", stream)
+        assert not held_up
+        assert os.read(mine, 100) == b"heard\r\n"
+    os.close(mine)
