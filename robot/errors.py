@@ -1,8 +1,9 @@
 """The one way in which the robot says no."""
 
 # In characters. JSON may need twelve bytes for each, so that a refusal fits into a frame even if
-# what it refuses is long.
+# what it refuses is long. A hint is the robot's own words, with next to nothing of what it refuses.
 LONGEST_MESSAGE = 200
+LONGEST_HINT = 200
 
 
 class Refused(Exception):
@@ -18,7 +19,7 @@ class Refused(Exception):
         Exception.__init__(self, message)
         self.code = code
         self.message = message[:LONGEST_MESSAGE]
-        self.hint = hint
+        self.hint = hint[:LONGEST_HINT]
 
     def as_dict(self):
         """The refusal as it goes over the wire."""

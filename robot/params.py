@@ -36,6 +36,8 @@ def _choice(name, default, choices, doc, at_rest_only=False):
 # The delta t of a late tick is at most this many control periods. tau must be at least that long,
 # or an Euler step could overshoot.
 LONGEST_STEP_TICKS = 3
+# A number in letters is no longer than this; more are not worth a hint.
+LONGEST_NUMBER = 30
 # In binary, three times 0.1 is a little more than 0.3.
 _ROUNDING_S = 1e-9
 
@@ -121,7 +123,7 @@ def point_for_comma(value):
     Returns:
         The advice, such as 'write a point: 2.5'; empty if a point does not make it a number.
     """
-    if not isinstance(value, str) or value.count(",") != 1:
+    if not isinstance(value, str) or len(value) > LONGEST_NUMBER or value.count(",") != 1:
         return ""
     text = value.strip().replace(",", ".")
     try:

@@ -6,6 +6,9 @@ from robot.errors import Refused
 from robot.record import STATES
 from robot.words import duration, person
 
+# In characters, so that a status fits into a frame whatever a motor's driver says.
+LONGEST_REASON = 250
+
 IDLE, RUNNING, HELD, STOPPED, FAULT = range(len(STATES))
 
 
@@ -100,7 +103,7 @@ class Safety(object):
 
     def _enter(self, state, reason):
         self.state = state
-        self.reason = reason
+        self.reason = reason[:LONGEST_REASON]
 
 
 class Lease(object):

@@ -5,6 +5,7 @@ from math import inf, nan
 
 import pytest
 
+from host.errors import WrongUse
 from robot import commands, wire
 from robot.params import TABLE
 from tests.link.sessions import refused, reply
@@ -122,6 +123,22 @@ def test_a_status_with_the_longest_names_fits_into_a_frame(rig):
     longest.tell("lease")
     longest.tell("stop")
     assert longest.ask("status")["controller"] == "\U0001f9be" * 40
+
+
+def test_a_status_fits_into_a_frame_whatever_a_motor_says(rig, client):
+    """As the driver of somebody's own motors, which shows all that a bus has answered."""
+    rig.loop.fail("\U0001f9be" * 5000)
+    status = client.ask("status")
+    assert status["state"] == "fault"
+    assert set(status["reason"]) == {"\U0001f9be"}
+
+
+@pytest.mark.parametrize(
+    "number", ["1," + "0" * 4000, "1," + "\u0660" * 600], ids=["long", "in Arabic digits"]
+)
+def test_a_long_number_with_a_comma_is_refused_in_a_frame(client, number):
+    with pytest.raises(WrongUse, match="k cannot be '1,"):
+        client.tell("set", set={"k": number})
 
 
 @pytest.mark.parametrize(
