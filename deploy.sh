@@ -200,11 +200,10 @@ change_over() {
 remember() {
     called='' run=${KICKCTL-}
     [ -n "$run" ] || ! command -v kickctl >/dev/null || run=kickctl
-    add="robots add $(typed "$name") $(typed "$where") --token $(typed "$token")"
     hardware=$(marked hardware <"$folder/answer" | grep -Ex '[0-9a-f]{32}' || true)
     if [ -z "$run" ]; then
-        say "To give the robot a name: $kickctl $add"
-    elif eval "$run $add ${hardware:+--hardware-id $hardware}" >"$folder/answer" 2>&1; then
+        say "To give the robot a name: $kickctl $(adding "$where")"
+    elif add "$where" || { has_old_address && add "$old" && add "$where"; }; then
         # A robot that is known by its hardware id keeps its name.
         called=$(sed -n 's/^\([A-Za-z0-9_-]*\) is .*/\1/p' "$folder/answer" | tail -n 1)
         called=${called:-$name}
@@ -214,6 +213,18 @@ remember() {
         say "The robot got no name here:"
         sed 's/^/  /' "$folder/answer"
     fi
+}
+
+adding() { printf 'robots add %s --token %s' "$(typed "$name" "$1")" "$(typed "$token")"; }
+
+# add ADDRESS: keep it under the robot's name
+add() { eval "$run $(adding "$1") ${hardware:+--hardware-id $hardware}" >"$folder/answer" 2>&1; }
+
+# Whether the name has an address with ?host= of this brick, which may be another robot's by now. If
+# it has no hardware id yet, nothing else shows that both are one robot: it gets the id there first.
+has_old_address() {
+    old=$(eval "$run robots list" 2>/dev/null | awk -v name="$name" '$1 == name { print $2 }')
+    case $old in "ssh://$brick?host="*) ;; *) return 1 ;; esac
 }
 
 # commands VERB...: how a person types kickctl for this robot
@@ -234,10 +245,7 @@ listens() {
     at=$(marked address <"$folder/answer")
     number=${at##*:} at=${at%:*}
     case $number in '' | *[!0-9]*) return ;; esac
-    case $at in
-    0.0.0.0 | 127.0.0.1 | localhost | *[!0-9A-Za-z:.%_-]*) at='' ;;
-    ::) at=::1 ;;
-    esac
+    case $at in *[!0-9A-Za-z:.%_-]*) at='' ;; esac
     [ -z "$at" ] || printf '?host=%s&port=%s' "$(printf '%s' "$at" | sed s/%/%25/)" "$number"
     [ -n "$at" ] || [ "$number" = 5425 ] || printf '?port=%s' "$number"
 }

@@ -57,10 +57,30 @@ ready() { sed -n 's|^READY tcp://||p' "$(kept robot.log)" 2>/dev/null | tail -n 
 
 port() { ready | sed 's/.*://'; }
 
+# Whether the program listens at one address of the brick only, by what the kernel says: arguments
+# and the log have many words for it. 0A is a socket that listens, and zeros are every address.
+at_one_address() {
+    sockets=$(readlink "/proc/$(program_pid)/fd"/* 2>/dev/null | tr '\n' ' ')
+    # Motors of an engineer's own may listen, too, at other ports.
+    end=$(printf ':%04X' "$(port)" 2>/dev/null) || return 1
+    cat /proc/net/tcp /proc/net/tcp6 2>/dev/null | awk -v sockets="$sockets" -v end="$end$" '
+        $4 == "0A" && $2 ~ end && $2 !~ /^0+(FFFF0+)?:/ && index(sockets, "[" $10 "]") { one = 1 }
+        END { exit !one }'
+}
+
+# Where on the brick the program can be reached; nothing for 127.0.0.1, as for a program that
+# listens at every address. READY names the address that the brick had when that one started, and
+# another day the network may give it to another robot. So 127.0.0.1 counts while nothing is known.
+host() {
+    at_one_address || return 0
+    at=$(ready | sed 's/:[0-9]*$//' | tr -d '[]')
+    case $at in 127.0.0.1 | localhost) ;; *) echo "$at" ;; esac
+}
+
 # What a login may print by itself must not be taken for what deploy.sh wants to know. For each
 # question to Python its own library is enough; to look for more (without -S) takes a brick 0.4 s.
 address() {
-    tell "kickctl-address=$(ready | tr -d '[]')="
+    tell "kickctl-address=$(host):$(port)="
     # Releases from before it do not know it.
     tell "kickctl-hardware=$(cd "$ROOT/current" &&
         python3 -S -c 'from robot.hardware import hardware_id; print(hardware_id())' 2>/dev/null)="
@@ -70,10 +90,8 @@ arguments() { cat "$ROOT/arguments" 2>/dev/null || true; }
 
 examine() { # ask the program how it is; fault becomes yes if the robot is in fault
     fault='' ill=0
-    host=$(ready | sed 's/:[0-9]*$//' | tr -d '[]')
-    # The program listens at each address of the brick, unless its arguments say otherwise. Releases
-    # from before this question know no --host.
-    case $host in 0.0.0.0 | 127.0.0.1) host='' ;; esac
+    # Releases from before this question know no --host.
+    host=$(host)
     health=$(cd "$ROOT/current" && python3 -S -m robot.health ${host:+--host "$host"} \
         --port "$(port)" --token "$TOKEN") || ill=$?
     tell "$health"
@@ -118,7 +136,9 @@ status() {
         tell "program  does not run: deploy to start it, deploy with --logs to see its last words"
         exit 5
     fi
-    tell "program  runs as process $(program_pid), READY tcp://$(ready)"
+    listens="READY at every address of the brick, port $(port)"
+    ! at_one_address || listens="READY tcp://$(ready)"
+    tell "program  runs as process $(program_pid), $listens"
     state=$(examine) || ill=5
     tell "state    $state"
     [ -z "${ill-}" ] || { tell "         deploy again to end it and start a new one" && exit 5; }
