@@ -12,6 +12,9 @@ from robot.wire import EVENT, encode_json, encode_samples
 DEFAULT_CAPACITY = 20000  # ten minutes of 30 ms ticks in 2.2 MB
 JOURNAL_CAPACITY = 2000
 FRAMES_KEPT = 16
+# After how many events another copy of what is in force is kept: a snapshot replays fewer than
+# these. A full journal has 125 copies, of about half a kB each.
+EVENTS_PER_COPY = 16
 # Bound once: each tick needs them.
 _pack_into, _SIZE = STRUCT.pack_into, STRUCT.size
 
@@ -29,6 +32,10 @@ class Snapshot(object):
     def __init__(self, params, kick=None):
         self.params = dict(params)
         self.kick = kick
+
+    def copy(self):
+        """A snapshot of the same moment."""
+        return Snapshot(self.params, self.kick)
 
     def take(self, event):
         """Bring the snapshot past an event.
@@ -92,6 +99,8 @@ class BlackBox(object):
         self._base = Snapshot(params)
         self._base_tick = 0
         self._journal = deque()
+        self._latest = self._base.copy()
+        self._copies = {}  # by the number of the first event that comes after them
         self._samples = _Frames()
         self._events = _Frames()
 
@@ -123,11 +132,15 @@ class BlackBox(object):
         entry = dict(details, event=event, tick=self.next_tick, number=self.next_event)
         self._journal.append((self.next_event, entry))
         self.next_event += 1
+        self._latest.take(entry)
+        if self.next_event % EVENTS_PER_COPY == 0:
+            self._copies[self.next_event] = self._latest.copy()
         while (
             len(self._journal) > JOURNAL_CAPACITY
             or self._journal[0][1]["tick"] < self.next_tick - self._capacity
         ):
-            dropped = self._journal.popleft()[1]
+            number, dropped = self._journal.popleft()
+            self._copies.pop(number, None)
             self._base.take(dropped)
             self._base_tick = dropped["tick"] + 1
         return self.next_tick
@@ -197,9 +210,17 @@ class BlackBox(object):
             (number, event): the number of the first event that comes after the snapshot, and the
             snapshot as an event.
         """
-        state = Snapshot(self._base.params, self._base.kick)
-        for number, event in self._journal:
-            if event["tick"] >= tick:
-                return number, state.as_event(tick)
-            state.take(event)
-        return self.next_event, state.as_event(tick)
+        journal, oldest = self._journal, self.next_event - len(self._journal)
+        # Ticks only rise, so halving finds the first event that is not before this tick.
+        low, high = oldest, self.next_event
+        while low < high:
+            middle = (low + high) // 2
+            if journal[middle - oldest][1]["tick"] < tick:
+                low = middle + 1
+            else:
+                high = middle
+        begin = max(oldest, low - low % EVENTS_PER_COPY)
+        state = self._copies.get(begin, self._base).copy()
+        for number in range(begin, low):
+            state.take(journal[number - oldest][1])
+        return low, state.as_event(tick)

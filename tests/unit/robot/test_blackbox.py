@@ -1,16 +1,19 @@
 """The black box against a naive one that forgets nothing."""
 
+import random
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from robot import blackbox
-from robot.blackbox import BlackBox
+from robot.blackbox import BlackBox, Snapshot
 from robot.record import CHANNELS, STRUCT, unpack
 
 CAPACITY = 7
 JOURNAL = 5
+COPY = 2
 PARAMS = {"k": 8.0, "a": 4.0, "link_loss": "stop"}
 
 
@@ -44,14 +47,14 @@ class BlackBoxMachine(RuleBasedStateMachine):
 
     def __init__(self):
         super().__init__()
-        self.before = blackbox.JOURNAL_CAPACITY
-        blackbox.JOURNAL_CAPACITY = JOURNAL
+        self.before = blackbox.JOURNAL_CAPACITY, blackbox.EVENTS_PER_COPY
+        blackbox.JOURNAL_CAPACITY, blackbox.EVENTS_PER_COPY = JOURNAL, COPY
         self.box = BlackBox(PARAMS, CAPACITY)
         self.ticks = 0
         self.journal = []
 
     def teardown(self):
-        blackbox.JOURNAL_CAPACITY = self.before
+        blackbox.JOURNAL_CAPACITY, blackbox.EVENTS_PER_COPY = self.before
 
     @rule(count=st.integers(1, 2 * CAPACITY))
     def tick(self, count):
@@ -79,6 +82,7 @@ class BlackBoxMachine(RuleBasedStateMachine):
     @invariant()
     def memory_is_bounded(self):
         assert len(self.box._journal) <= JOURNAL
+        assert len(self.box._copies) <= JOURNAL // COPY + 1
         assert len(self.box._ring) == CAPACITY * STRUCT.size
 
     @invariant()
@@ -158,3 +162,34 @@ def test_a_flood_of_events_in_one_tick_is_bounded(events):
     assert len(box._journal) == blackbox.JOURNAL_CAPACITY
     assert box.oldest_tick == (0 if events == blackbox.JOURNAL_CAPACITY else 2)
     assert box.snapshot(2)[1]["params"]["k"] == events - 1.0
+
+
+@pytest.mark.parametrize("capacity", [blackbox.DEFAULT_CAPACITY, 600])
+def test_a_snapshot_of_any_tick_replays_few_events(monkeypatch, capacity):
+    """Anyone may subscribe; two thousand events would take longer than several ticks."""
+    draw = random.Random(1)
+    box = BlackBox(PARAMS, capacity)
+    journal, replayed = [], []
+    kinds = ("params", "params", "kick", "start", "stop", "battery")
+    for tick in range(2000):
+        for _ in range(draw.choice((0, 1, 1, 4))):
+            kind = draw.choice(kinds)
+            details = {
+                "params": {"set": {draw.choice(sorted(PARAMS)): draw.random()}},
+                "kick": {"kick": {"begin": tick, "ticks": draw.randrange(1, 50)}},
+            }.get(kind, {})
+            box.note(kind, **details)
+            journal.append(dict(details, event=kind, tick=tick))
+        box.append(fields(tick))
+    assert len(journal) > blackbox.JOURNAL_CAPACITY
+    real = Snapshot.take
+    monkeypatch.setattr(Snapshot, "take", lambda *what: replayed.append(what) or real(*what))
+    number, model = 0, Snapshot(PARAMS)
+    for tick in range(2001):
+        while number < len(journal) and journal[number]["tick"] < tick:
+            real(model, journal[number])
+            number += 1
+        if tick >= box.oldest_tick:
+            replayed.clear()
+            assert box.snapshot(tick) == (number, model.as_event(tick))
+            assert len(replayed) < blackbox.EVENTS_PER_COPY
