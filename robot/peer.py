@@ -12,7 +12,37 @@ READ_BYTES = 2048
 FULL_BYTES = 16384
 # Its records wait in the black box once this much waits here.
 STREAM_BYTES = 8192
+# How a stop begins. No JSON holds these bytes, so a stop is found without decoding all frames that
+# come before it, which could take the brick longer than its watchdog bears.
+_STOP_MARK = wire.SYNC + bytes([wire.STOP])
+_LENGTH_BYTES = 2
+# How many beginnings of stops may be noise. Each costs a checksum, and a peer may send them on
+# purpose.
+_TRIES = 4
 _LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
+
+
+class _Frames(wire.Decoder):
+    """What came over a link, as frames."""
+
+    def find_stop(self):
+        """Find a whole stop among all that is left.
+
+        Returns:
+            What it carries, bytes; None if there is none.
+        """
+        data = bytes(self._buffer)
+        at = data.find(_STOP_MARK)
+        for _ in range(_TRIES):
+            if at < 0:
+                break
+            begin = at + len(_STOP_MARK) + _LENGTH_BYTES
+            length = int.from_bytes(data[begin - _LENGTH_BYTES : begin], "big")
+            payload = data[begin : begin + min(length, wire.MAX_PAYLOAD)]
+            if data.startswith(wire.encode(wire.STOP, payload), at):
+                return payload
+            at = data.find(_STOP_MARK, at + 1)
+        return None
 
 
 class Peer(object):
@@ -43,7 +73,7 @@ class Peer(object):
         self.session = session
         self.since = self.heard = self.moved = since
         self.lasting = self.first = self.seated = lasting
-        self.decoder = wire.Decoder()
+        self.decoder = _Frames()
         self.frame = None
         self.out = bytearray()
         self.due = self.streaming = False
@@ -93,9 +123,8 @@ class Peer(object):
             data = os.read(self.fd, READ_BYTES)
         except OSError as error:
             return error.errno in _LATER
-        if not self.session.closing:
-            self.decoder.feed(data)
-            self.look()
+        self.decoder.feed(data)
+        self.look()
         return bool(data)
 
     def look(self):
@@ -105,11 +134,11 @@ class Peer(object):
         self.frame = self.decoder.next()
         if self.decoder.discarded and not self.lasting:
             # TCP delivers what was sent, so this peer does not send frames.
+            self.frame = None
             self.refuse("broken", "that was no frame", SEE_PROTOCOL)
 
     def refuse(self, code, message, hint, **more):
         """End the conversation, and say why."""
-        self.frame = None
         self.out += self.session.refuse(code, message, hint, **more)
 
     def send(self, now):
@@ -153,3 +182,22 @@ class Peer(object):
             self.look()
             return self.lasting
         return True
+
+    def close(self):
+        """Close the link, and obey a stop that came over it and had no turn. All else is dropped.
+
+        Who stops the robot in a hurry may be gone before it is heard.
+        """
+        try:
+            self.decoder.feed(os.read(self.fd, FULL_BYTES))
+        except OSError:
+            pass
+        kind, payload = self.frame or (None, None)
+        if kind != wire.STOP:
+            payload = self.decoder.find_stop()
+        if payload is not None:
+            self.session.receive(wire.STOP, payload)
+        try:
+            self.link.close()
+        except OSError:
+            pass

@@ -29,7 +29,7 @@ DEAF_S = 60.0
 SWEEP_S = 0.5
 # For how long nobody is heard while others have their turns, unless one turn takes longer.
 HEAR_S = 0.001
-# For how long all are heard although the next tick is due, unless one takes longer.
+# For how long all are heard, or hung up on, although the next tick is due, unless one takes longer.
 HEARING_S = 0.005
 # When a host that found no place may come again.
 RETRY_S = 60
@@ -361,6 +361,9 @@ class Server(object):
             deaf = peer.out and now - peer.moved > patience_s
             if deaf or (not peer.seated and now - peer.since > GREETING_S):
                 self._drop(peer)
+                if self._now() - now > HEARING_S:
+                    self._sweep_due = now  # the others have their sweep in the next call
+                    return
 
     def _watch(self, peer):
         events = peer.events()
@@ -378,10 +381,7 @@ class Server(object):
             if line.peer is peer:
                 line.peer = None
         self._poll.unregister(peer.fd)
-        try:
-            peer.link.close()
-        except OSError:
-            pass
+        peer.close()
 
 
 def _limit(listener):
