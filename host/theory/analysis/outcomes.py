@@ -42,26 +42,29 @@ ROUNDS = 3
 
 
 def rest_is_stable(model: Model, wheel: Wheel) -> bool:
-    """Whether a small swing around an even fixpoint dies out."""
+    """Whether a small swing around an even fixpoint dies out, without dry friction."""
     if isinstance(model, Sampled):
         return abs(leading(wheel, model.clock)) <= 1.0 + 1e-12
     return bool(np.linalg.eigvals(jacobian_at(at_rest()[:4], wheel)).real.max() <= 1e-9)
 
 
 def classify(
-    first: Averages, second: Averages, window_s: float, *, stable: bool
+    first: Averages, second: Averages, window_s: float, *, stable: bool, held: bool = False
 ) -> NDArray[np.str_]:
     """What wheels do, from two windows of time, one after the other.
 
     A wheel rolls if it covers the same distance in both windows, to a quarter turn, and at least
     half a turn. It is bound to a well if it covers none; there it comes to rest if rest is stable
-    and its swing fades. A wheel that does neither has not settled, or never does.
+    and its swing fades. Dry friction also holds a wheel where rest would not be stable, but such
+    a swing may as well go on: only a wheel that stands still rests then. A wheel that does neither
+    has not settled, or never does.
 
     Args:
         first: Averages over the first window, (wheels,).
         second: Averages over the second window, (wheels,).
         window_s: Length of a window, s.
-        stable: Whether rest is stable.
+        stable: Whether rest is stable without dry friction.
+        held: Whether dry friction holds wheels at rest.
 
     Returns:
         One of OUTCOMES each, (wheels,).
@@ -69,9 +72,11 @@ def classify(
     before, after = (window.omega_mean * window_s / QUARTER for window in (first, second))
     bound = (np.abs(before) < 1.0) & (np.abs(after) < 1.0)
     rolls = (np.abs(after) >= 2.0) & (np.abs(after - before) < 1.0 + 1e-3 * np.abs(after))
-    fades = (second.omega_std < STILL) | (second.omega_std < 0.97 * first.omega_std)
+    still = second.omega_std < STILL
+    fades = still | (second.omega_std < 0.97 * first.omega_std)
+    rests = (stable & fades) | (held & still)
     return np.select(
-        (bound & stable & fades, bound, rolls & (after > 0.0), rolls),
+        (bound & rests, bound, rolls & (after > 0.0), rolls),
         (REST, BACK, FORWARD, BACKWARD),
         OTHER,
     )
@@ -109,7 +114,8 @@ def _watched(
     window_s, parameters = WINDOW * memory_s(wheel), wheel.columns(states.shape[1])
     first = model.averages(states, parameters, window_s)
     second = model.averages(first.states, parameters, window_s)
-    return classify(first, second, window_s, stable=stable), second
+    held = wheel.dry_friction > 0.0
+    return classify(first, second, window_s, stable=stable, held=held), second
 
 
 def _followed(

@@ -7,11 +7,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from host.errors import WrongUse
+from host.theory.analysis import outcomes
 from host.theory.analysis.attractors import REST, watch
 from host.theory.analysis.tangent import growth
 from host.theory.analysis.trajectories import trajectory
 from host.theory.engine import sampled
 from host.theory.engine.ensemble import advance, averages
+from host.theory.engine.kicked import Continuous
 from host.theory.engine.sampled import Clock
 from host.theory.model.turning import turning
 from host.theory.model.wheel import OMEGA, PHI, Wheel, resting
@@ -88,6 +90,23 @@ def test_a_wheel_rests_wherever_its_friction_holds_it():
     assert (moved[~held] > 0.01).all()
     assert (ended[OMEGA] == 0.0).all()
     assert (watch(starts, wheel.columns(41), 20.0).kinds()[held] == REST).all()
+
+
+@pytest.mark.parametrize(
+    ("k", "dry", "expected"),
+    [
+        (2.0, 0.3, [outcomes.REST] * 6),  # above k_c, but held
+        (8.0, 0.3, [outcomes.REST] * 2 + [outcomes.BACKWARD] * 2 + [outcomes.FORWARD] * 2),
+        (1.72, 0.001, [outcomes.BACK] * 6),  # too little to hold a swing
+    ],
+)
+def test_wheels_that_friction_holds_rest_though_they_would_swing_without_it(k, dry, expected):
+    wheel = Wheel(k=k, dry_friction=dry)
+    starts = outcomes.starting_states(np.array([0.01, 0.02, 0.3, 0.5, -0.3, -0.5]), np.zeros(6))
+    names = outcomes.settle_and_classify(Continuous(), starts, wheel)[0]
+    assert names.tolist() == expected
+    later = advance(advance(starts, wheel.columns(6), 200.0), wheel.columns(6), 1.0)
+    assert ((later[OMEGA] == 0.0) == (names == outcomes.REST)).all()
 
 
 def test_without_a_way_to_follow_dry_friction_a_wheel_is_refused():
