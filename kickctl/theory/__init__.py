@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 from kickctl._lazy import load
 
 if TYPE_CHECKING:
-    from host.theory.analysis.fixpoints import Fixpoint, fixpoints
-    from host.theory.analysis.hopf import Hopf, hopf
+    from host.theory.analysis.fixpoints import Fixpoint
+    from host.theory.analysis.hopf import Hopf
     from host.theory.model.wheel import Wheel
     from kickctl.theory.branching import Branch, Branches, SpecialPoint, branch
     from kickctl.theory.maps import (
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         phase_diagram,
     )
     from kickctl.theory.motion import Lyapunov, Trajectory, lyapunov, trajectory
+    from kickctl.theory.resting import fixpoints, hopf
 
 __all__ = (
     "Wheel",
@@ -59,8 +60,9 @@ __all__ = (
 _PLACES = {
     "Wheel": "host.theory.model.wheel",
     **dict.fromkeys(("trajectory", "Trajectory", "lyapunov", "Lyapunov"), "kickctl.theory.motion"),
-    **dict.fromkeys(("fixpoints", "Fixpoint"), "host.theory.analysis.fixpoints"),
-    **dict.fromkeys(("hopf", "Hopf"), "host.theory.analysis.hopf"),
+    **dict.fromkeys(("fixpoints", "hopf"), "kickctl.theory.resting"),
+    "Fixpoint": "host.theory.analysis.fixpoints",
+    "Hopf": "host.theory.analysis.hopf",
     **dict.fromkeys(("branch", "Branches", "Branch", "SpecialPoint"), "kickctl.theory.branching"),
     **dict.fromkeys(
         ("phase_diagram", "PhaseDiagram", "basins", "Basins", "kicks", "Kicks"),

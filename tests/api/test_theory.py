@@ -1,5 +1,6 @@
 """kickctl.theory: docs/notebook.md runs, and wrong arguments are refused in words."""
 
+import functools
 import inspect
 import re
 
@@ -70,7 +71,10 @@ def test_a_trajectory_is_that_of_another_integrator_at_the_times_that_were_asked
         (lambda: branch(Wheel(), along="q"), "along cannot be 'q'"),
         (lambda: branch(Wheel(), to=-1.0), "to cannot be -1.0"),
         (lambda: branch(Wheel(), to=[2.0, 3.0]), "to cannot be"),
-        (lambda: branch(Wheel(dry_friction=0.1)), "dry friction"),
+        *[
+            (functools.partial(refusing, Wheel(dry_friction=0.1)), "dry friction")
+            for refusing in (theory.fixpoints, theory.hopf, branch, lyapunov, kicks)
+        ],
         (lambda: phase_diagram(Wheel(), k=[], tau=[1]), "k cannot be"),
         (lambda: phase_diagram(Wheel(), k=[1], tau=[0]), "tau cannot be"),
         (lambda: phase_diagram(Wheel(), k=[1], tau=[1], start="up"), "start cannot be 'up'"),

@@ -74,8 +74,8 @@ def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
     """The fixpoint at an angle at which the wheel can rest.
 
     Args:
-        phi: The angle, rad, one of `angles`.
-        wheel: The wheel; with dry friction, one that begins to roll forward.
+        phi: The angle, rad, one of `angles`; with dry friction, where the rods' force is as large.
+        wheel: The wheel; with dry friction, one that begins to roll forward there.
 
     Returns:
         The fixpoint.
@@ -122,7 +122,7 @@ def fixpoints(wheel: Wheel) -> list[Fixpoint]:
     ['stable focus', 'saddle']
 
     Args:
-        wheel: The wheel; with dry friction, one that begins to roll forward.
+        wheel: The wheel. Its dry friction, which would hold it at other angles, too, is left out.
 
     Returns:
         The fixpoints.
