@@ -82,7 +82,8 @@ def _draw_points(section: Axes, returns: Axes, rows: list[CrossingRow], numbers:
         say_if_empty(axes, "no wheel crosses the section")
     for axes in (section, returns):
         _widen(axes)
-    returns.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8, zorder=0)
+    if not returns.texts:  # there are points
+        returns.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8, zorder=0)
     section.set(xlabel=label, ylabel="$x_2$")
     returns.set(xlabel=label, ylabel="the same at the next crossing")
     kinds = handles({row["kind"] for row in rows})

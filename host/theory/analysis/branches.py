@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from host.errors import NotDone
 from host.theory.analysis.bifurcations import MERGING, Bifurcation, Followed, follow
 from host.theory.analysis.continuation import Curve, Point
 from host.theory.analysis.cycles import FORTH_AND_BACK, ROTATION, Shooting, settle_in_rotation
@@ -213,6 +214,8 @@ def rotation_by_formula(wheel: Wheel) -> Point:
         NotDone: There is none near the formula.
         WrongUse: There is no Hopf bifurcation.
     """
+    if wheel.k == 0.0:  # it is a scale of the search, too
+        raise NotDone("without springs no wheel goes on rolling", "give k above 0")
     start = turning_state(wheel)
     guess = np.array([*start[[0, 1, OMEGA]], pi / 2 / start[OMEGA], wheel.k])
     return Curve(Shooting(wheel, ROTATION), _scales(wheel, wheel.k)).solve(guess, _ALONG)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from host.errors import NotDone
 from host.perform.run import perform
 from host.theory.analysis import power, sections
 from host.theory.analysis.branches import rotation_by_formula
@@ -95,6 +96,11 @@ def test_a_wheel_that_does_not_repeat_itself_or_never_crosses(settled):
     assert (rests.kind, rests.repeat) == ("at rest", None)
     assert (rolls.kind, rolls.repeat.crossings) == ("rolling", 0)
     assert rolls.repeat.period_s == pytest.approx(settled[ROLLING].motion.repeat.period_s)
+
+
+def test_without_springs_there_is_no_rotation_to_search_for():
+    with pytest.raises(NotDone, match="without springs"):
+        rotation_by_formula(ROLLING._replace(k=0.0))
 
 
 def test_powers_of_a_cycle_are_its_mean_squares(settled):
