@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Callable
 from contextlib import suppress
-from datetime import datetime
+from datetime import UTC, datetime
 from itertools import chain, count
 from math import inf
 from pathlib import Path
@@ -24,6 +24,8 @@ T = TypeVar("T")
 LOG_FOLDER = Path("logs")
 # The notes of logs that cannot be read to their end: one has no end (yet), the other one has.
 BREAKS_OFF, DAMAGED = "breaks off", "damaged"
+# By so much (s) the clocks of a robot and of this computer may part.
+_CLOCKS_PART_S = 60.0
 
 
 def in_folder(what: str, info: dict[str, Any], write: Callable[[Path], T]) -> T:
@@ -134,7 +136,8 @@ class Summary(NamedTuple):
         ticks: how many ticks it holds.
         seconds: how much of the robot's time they cover (s).
         brick: address of the robot.
-        started_utc: when the log began.
+        started_utc: when its first tick was, ISO 8601; when the host connected, if that is not
+            known, as of a simulated robot whose time is ahead of this computer's.
         note: empty, or what is wrong with the file.
     """
 
@@ -182,7 +185,8 @@ def _summarize(path: Path) -> Summary:
             extent.take(item)
     except LogError as error:
         return Summary(path, 0, 0.0, "", "", error.message)
-    brick, started_utc = str(log.info.get("brick", "")), str(log.info.get("started_utc", ""))
+    brick, connected_utc = str(log.info.get("brick", "")), str(log.info.get("started_utc", ""))
+    started_utc = _started_utc(path, extent.began_s(log.info), connected_utc)
     note = "" if log.whole else BREAKS_OFF
     if log.breaks_off and (total := log.total) is not None:
         note = f"{DAMAGED}: {total - extent.ticks} of {total} ticks are missing"
@@ -194,21 +198,42 @@ def _summary_of_whole(path: Path) -> Summary | None:
     index = read_index(path)
     if index is None or not index.intact or not index.info:
         return None
-    brick, started_utc = index.info.get("brick", ""), index.info.get("started_utc", "")
+    brick, connected_utc = index.info.get("brick", ""), index.info.get("started_utc", "")
+    began_s = index.began_s if index.ticks and "clock_zero_s" in index.info else None
+    started_utc = _started_utc(path, began_s, connected_utc)
     return Summary(path, index.ticks, index.seconds, brick, started_utc, "")
 
 
+def _started_utc(path: Path, began_s: float | None, connected_utc: str) -> str:
+    """When a log began, by its first tick (Unix time, s) or when the host connected."""
+    try:
+        written_s = path.stat().st_mtime
+    except OSError:  # it was deleted meanwhile
+        return connected_utc
+    # No log begins after it was written: then the robot's time is not this computer's.
+    if began_s is None or not 0.0 <= began_s <= written_s + _CLOCKS_PART_S:
+        return connected_utc
+    return datetime.fromtimestamp(began_s, UTC).isoformat()
+
+
 class _Extent:
-    """Finds how long a stream is."""
+    """Finds how long a stream is, and when it begins."""
 
     def __init__(self) -> None:
         self.ticks = 0
         self.seconds = 0.0
         self._latest_s = inf
+        self._first_s: float | None = None
+
+    def began_s(self, info: dict[str, Any]) -> float | None:
+        """When the first record was (Unix time, s); None if the log's info or records lack it."""
+        zero_s = info.get("clock_zero_s")
+        return None if zero_s is None or self._first_s is None else zero_s + self._first_s
 
     def take(self, item: Event | Record) -> None:
         """Count a record. A robot that restarts counts its time from zero: a step back is none."""
         if not isinstance(item, dict):
+            self._first_s = item.t_s if self._first_s is None else self._first_s
             self.seconds += max(0.0, item.t_s - self._latest_s)
             self._latest_s = item.t_s
             self.ticks += 1

@@ -30,12 +30,14 @@ class Index(NamedTuple):
     Attributes:
         ticks: How many ticks the file was closed with.
         seconds: From its first message to its last (s).
+        began_s: When its first message was, as the log's clock_zero_s makes it (Unix time, s).
         info: The log's info as text; empty if it cannot be read.
         intact: Whether the bytes before the index are those that were written, by their checksum.
     """
 
     ticks: int
     seconds: float
+    began_s: float
     info: dict[str, str]
     intact: bool
 
@@ -88,8 +90,9 @@ def _index(
     statistics: Statistics, channels: list[int], info: dict[str, str], intact: bool
 ) -> Index:
     counts = statistics.channel_message_counts
+    ticks = sum(counts.get(channel, 0) for channel in channels)
     seconds = (statistics.message_end_time - statistics.message_start_time) / 1e9
-    return Index(sum(counts.get(channel, 0) for channel in channels), seconds, info, intact)
+    return Index(ticks, seconds, statistics.message_start_time / 1e9, info, intact)
 
 
 def _info(reader: SeekingReader) -> dict[str, str]:
