@@ -10,6 +10,10 @@ import stat
 from robot.user_folders import config_folder
 from robot.wire import TOKEN_BYTES
 
+# What to do about a file that holds none: a host has a copy, and only the robot makes a new one.
+COPY = "copy the robot's token file again, or on the robot delete it"
+DELETE = "delete it, and a new one is made"
+
 
 class TokenError(Exception):
     """The token file cannot be used; the message says why and what to do."""
@@ -29,11 +33,12 @@ def default_path():
     return os.path.join(folder, "token") if folder else ""
 
 
-def load(path):
+def load(path, remedy=COPY):
     """Read a token.
 
     Args:
         path: The token file.
+        remedy: What to do if it holds no token, in words.
 
     Returns:
         The token, 32 bytes.
@@ -47,7 +52,7 @@ def load(path):
             os.path.isfile(path) or stat.S_ISFIFO(os.stat(path).st_mode)
         ):
             raise TokenError("{} is no file that could hold a token".format(path))
-        with open(path, "r", encoding="ascii") as file:
+        with open(path, "r", encoding="ascii", errors="replace") as file:
             mode = os.fstat(file.fileno()).st_mode
             text = file.read(4 * TOKEN_BYTES)
     except (OSError, ValueError) as error:
@@ -62,9 +67,7 @@ def load(path):
         token = b""
     if len(token) != TOKEN_BYTES:
         raise TokenError(
-            "{} holds no token of {} hexadecimal digits; delete it, and a new one is made".format(
-                path, 2 * TOKEN_BYTES
-            )
+            "{} holds no token of {} hexadecimal digits; {}".format(path, 2 * TOKEN_BYTES, remedy)
         )
     return token
 
@@ -86,7 +89,7 @@ def load_or_make(path):
         os.makedirs(os.path.dirname(path) or ".", mode=0o700, exist_ok=True)
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
-        return load(path), False
+        return load(path, DELETE), False
     except (OSError, ValueError) as error:
         raise TokenError("the token file {} cannot be made: {}".format(path, error)) from error
     try:

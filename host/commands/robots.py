@@ -133,7 +133,10 @@ def _checked(token: str) -> Path:
     try:
         load(str(path))
     except TokenError as error:
-        raise WrongUse(str(error), "then add the robot again") from error
+        hint = "then add the robot again"
+        if error.__cause__ is not None or not path.is_file():  # its words do not say what to do
+            hint = f"name a file that holds the robot's token, {hint}"
+        raise WrongUse(str(error), hint) from error
     return path
 
 

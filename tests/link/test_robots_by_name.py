@@ -239,7 +239,12 @@ def test_names_are_given_and_taken_on_the_command_line(tmp_path, capsys):
     assert run("list")[:2] == (0, "no robot has a name yet: kickctl robots add NAME ADDRESS\n")
     status, _, err = run("add", "anna", "tcp://h", "--token", str(token))
     assert (status, "chmod 600" in err) == (2, True)
+    assert "  then add the robot again" in err
     token.chmod(0o600)
+    for unfit in ("missing", "."):
+        status, _, err = run("add", "anna", "tcp://h", "--token", unfit)
+        assert status == 2
+        assert "  name a file that holds the robot's token, then add the robot again" in err
     assert run("add", "anna", "tcp://h", "--token", "key")[0] == 0
     assert run("add", "bert", "ssh://robot@h?port=7")[0] == 0
     assert json.loads(run("list", "--json")[1]) == {

@@ -56,8 +56,11 @@ def test_what_is_no_token_is_refused(tmp_path, content):
     path = tmp_path / "token"
     path.write_bytes(content)
     path.chmod(0o600)
-    with pytest.raises(TokenError):
+    with pytest.raises(TokenError, match=r"holds no token .*; delete it, and a new one is made$"):
         load_or_make(str(path))
+    # Who loads it elsewhere has a copy: nobody makes a new one there.
+    with pytest.raises(TokenError, match=r"holds no token .*; copy the robot's token file again"):
+        load(str(path))
     assert path.read_bytes() == content
 
 
