@@ -71,7 +71,7 @@ def begin_again(lab, station):
         def begin_again():
             again = Lab([station], port=urlsplit(lab.drive_url).port)
             vars(again.keys).update(vars(lab.keys))
-            stack.enter_context(again)
+            return stack.enter_context(again)
 
         yield begin_again
 

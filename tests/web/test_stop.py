@@ -68,6 +68,41 @@ def test_without_a_link_it_says_so_and_stops_when_it_is_back(visit, lab, station
     visitor.forgive("WebSocket connection to")
 
 
+@pytest.mark.parametrize("pressed", ["while there is no link", "once it is refused"])
+def test_a_page_that_is_refused_says_that_it_stops_nothing(
+    visit, lab, station, begin_again, pressed
+):
+    visitor = visit()
+    rolls(visitor, station)
+    lab.__exit__(None, None, None)
+    visitor.until("!s.link.up")
+    if pressed == "while there is no link":
+        visitor.page.keyboard.press("Escape")
+        visitor.until("s.stop.anna === 'waiting'")
+    keys = dict(vars(lab.keys))
+    vars(lab.keys).update({name: f"{key}-new" for name, key in keys.items()})
+    again = begin_again()
+    visitor.until("s.refused")
+    if pressed == "once it is refused":
+        visitor.page.keyboard.press("Escape")
+    visitor.until("s.stop.anna === 'refused'")
+    visitor.reads("#stop-words", "This page cannot stop anything.")
+    vars(again.keys).update(keys)  # nothing is owed to a page that is let in later
+    visitor.page.click("text=Try again")
+    visitor.until("s.link.up && r && !s.stop.anna")
+    rolls(visitor, station)
+    assert visitor.page.locator("#stop-words").inner_text() == ""
+    visitor.forgive("WebSocket connection to")
+
+
+def test_a_page_that_was_never_let_in_says_that_it_stops_nothing(visit, lab):
+    page = visit().context.new_page()
+    page.goto(lab.view_url + "not")
+    page.wait_for_selector("text=Try again")
+    page.keyboard.press("Escape")
+    page.wait_for_selector("#stop-words.alarm >> text=This page cannot stop anything.")
+
+
 def test_it_is_not_confirmed_by_a_robot_that_is_away(visit, station):
     visitor = visit()
     rolls(visitor, station)

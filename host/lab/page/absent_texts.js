@@ -11,6 +11,13 @@ export const absentTexts = {
         start: "press its Start",
         clear: "mend the cause, then press its Clear the fault",
     },
+    /** What STOP says on a page that is not let in. */
+    cannotStop: (refused) =>
+        sentences(
+            "this page cannot stop anything",
+            refused?.title ?? "the lab did not let it in",
+            "lift the robot, press its back button, or type `kickctl stop`",
+        ),
     noneRuns: "No robot runs.",
     /** Why one of several cannot be kicked. */
     notKicked: (robot) => {

@@ -126,8 +126,10 @@ export class Card {
         // What came after a stop counts more, as a fault.
         const over = stopping === "confirmed" && is !== "stopped";
         const said = twin ? this.#twinSaid() : this.#robotSaid(is, page);
-        setText(this.#said, (over ? null : texts.stop[stopping]) ?? said);
-        this.#said.classList.toggle("alarm", stopping === "unconfirmed" || stopping === "waiting");
+        const ofStop = stopping && !over && this.stop.words(robot.name, stopping);
+        setText(this.#said, ofStop || said);
+        const unsure = ["unconfirmed", "waiting", "refused"].includes(stopping);
+        this.#said.classList.toggle("alarm", unsure);
         setText(this.#note, twin ? besideTexts.notPushed(robot.robot.name) : "");
         this.#ground();
         for (const hand of this.#hands) hand.update();

@@ -14,13 +14,15 @@ export class Stop {
     #asked = new Map();
     // Names of robots whose STOP waits for the link; null for all of them.
     #owed = new Set();
+    // Whether one was pressed that never leaves, because the lab does not let this page in.
+    #vain = false;
     #byKeyboard = false;
     #pointed = true;
 
     /** @param {import("./lab.js").Lab} lab */
     constructor(lab) {
         this.lab = lab;
-        this.words = byId("stop-words");
+        this.line = byId("stop-words");
         this.obey(byId("stop"));
         lab.listeners.push((message) => this.#hear(message));
         addEventListener("keydown", (event) => this.#key(event), true);
@@ -46,11 +48,14 @@ export class Stop {
      */
     press(name = null) {
         const sent = this.lab.send({ type: "stop", robot: name });
-        if (sent) this.#owed.delete(name);
+        // Who is let in later must not stop what somebody else has begun since.
+        const vain = !sent && Boolean(this.lab.store.refused);
+        if (vain) this.#vain = true;
+        else if (sent) this.#owed.delete(name);
         else this.#owed.add(name);
         for (const robot of this.lab.store.robots) {
             if (name !== null && robot.name !== name) continue;
-            this.#asked.set(robot.name, { heard: robot.heard, at: performance.now() });
+            this.#asked.set(robot.name, { heard: robot.heard, at: performance.now(), vain });
         }
         setTimeout(() => (this.lab.changed = true), PATIENCE_MS + 10);
         this.lab.changed = true;
@@ -58,7 +63,8 @@ export class Stop {
 
     /**
      * What is known about the last stop.
-     * @returns {Object<string, "sent" | "confirmed" | "unconfirmed" | "waiting">} By robot.
+     * @returns {Object<string, "sent" | "confirmed" | "unconfirmed" | "waiting" | "refused">} By
+     *     robot.
      */
     progress() {
         const { robots } = this.lab.store;
@@ -72,17 +78,26 @@ export class Stop {
         const all = progress.length === this.lab.store.robots.length;
         const same = new Set(progress.map(([, stage]) => stage)).size === 1;
         const lines = progress.map(([name, stage]) => {
-            const words = this.#words(name, stage);
-            return all && same && !this.lab.store.byName(name).lost ? words : `${name}: ${words}`;
+            const words = this.words(name, stage);
+            const ofAll = all && same && !this.lab.store.byName(name).lost;
+            return ofAll || stage === "refused" ? words : `${name}: ${words}`;
         });
-        if (this.#owed.size && !lines.length) lines.push(texts.stop.waiting);
-        setText(this.words, [...new Set(lines)].join(" "));
+        if (!lines.length && this.#vain) lines.push(this.words(null, "refused"));
+        else if (!lines.length && this.#owed.size) lines.push(texts.stop.waiting);
+        setText(this.line, [...new Set(lines)].join(" "));
         const worst = progress.some(([, stage]) => stage !== "confirmed" && stage !== "sent");
-        this.words.classList.toggle("alarm", worst);
+        this.line.classList.toggle("alarm", worst || this.#vain);
     }
 
-    // What a robot has confirmed may be over by the time that it is lost.
-    #words(name, stage) {
+    /**
+     * What is known of a stop, in words.
+     * @param {?string} name The robot.
+     * @param {string} stage As `progress` says.
+     * @returns {string}
+     */
+    words(name, stage) {
+        if (stage === "refused") return absentTexts.cannotStop(this.lab.store.refused);
+        // What a robot has confirmed may be over by the time that it is lost.
         const robot = this.lab.store.byName(name);
         const past = stage === "confirmed" && robot.lost;
         return past ? absentTexts.hadStopped(robot.lostFor()) : texts.stop[stage];
@@ -90,6 +105,7 @@ export class Stop {
 
     #progressOf(robot) {
         const asked = this.#asked.get(robot.name);
+        if (asked.vain) return "refused";
         if (this.#owed.has(robot.name) || this.#owed.has(null)) return "waiting";
         if (robot.heard > asked.heard && AT_REST.includes(robot.state) && !robot.lost) {
             asked.confirmed = true;
@@ -99,7 +115,11 @@ export class Stop {
     }
 
     #hear(message) {
-        if (message.type === "welcome") {
+        if (message.type === "refused") {
+            this.#giveUp();
+        } else if (message.type === "welcome") {
+            this.#vain = false;
+            for (const [name, { vain }] of this.#asked) if (vain) this.#asked.delete(name);
             // The counts of what is heard of the robots start at zero again.
             for (const asked of this.#asked.values()) asked.heard = 0;
             for (const name of this.#owed) this.press(name);
@@ -108,6 +128,15 @@ export class Stop {
         if (message.type === "event" && ["start", "resume"].includes(message.event.event)) {
             this.#asked.delete(message.robot);
         }
+    }
+
+    // What waits for the link does not leave any more.
+    #giveUp() {
+        if (this.#owed.size) this.#vain = true;
+        for (const [name, asked] of this.#asked) {
+            asked.vain ||= this.#owed.has(name) || this.#owed.has(null);
+        }
+        this.#owed.clear();
     }
 
     #key(event) {
