@@ -211,6 +211,33 @@ def test_a_wrong_key_is_refused_in_words(browser, lab, visit):
     assert page.is_visible("text=Try again")
 
 
+def test_another_address_of_the_lab_typed_into_the_same_tab_is_tried_at_once(lab, visit):
+    visitor = visit()
+    page = visitor.context.new_page()
+    page.goto(lab.drive_url.partition("=")[0] + "=wrong")
+    page.wait_for_selector("text=Try again")
+    page.goto(lab.view_url)
+    page.wait_for_function("() => lab.state().link.up && lab.state().role === 'view'")
+    page.goto(lab.drive_url)
+    page.wait_for_function("() => lab.state().link.up && lab.state().role === 'drive'")
+    page.wait_for_selector("text=Try again", state="hidden")
+
+
+def test_a_page_that_is_in_is_not_disturbed_by_links_within_it(lab, visit):
+    visitor = visit()
+    sockets = []
+    visitor.page.on("websocket", lambda socket: sockets.append(socket.url))
+    visitor.page.goto(lab.drive_url.partition("#")[0] + "#kicks")
+    visitor.page.go_back()
+    visitor.page.wait_for_url(lab.drive_url)
+    page = visitor.state()["page"]
+    assert visitor.state()["link"]["up"]
+    visitor.page.goto(lab.view_url)  # by now both changes have been heard
+    visitor.until("s.link.up && s.role === 'view'")
+    assert visitor.state()["page"] != page
+    assert len(sockets) == 1
+
+
 def test_a_robot_that_is_away_is_grey_and_comes_back(visit, station):
     visitor = visit()
     clock = station.clock

@@ -5,16 +5,21 @@ import { keep, recall } from "./storage.js";
 const KEY = "lab.key";
 const PAGE = "lab.page";
 
+/** @returns {string} The key that the address has now, empty if it has none. */
+export function keyInAddress() {
+    return /^#(?:drive|view)=(.+)$/.exec(location.hash)?.[1] ?? "";
+}
+
 /**
  * The key of this page. The address keeps it, so that a reload and a copied address work; the
  * session keeps it, too, in case somebody shortens the address.
  * @returns {string} The key, empty if there is none.
  */
 export function readKey() {
-    const match = /^#(?:drive|view)=(.+)$/.exec(location.hash);
-    if (!match) return recall("sessionStorage", KEY) ?? "";
-    keep("sessionStorage", KEY, match[1]);
-    return match[1];
+    const key = keyInAddress();
+    if (!key) return recall("sessionStorage", KEY) ?? "";
+    keep("sessionStorage", KEY, key);
+    return key;
 }
 
 /**

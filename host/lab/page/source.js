@@ -5,7 +5,7 @@
  * Records come as `{type: "records", data: ArrayBuffer}`.
  */
 
-import { keepPage, readKey, readPage } from "./keys.js";
+import { keepPage, keyInAddress, readKey, readPage } from "./keys.js";
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 5000;
@@ -25,6 +25,7 @@ export class WebSocketSource {
     #pause = FIRST_PAUSE_MS;
     #heard = 0;
     #welcome = false;
+    #key = "";
     #timer = 0;
 
     /** @param {string} url Where the lab listens, `ws://...`. */
@@ -35,6 +36,8 @@ export class WebSocketSource {
         setInterval(() => this.#listen(), 500);
         addEventListener("online", () => this.#hurry());
         addEventListener("pageshow", () => this.#hurry());
+        // Another address of the same lab, typed into this tab, loads no page anew.
+        addEventListener("hashchange", () => this.#change());
     }
 
     /** Connect now, instead of any connection that there is. */
@@ -42,9 +45,10 @@ export class WebSocketSource {
         clearTimeout(this.#timer);
         this.#drop();
         this.#heard = performance.now();
+        this.#key = readKey();
         const socket = new WebSocket(this.url);
         socket.binaryType = "arraybuffer";
-        socket.onopen = () => this.#say({ type: "join", key: readKey(), resume: readPage() });
+        socket.onopen = () => this.#say({ type: "join", key: this.#key, resume: readPage() });
         socket.onmessage = (event) => this.#take(event.data);
         socket.onclose = () => this.#lose();
         this.#socket = socket;
@@ -100,6 +104,15 @@ export class WebSocketSource {
 
     #listen() {
         if (this.#socket && performance.now() - this.#heard > SILENCE_MS) this.#lose();
+    }
+
+    // A link within the page changes the address, too, but not its key.
+    #change() {
+        const key = keyInAddress();
+        if (!key || (this.#welcome && key === this.#key)) return;
+        // Who waits for an answer waits no more: it would come to the connection that ends here.
+        if (this.#welcome) this.onmessage({ type: "link", up: false, again_s: 0 });
+        this.open();
     }
 
     #hurry() {
