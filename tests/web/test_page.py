@@ -259,7 +259,7 @@ def test_a_lab_that_is_gone_is_said_and_found_again(visit, lab, station, begin_a
     lab.__exit__(None, None, None)
     visitor.until("!s.link.up")
     visitor.reads("#said", "The link to the lab is lost.")
-    visitor.reads("#notices", "What you see is old")
+    visitor.reads("#alarm", "What you see is old")
     assert visitor.robot()["basins"]  # they stay, too
     begin_again()
     visitor.until("s.link.up && r && r.records > 0")

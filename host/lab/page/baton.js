@@ -21,12 +21,13 @@ export function createBaton(root, lab) {
     const send = (message) => lab.request(message).catch((no) => lab.tell(no));
 
     return () => {
-        const { baton, role, page, pages, canDrive } = lab.store;
+        const { baton, role, page, pages, canDrive, link } = lab.store;
         const mine = baton.you ? texts.youDrive : canDrive ? texts.youMay : "";
         const other = baton.driver === null ? texts.nobodyDrives : texts.pageDrives(baton.driver);
-        setText(who, sentences(mine || other, baton.you ? "" : baton.why));
+        const known = sentences(mine || other, baton.you ? "" : baton.why);
+        setText(who, link.up ? known : texts.driverUnknown);
         // Who may take the baton may hand it on, too, also where nobody drives.
-        const others = baton.you || role === "drive" ? baton.asking : [];
+        const others = link.up && (baton.you || role === "drive") ? baton.asking : [];
         setText(asking, others.length ? texts.asks(others) : "");
         if (offered !== others.join()) {
             offered = others.join();
@@ -36,7 +37,7 @@ export function createBaton(root, lab) {
                 ),
             );
         }
-        show(leave, baton.you);
-        setText(count, role ? texts.pages(page, pages) : "");
+        show(leave, link.up && baton.you);
+        setText(count, link.up ? texts.pages(page, pages) : "");
     };
 }

@@ -48,7 +48,7 @@ const kTrace = createKTrace(byId("k-trace"), byId("k-plane"), lab);
 const lessons = createLessons(byId("lessons"), byId("lessons-switch"), lab);
 const panels = [
     createNow(lab),
-    createNotices(byId("notices"), lab),
+    createNotices(byId("notices"), byId("alarm"), lab),
     kicks.update,
     createMovements(byId("moves"), lab),
     createParameters(byId("parameters"), lab),

@@ -6,10 +6,11 @@ import { sentences } from "./words.js";
 
 /**
  * @param {HTMLElement} root
+ * @param {HTMLElement} above Where a dead link is said: in view at every place of the page.
  * @param {import("./lab.js").Lab} lab
  * @returns {() => void} Brings the notices up to date.
  */
-export function createNotices(root, lab) {
+export function createNotices(root, above, lab) {
     const link = notice("alarm");
     const again = button(texts.again, () => lab.source.open());
     const role = notice("calm");
@@ -24,7 +25,8 @@ export function createNotices(root, lab) {
     role.root.append(ask, take);
     note.root.append(close);
     note.root.setAttribute("role", "alert");
-    root.append(link.root, role.root, note.root);
+    above.append(link.root);
+    root.append(role.root, note.root);
 
     return () => {
         const { store } = lab;

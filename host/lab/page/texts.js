@@ -218,6 +218,7 @@ export const texts = {
     youDrive: "This page drives.",
     youMay: "Nobody drives. Your first command takes the baton.",
     pageDrives: (page) => `Page ${page} drives. This page watches.`,
+    driverUnknown: "No link to the lab: this page does not know who drives.",
     nobodyDrives: "Nobody drives. This page watches.",
     pages: (page, { driving, watching }) =>
         `This is page ${page}. ` +
