@@ -74,10 +74,10 @@ export class Lab {
      */
     async tryEach(robots, command, given = {}) {
         const refusals = [];
-        const ask = ({ name, status }) =>
-            this.do(command, given, name).catch(({ message, hint }) => {
-                const press = hint?.includes("kickctl ") && absentTexts.press[status?.remedy];
-                refusals.push({ robot: name, message, hint: press || hint });
+        const ask = (robot) =>
+            this.do(command, given, robot.name).catch(({ message, hint }) => {
+                const { name, status } = robot;
+                refusals.push({ robot: name, message, hint: onPage(hint, command, status) });
                 return null;
             });
         const results = await Promise.all(robots.map(ask));
@@ -111,6 +111,13 @@ export class Lab {
         for (const { reject } of this.#waiting.values()) reject(texts.answerLost);
         this.#waiting.clear();
     }
+}
+
+/** What to do next, as it is done on the page if a terminal's command was named. */
+function onPage(hint, command, { remedy } = {}) {
+    // Who has just pressed the remedy's button has to read why that did not help.
+    const helps = command !== remedy && /kickctl (start|clear)\b/.test(hint);
+    return (helps && absentTexts.press[remedy]) || hint;
 }
 
 /** What several robots have refused, a line for each. */
