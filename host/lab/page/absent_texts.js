@@ -18,6 +18,10 @@ export const absentTexts = {
             refused?.title ?? "the lab did not let it in",
             "lift the robot, press its back button, or type `kickctl stop`",
         ),
+    /** What to do where another program drives the robot. */
+    drivenElsewhere: (controller) =>
+        `wait until they have finished, or press ‘${texts.takeOver(controller ?? "them")}’ under` +
+        ` ${texts.state}. Anyone may stop the robot: press ${texts.stopButton}`,
     noneRuns: "No robot runs.",
     /** Why one of several cannot be kicked. */
     notKicked: (robot) => {

@@ -114,7 +114,8 @@ export class Lab {
 }
 
 /** What to do next, as it is done on the page if a terminal's command was named. */
-function onPage(hint, command, { remedy } = {}) {
+function onPage(hint, command, { remedy, controller } = {}) {
+    if (hint?.includes("--take-over")) return absentTexts.drivenElsewhere(controller);
     // Who has just pressed the remedy's button has to read why that did not help.
     const helps = command !== remedy && /kickctl (start|clear)\b/.test(hint);
     return (helps && absentTexts.press[remedy]) || hint;
