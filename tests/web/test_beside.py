@@ -66,6 +66,18 @@ def out_of_sight(page):
     )
 
 
+def test_before_a_prediction_nothing_says_to_press_the_hidden_start(show, pair):
+    visitor = show(*pair)
+    page = visitor.page
+    page.click("#lessons-switch")
+    page.click("text=What jumps in a kick?")
+    visitor.until("r.status.remedy === 'start'")
+    visitor.reads(".card[aria-label=anna]", "It stands until you lock your prediction.")
+    visitor.reads("#state", "It stands until you lock your prediction.")
+    assert card(visitor, "anna").locator(".remedy").is_hidden()
+    assert page.locator("text=Start it:").count() == 0
+
+
 def test_a_kick_goes_to_the_chosen_robot_and_each_stop_to_its_own(show, pair):
     _, bert = pair
     visitor = show(*pair, viewport={"width": 1366, "height": 768})

@@ -96,7 +96,7 @@ export class Card {
     /** Say what is known. */
     update() {
         const { robot, twin } = this;
-        const { robots, targets, page, canDrive, mayDrive } = this.lab.store;
+        const { robots, targets, canDrive, mayDrive } = this.lab.store;
         const is = shownState(robot);
         const here = targets.includes(robot);
         this.#is.dataset.state = is;
@@ -125,7 +125,7 @@ export class Card {
         const stopping = twin ? null : this.stop.progress()[robot.name];
         // What came after a stop counts more, as a fault.
         const over = stopping === "confirmed" && is !== "stopped";
-        const said = twin ? this.#twinSaid() : this.#robotSaid(is, page);
+        const said = twin ? this.#twinSaid() : this.#robotSaid(is);
         const ofStop = stopping && !over && this.stop.words(robot.name, stopping);
         setText(this.#said, ofStop || said);
         const unsure = ["unconfirmed", "waiting", "refused"].includes(stopping);
@@ -136,10 +136,10 @@ export class Card {
         labelWheels(this.#views, (side) => this.#canvases[side], SIDES);
     }
 
-    #robotSaid(is, page) {
+    #robotSaid(is) {
         const { robot } = this;
         if (is === "lost") return lostWords(robot);
-        if (is !== "running") return whyOf(robot.status, page);
+        if (is !== "running") return whyOf(robot, this.lab.store);
         const kick = robot.kicks.at(-1);
         return kick ? besideTexts.lastKick(kick, kick.outcome) : texts.noKick;
     }

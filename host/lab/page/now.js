@@ -28,7 +28,7 @@ export function createNow(lab) {
     };
 
     return () => {
-        const { robots, robot, mayDrive, page, held, still } = lab.store;
+        const { robots, robot, mayDrive } = lab.store;
         const several = robots.length > 1;
         if (filled !== robots) {
             filled = robots;
@@ -47,11 +47,7 @@ export function createNow(lab) {
         root.dataset.state = is;
         setText(state, stateWord(robot));
         const helps = remedyOf(robot, lab.store);
-        let why = is === "lost" ? lostWords(robot) : whyOf(robot.status, page);
-        if (is !== "lost" && robot.status.remedy === "start" && !helps) {
-            why = held ? texts.startsAfterPrediction : texts.staysStill;
-        }
-        setText(reason, why);
+        setText(reason, is === "lost" ? lostWords(robot) : whyOf(robot, lab.store));
         // Of several, it keeps its room: names must not wrap when a robot stops.
         show(remedy, several || Boolean(helps));
         remedy.style.visibility = helps ? "" : "hidden";
@@ -100,8 +96,15 @@ export function shownState(robot) {
     return robot.lost ? "lost" : robot.state;
 }
 
-/** @returns {string} Why a robot does not run, in sentences; empty if it does. */
-export function whyOf(status, page) {
+/**
+ * @param {import("./robot_view.js").RobotView} robot One that is not lost.
+ * @param {import("./store.js").Store} store
+ * @returns {string} Why it does not run, in sentences; empty if it does.
+ */
+export function whyOf({ status }, { page, held, still }) {
     if (status.state === "running") return "";
+    // What to do would be to press Start, which is hidden.
+    if (status.remedy === "start" && held) return texts.startsAfterPrediction;
+    if (status.remedy === "start" && still) return texts.staysStill;
     return sentences(texts.reason(status, page), status.hint);
 }

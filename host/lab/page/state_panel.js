@@ -1,6 +1,7 @@
 /** What the robot says of itself. */
 
 import { button, element, setText, show } from "./dom.js";
+import { whyOf } from "./now.js";
 import { texts } from "./texts.js";
 import { sentences } from "./words.js";
 
@@ -30,6 +31,7 @@ export function createState(root, lab) {
         identify.disabled = !mayDrive;
         if (!robot) return;
         const { info, status } = robot;
+        const reason = sentences(texts.reason(status, page), status.hint);
         const facts = {
             label: texts.robotLabel(robot.name, info.label),
             address: info.uri,
@@ -38,7 +40,7 @@ export function createState(root, lab) {
             punctual: texts.punctual(status),
             driver: status.controller ?? texts.nobody,
             unattended: texts.unattended[welcome.unattended?.[robot.name]] ?? texts.unknown,
-            reason: sentences(texts.reason(status, page), status.hint),
+            reason: robot.lost ? reason : whyOf(robot, lab.store),
             missed: String(robot.missed),
         };
         for (const [name, value] of Object.entries(facts)) setText(values[name], value);
