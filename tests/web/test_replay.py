@@ -230,6 +230,13 @@ def test_a_twin_stands_beside_the_robot(read_file, log):
     reader.reads("#about", "No kick was left alone for a second")
 
 
+def test_a_damaged_log_is_named_as_it_is_and_so_is_the_command(read_file, tape):
+    damage = "logs/a.mcap: breaks off or is damaged after tick 50; 9 of 60 ticks are missing"
+    reader = read_file(tape | {"verdict": tape["verdict"] | {"damage": damage}})
+    reader.reads("#about", f"Not all of this log can be read: {damage}. ")
+    reader.reads("#about", "kickctl log recover LOG")
+
+
 def test_a_file_that_asked_elsewhere_would_complain(read_file, tape):
     reader = read_file(tape)
     reader.page.evaluate("fetch('http://127.0.0.1:9/').catch(() => null)")

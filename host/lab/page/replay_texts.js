@@ -111,8 +111,10 @@ export const words = {
             missing && `${counted(missing, "tick is", "ticks are")} missing`,
         );
     },
+    // No sentence begins with the log's path or with the command: both are written as they are.
     damage: (damage) =>
-        sentences(damage, "kickctl log recover also reads what is whole behind the damage"),
+        `Not all of this log can be read: ${damage}. More is read by ‘kickctl log recover LOG’,` +
+        " with this log's path for LOG: also what is whole behind the damage.",
     events: {
         kick: ({ kick }) => `${texts.kickLine(kick)}, ${wheelsOf(kick)}`,
         start: () => "start",
