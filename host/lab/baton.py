@@ -31,7 +31,7 @@ class Baton:
         if self.driver == page:
             return
         if self.driver is None and role == DRIVE:
-            self._hand_to(page, now, f"page {page} drives")
+            self._hand_to(page, now)
         elif page not in self.asking:
             self.asking.append(page)
             self.changed = True
@@ -54,7 +54,7 @@ class Baton:
                 "nobody drives the robots, and this page may only watch",
                 "ask for the baton: a page with the drive key can give it to you",
             )
-        self._hand_to(page, now, f"page {page} drives")
+        self._hand_to(page, now)
 
     def take(self, page: int, role: str, now: float) -> None:
         """A page with the drive key takes the baton, also from the driver.
@@ -120,7 +120,7 @@ class Baton:
         )
         return True
 
-    def _hand_to(self, page: int, now: float, why: str) -> None:
+    def _hand_to(self, page: int, now: float, why: str = "") -> None:
         self.driver, self.why, self.changed = page, why, True
         self._heard_at = now
         if page in self.asking:

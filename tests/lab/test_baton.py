@@ -7,6 +7,7 @@ def test_the_driver_gives_the_baton_to_who_asks_and_the_teacher_takes_it_back(la
     teacher, pupil = lab.driver(), lab.viewer()
     teacher.send("ask", request=1)
     assert teacher.drives
+    assert teacher.latest("baton")["why"] == ""  # that it drives is all there is to say
     assert "does not ask" in teacher.ask("give", page=2)["error"]["message"]
     pupil.send("ask", request=1)
     assert teacher.latest("baton")["asking"] == [2]

@@ -26,6 +26,8 @@ def test_a_page_that_watches_says_why_and_gets_the_baton_when_it_asks(visit, lab
     take_baton(driver)
     pupil.until("s.baton.driver !== null && !s.baton.you")
     pupil.reads("#who-drives", "drives. This page watches.")
+    said = pupil.page.locator("#baton > p").first.inner_text()
+    assert said == f"Page {driver.state()['page']} drives. This page watches."
     assert pupil.page.is_disabled("#kick-phase")
     assert pupil.page.is_disabled("#param-k")
     pupil.page.click("#notices >> text=Ask to drive")
