@@ -375,7 +375,7 @@ class Loop(object):
         """Latch a fault. One that lasts, or follows from the first, is not recorded again."""
         if self.safety.state != FAULT:
             self.safety.fault(reason)
-            self.blackbox.note("fault", reason=reason)
+            self.blackbox.note("fault", reason=self.safety.reason)
 
     def _stop_motors(self):
         """Stop every motor, also if another one does not obey."""

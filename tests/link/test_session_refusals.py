@@ -127,7 +127,10 @@ def test_a_status_with_the_longest_names_fits_into_a_frame(rig):
 
 def test_a_status_fits_into_a_frame_whatever_a_motor_says(rig, client):
     """As the driver of somebody's own motors, which shows all that a bus has answered."""
+    client.ask("subscribe")
     rig.loop.fail("\U0001f9be" * 5000)
+    rig.run(1)
+    client.flow()
     status = client.ask("status")
     assert status["state"] == "fault"
     assert set(status["reason"]) == {"\U0001f9be"}
