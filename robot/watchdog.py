@@ -88,17 +88,19 @@ def _read(motor, name):
 def watch(link, stop, silence_s=SILENCE_S):
     """Send back what comes over a link until it ends, and stop the motors when it is silent.
 
-    Silence counts from the first byte on, as a program takes seconds to start on the brick, and
-    after a stop from the next byte on.
+    Silence counts from the first byte on, as a program takes seconds to start on the brick. While
+    it lasts, the motors are stopped again and again: a loop that wakes may drive them, and hang.
 
     Args:
         link: A socket to the loop.
         stop: stop(reason) stops the motors and returns whether they obeyed. If they did not, it is
             called again until they do, until the loop lives again, or until LONGEST_S after the
-            loop's end. The reason is in words; it is empty if the loop ended on purpose.
+            loop's end. The reason is in words; it is empty if the loop ended on purpose, and for
+            another stop of motors that have obeyed.
         silence_s: How long the loop may be silent, in s.
     """
-    patience_s = None
+    silent = "the loop was silent for {:g} s".format(silence_s)
+    patience_s, obeyed = None, False
     try:
         while True:
             if select.select([link], (), (), patience_s)[0]:
@@ -106,11 +108,10 @@ def watch(link, stop, silence_s=SILENCE_S):
                 if not beat or _FAREWELL in beat:
                     break
                 link.send(beat)
-                patience_s = silence_s
+                patience_s, obeyed = silence_s, False
             else:
-                patience_s = (
-                    None if stop("the loop was silent for {:g} s".format(silence_s)) else AGAIN_S
-                )
+                obeyed = stop("" if obeyed else silent)
+                patience_s = silence_s if obeyed else AGAIN_S
                 # After every stop: the loop may have woken and driven the motors meanwhile.
                 _tell_stopped(link)
     except OSError:
@@ -225,7 +226,7 @@ class Watchdog(object):
         return echoes
 
     def close(self):
-        """End the watchdog. Stop the motors first."""
+        """End the watchdog. Stop the motors first; it tries for longer, if they do not obey."""
         try:
             self._send(_FAREWELL)
         except OSError:
@@ -234,7 +235,7 @@ class Watchdog(object):
         try:
             # A frozen watchdog would not end, and nor would this process.
             os.kill(self.pid, signal.SIGCONT)
-            until = time.monotonic() + FAREWELL_S
+            until = time.monotonic() + LONGEST_S + FAREWELL_S
             while os.waitpid(self.pid, os.WNOHANG)[0] == 0:
                 if time.monotonic() > until:
                     os.kill(self.pid, signal.SIGKILL)
@@ -258,18 +259,19 @@ def _be_watchdog(link, stop_motors, alarm):
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         # They are meant for the loop; the watchdog waits for its end.
         signal.signal(number, signal.SIG_IGN)
-    said = []
+    said, trouble = "", False
 
     def stop(reason):
+        nonlocal said, trouble
         failed = stop_motors()
-        words = "watchdog: {}; {}\n".format(
-            reason, "not stopped: " + ", ".join(failed) if failed else "motors stopped"
-        )
+        result = "not stopped: " + ", ".join(failed) if failed else "motors stopped"
+        words = "watchdog: {}\n".format("; ".join(filter(None, (reason, result))))
         # Motors that do not obey get a stop every AGAIN_S, but no line for each.
-        if reason and not (failed and said == [words]):
-            said[:] = [words]
-            alarm()
+        if words != said if failed else reason or trouble:
+            if reason:
+                alarm()
             _say(words)
+        said, trouble = words, bool(failed)
         return not failed
 
     status = 0
