@@ -266,10 +266,12 @@ def _be_watchdog(link, stop_motors, alarm):
         failed = stop_motors()
         result = "not stopped: " + ", ".join(failed) if failed else "motors stopped"
         words = "watchdog: {}\n".format("; ".join(filter(None, (reason, result))))
-        # Motors that do not obey get a stop every AGAIN_S, but no line for each.
-        if words != said if failed else reason or trouble:
-            if reason:
-                alarm()
+        # Motors that do not obey get a stop every AGAIN_S, but no line for each; motors that obey
+        # get another one while the silence lasts, and no line unless they did not obey before.
+        news = words != said if failed else bool(reason or trouble)
+        if news and reason:
+            alarm()
+        if news:
             _say(words)
         said, trouble = words, bool(failed)
         return not failed

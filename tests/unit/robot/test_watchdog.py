@@ -261,7 +261,7 @@ def test_motors_that_do_not_obey_while_the_loop_is_silent_are_told_again_until_t
 
 
 def test_a_loop_that_wakes_and_hangs_again_before_a_beat_is_stopped_again():
-    """It may have driven the motors in between. One silence is told once."""
+    """It may have driven the motors in between. The reason is given only for the first stop."""
     reasons = []
     link, thread = watching(lambda reason: reasons.append(reason) or True)
     assert eventually(lambda: len(reasons) >= 3)
