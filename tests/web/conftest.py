@@ -8,6 +8,7 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import sync_playwright
 
+from host.client.robot import Robot
 from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
@@ -92,3 +93,16 @@ def visit(browser, lab):
     for visitor in visitors:
         visitor.context.close()
     assert complaints == []
+
+
+@pytest.fixture
+def other_program(lab, station, monkeypatch):
+    """Another program, called bert, that drives the robot of the lab."""
+    link = station._link.another()
+    with monkeypatch.context() as patch:
+        patch.setattr("host.client.neighbours.client_id", lambda: "another program")
+        other = Robot(link, link.token, "bert")
+    with other:
+        other.lease()
+        station.step(0.3)
+        yield other

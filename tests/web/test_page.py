@@ -4,7 +4,6 @@ from math import pi
 
 import pytest
 
-from host.client.robot import Robot
 from host.errors import LeaseLost
 from tests.web.test_basins import Halves
 
@@ -135,23 +134,16 @@ def test_a_kick_of_wheels_at_rest_has_words_of_its_own(visit, station):
     visitor.reads(".verdict", "Guess: stop. Correct.")
 
 
-def test_a_page_takes_over_from_another_host(visit, station, monkeypatch):
-    link = station._link.another()
-    with monkeypatch.context() as patch:
-        patch.setattr("host.client.neighbours.client_id", lambda: "another program")
-        other = Robot(link, link.token, "bert")
-    with other:
-        other.lease()
-        station.step(0.3)
-        visitor = visit()
-        visitor.until("r.status.controller === 'bert' && !r.status.here")
-        visitor.page.get_by_role("button", name="Take over from bert").click()
-        visitor.until("r.status.here")
-        station.step(0.3)
-        visitor.until("r.status.controller !== 'bert'")
-        visitor.page.get_by_role("button", name="Take over").wait_for(state="hidden")
-        with pytest.raises(LeaseLost):
-            other.start()
+def test_a_page_takes_over_from_another_host(visit, station, other_program):
+    visitor = visit()
+    visitor.until("r.status.controller === 'bert' && !r.status.here")
+    visitor.page.get_by_role("button", name="Take over from bert").click()
+    visitor.until("r.status.here")
+    station.step(0.3)
+    visitor.until("r.status.controller !== 'bert'")
+    visitor.page.get_by_role("button", name="Take over").wait_for(state="hidden")
+    with pytest.raises(LeaseLost):
+        other_program.start()
 
 
 def test_a_preset_sets_what_the_paper_says(visit):

@@ -2,7 +2,6 @@
 
 import pytest
 
-from host.client.robot import Robot
 from host.errors import NotDone
 
 COPY_IT = "copy the token file here: kickctl robots add anna URI --token FILE"
@@ -47,20 +46,14 @@ def test_who_has_pressed_start_is_not_told_to_press_start(stopped, hint):
     visitor.reads(".notice.note", f"It does not start. {hint[0].upper()}{hint[1:]}.")
 
 
-def test_who_may_not_drive_is_told_the_buttons_of_the_page(visit, station, monkeypatch):
-    link = station._link.another()
-    with monkeypatch.context() as patch:
-        patch.setattr("host.client.neighbours.client_id", lambda: "another program")
-        other = Robot(link, link.token, "bert")
-    with other:
-        other.lease()
-        station.step(0.3)
-        visitor = visit()
-        visitor.until("r.status.controller === 'bert' && !r.status.here")
-        set_k(visitor)
-        visitor.reads(".notice.note", "Take over from bert")
-        said = visitor.page.inner_text(".notice.note p")
-        assert said.endswith("Anyone may stop the robot: press STOP.")
-        assert "--take-over" not in said
-        assert "kickctl" not in said
-        assert visitor.page.is_visible("#state >> text='Take over from bert'")
+@pytest.mark.usefixtures("other_program")
+def test_who_may_not_drive_is_told_the_buttons_of_the_page(visit):
+    visitor = visit()
+    visitor.until("r.status.controller === 'bert' && !r.status.here")
+    set_k(visitor)
+    visitor.reads(".notice.note", "Take over from bert")
+    said = visitor.page.inner_text(".notice.note p")
+    assert said.endswith("Anyone may stop the robot: press STOP.")
+    assert "--take-over" not in said
+    assert "kickctl" not in said
+    assert visitor.page.is_visible("#state >> text='Take over from bert'")
