@@ -16,8 +16,9 @@ _RUNNING = STATES.index("running")
 class KickWatch:
     """One kick from its event to its outcome.
 
-    It is decided when both wheels have settled, by the rules of host.logs.motion; WATCH_S after the
-    first moment at which that is possible it gives up waiting, and takes the headings of then.
+    It is decided when both wheels have settled, and it is known how long the kicked ones took, by
+    the rules of host.logs.motion; WATCH_S after the first moment at which that is possible it gives
+    up waiting, and takes the headings of then.
 
     Args:
         kick: The kick as the robot's event gives it.
@@ -67,20 +68,22 @@ class KickWatch:
         if over >= len(self._records):
             return
         waited_s = self._records[-1].t_s - self._records[over].t_s - JUDGED_S
-        if waited_s < 0.0 or (waited_s < WATCH_S and not self._settled()):
+        in_time = waited_s < WATCH_S
+        if waited_s < 0.0 or (in_time and not self._settled()):
             return
         times = [record.t_s for record in self._records]
         phis = {
             side: [getattr(record, side + "_phi_rad") for record in self._records]
             for side in WHEELS
         }
+        settling = [settling_of(phis[side], times, times[first]) for side in self._kick["wheels"]]
+        if in_time and None in settling:
+            return
         self.outcome = judge(
             self._kick,
             before={side: heading_of(phis[side][:first]) for side in WHEELS},
             after={side: heading_of(phis[side]) for side in WHEELS},
-            settling_s=[
-                settling_of(phis[side], times, times[first]) for side in self._kick["wheels"]
-            ],
+            settling_s=settling,
         )
 
     def _settled(self) -> bool:

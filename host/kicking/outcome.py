@@ -165,8 +165,14 @@ def kick_steps(
     yield Wait(WATCH_S, lambda: bool(log.kicks()) and log.kicks()[-1][1]["begin"] == tick)
     kick = log.kicks()[-1][1]
     tick_s = float(log.info["params"]["tick_s"])
+
+    def settling() -> list[float | None]:
+        return [settling_s(log, side, tick) for side in kick["wheels"]]
+
     yield Wait(kick["ticks"] * tick_s + JUDGED_S)
-    yield until_settled(robot, WATCH_S)
+    # Slow wheels already move evenly while they still gain speed; only later is it known when they
+    # had settled.
+    yield Wait(WATCH_S, lambda: all_settled(robot) and None not in settling())
     if robot.newest is not None and robot.newest.state != 1:
         require_running(robot)
     last = log.records[-1].tick
@@ -174,7 +180,7 @@ def kick_steps(
         kick,
         before={side: heading(log, side, tick - 1) for side in WHEELS},
         after={side: heading(log, side, last) for side in WHEELS},
-        settling_s=[settling_s(log, side, tick) for side in kick["wheels"]],
+        settling_s=settling(),
     )
 
 

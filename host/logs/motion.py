@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from host.logs.log import Log
 from robot.kicks import DIRECTION_TICKS, REST_TRAVEL_RAD, direction
 from robot.record import Record
-from sim_motor.settling import BAND, COUNT_RAD, ROUNDING, WINDOW_S
+from sim_motor.settling import BAND, COUNT_RAD, HALF_SPAN, ROUNDING, WINDOW_S
 from sim_motor.settling import settling_s as rule
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ def settling_s(log: Log, side: str, begin_tick: int) -> float | None:
         ValueError: The tick is not in the log.
     """
     first, row, end = _around(log, begin_tick)
-    run = log.records[first:end]
+    run = log.records[max(first, row - HALF_SPAN) : end]
     phi, times = [_phi(record, side) for record in run], [record.t_s for record in run]
     return settling_of(phi, times, log.records[row].t_s)
 

@@ -117,6 +117,13 @@ def test_a_watched_kick_answers_as_the_command_does(monkeypatch, tmp_path, capsy
     assert str(outcome).startswith("The kick reversed the robot: a phase kick of 4 ticks")
 
 
+def test_slow_wheels_are_watched_until_it_is_known_when_they_had_settled():
+    with kickctl.connect("sim://?k=1.2", seed=1) as robot:
+        outcome = robot.kick_and_watch("phase", ticks=5)
+    assert outcome.reversed
+    assert 0.9 < outcome.settling_s < 1.8
+
+
 def test_a_kick_that_does_not_reverse_says_what_helps():
     with kickctl.connect("sim://", seed=5) as robot:
         outcome = robot.kick_and_watch("phase", ticks=1)

@@ -77,6 +77,13 @@ def test_wheels_that_never_settle_are_judged_by_their_headings():
     assert found.outcome.settling_s is None
 
 
+def test_slow_wheels_are_watched_until_it_is_known_when_they_had_settled():
+    kick, records = kicked({"mode": "phase", "ticks": 5}, k=1.2)
+    outcome = watch(kick, records).outcome
+    assert outcome.reversed
+    assert 0.9 < outcome.settling_s < 1.8
+
+
 def test_without_records_around_the_kick_there_is_no_outcome(inversion):
     kick, records = inversion
     stopped = [*records[: BEGIN + 20], records[BEGIN + 20]._replace(state=3)]
