@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from host.logs.log_folder import under_free_name
-from host.logs.mcap_files import new_log
+from host.logs.mcap_files import LogError, new_log
 from host.logs.mcap_reading import LogFile, lost_event
 
 
@@ -43,18 +43,26 @@ def recover(path: str | Path, out: Path | None = None) -> Recovered:
         The new log.
 
     Raises:
-        LogError: There is no such log, or the new one cannot be written.
+        LogError: There is no such log, nothing of it can be read, or the new one cannot be written.
         OSError: The disk fails, or is full.
     """
     source = LogFile(path)
 
     def write(place: Path) -> Recovered:
         with new_log(place, source.info) as tap:
+            empty = True
             for item in source.stream(past_damage=True):
+                empty = False
                 if isinstance(item, dict):
                     tap.take_event(item)
                 else:
                     tap.take_records([item])
+            if empty and not source.whole:
+                raise LogError(
+                    f"no tick and no event of {source.path} can be read, so no log was written",
+                    "if the robot's program still runs, its black box has the last seconds:"
+                    " kickctl log pull",
+                )
             lost, total = source.lost, source.total
             if source.open_end and total is not None and not source.left_out:
                 due = 0 if source.last_tick is None else source.last_tick + 1

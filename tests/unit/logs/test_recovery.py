@@ -106,3 +106,13 @@ def test_what_holds_no_log_cannot_be_rebuilt(tmp_path):
     with pytest.raises(LogError, match="holds no log"):
         recover(cut)
     assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_log_of_which_nothing_can_be_read_leaves_no_empty_one(tmp_path):
+    whole = running(200).save(tmp_path / "log.mcap").read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(whole[:1000])
+    with pytest.raises(LogError, match="no tick and no event") as raised:
+        recover(cut)
+    assert "kickctl log pull" in raised.value.hint
+    assert len(list(tmp_path.iterdir())) == 2
