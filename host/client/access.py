@@ -8,6 +8,7 @@ from pathlib import Path
 
 from host.client.conversation import Conversation
 from host.errors import NoLink, RefusedByRobot, TokenRefused
+from host.link import robots_file
 from host.link.patience import Patience
 from host.link.transport import Link, LinkLost
 from host.util.arguments import need_path
@@ -97,6 +98,13 @@ def _introduce(
     talk.begin()
     send(talk.hello_frame())
     hear(link, talk, lambda: bool(talk.hello), patience_s)
+    if link.meant is not None and link.meant.is_other(talk.hello):
+        name = link.meant.name
+        raise NoLink(
+            f"{link.uri} does not lead to {name}: another robot has this address now",
+            f"is {name} switched on? Then `kickctl discover --save` finds it again. But if this is"
+            f" {name}, with another brick, delete its hardware_id in {robots_file.file_path()}",
+        )
     if talk.token is not None:
         send(talk.auth_frame())
         hear(link, talk, lambda: talk.trusted, patience_s)

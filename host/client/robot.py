@@ -18,8 +18,7 @@ from typing import Any, Self
 from host.client.access import find_token
 from host.client.watching import Watcher
 from host.errors import KickctlError, LeaseLost, NoLink, WrongUse
-from host.link.addresses import make_link
-from host.link.names import chosen, own_token
+from host.link.names import chosen, link_to, own_token
 from host.link.transport import Link
 from robot.record import STATES
 from robot.words import person
@@ -80,7 +79,7 @@ class Robot(Watcher):
                 "a program that only observes cannot take over", "leave observe or take_over out"
             )
         named = chosen(uri)
-        link = make_link(named.address, seed)
+        link = link_to(named, seed)
         if observe:
             return cls(link, None, name)
         own = own_token(named) if token is None else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import struct
 from typing import Any, NamedTuple
 
@@ -15,6 +16,8 @@ from robot.record import STATES, unpack
 
 # How long the robot may take to confirm a stop.
 CONFIRM_S = 5.0
+# How long a robot that has obeyed may take to say which one it is.
+WHO_S = 1.0
 # A line may garble or lose a frame; a second STOP changes nothing.
 REPEAT_S = 0.25
 _AT_REST = ("stopped", "fault")
@@ -95,12 +98,14 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
         What the robot says about the stop.
 
     Raises:
-        NoLink: Nobody has confirmed the stop, so the motors may be running.
+        NoLink: Nobody has confirmed the stop, or another robot than the one that is meant, so the
+            motors may be running.
         RobotFault: The robot's program does not answer. Its machine was reached by ssh, and says
             that the motors are off.
     """
-    frame, decoder = stop_frame(name or own_name()), wire.Decoder()
-    link = link.another()
+    name = name or own_name()
+    frame, decoder = stop_frame(name), wire.Decoder()
+    link, other = link.another(), False
     try:
         link.open()
         patience = Patience(link, patience_s or CONFIRM_S)
@@ -113,7 +118,10 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
             while (received := decoder.next()) is not None:
                 stopped = confirmation(*received)
                 if stopped is not None:
-                    return stopped
+                    other = _is_other(link, decoder, name)
+                    if link.meant is None or not other:
+                        return stopped
+                    raise _other_robot(link.uri, link.meant.name)
         failure = unconfirmed(link.uri, "no answer has come")
     except LinkLost as error:
         failure = unconfirmed(link.uri, f"the link broke ({error})")
@@ -122,7 +130,40 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
     finally:
         reached = _logged_in(link)
         link.close()
-    raise _halted(link, failure) if reached else failure
+    raise _halted(link, failure) if reached and not other else failure
+
+
+def _is_other(link: Link, decoder: Any, name: str) -> bool:
+    """Whether another robot than the one that is meant has answered; it is asked who it is.
+
+    A line leads where its cable does, and another program may be talking over it.
+    """
+    if link.meant is None or link.is_line:
+        return False
+    nonce = os.urandom(wire.NONCE_BYTES).hex()
+    hello = {"protocol": wire.PROTOCOL, "name": name[:40], "client": nonce, "nonce": nonce}
+    try:
+        link.send(bytes(wire.encode_json(wire.HELLO, hello)))
+        patience = Patience(link, WHO_S)
+        while not patience.is_over():
+            decoder.feed(link.receive(0.1))
+            while (received := decoder.next()) is not None:
+                kind, payload = received
+                if kind == wire.HELLO:
+                    return link.meant.is_other(wire.load(payload))
+    except (LinkLost, wire.BadMessage):
+        pass  # an older program, which does not say who it is
+    return False
+
+
+def _other_robot(uri: str, name: str) -> NoLink:
+    """The error for a stop that another robot has obeyed."""
+    return NoLink(
+        f"another robot has obeyed the stop: {uri} does not lead to {name} any more, whose motors"
+        " may still be running",
+        f"press the back button on {name}, or take out its battery. `kickctl discover --save`"
+        " finds it again",
+    )
 
 
 def _logged_in(link: Any) -> bool:

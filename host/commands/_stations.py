@@ -116,9 +116,8 @@ def station_of(
     from host.lab.station import CONTINUE, STOP
 
     if sim_options(robot.address) is None:
-        token = options.token or robot.token
-        rule = options.unattended or STOP
-        station = kind(robot.name, robot.address, rule, "real", token=token, twin=twin)
+        robot = robot._replace(token=options.token or robot.token)
+        station = kind(robot, options.unattended or STOP, "real", twin=twin)
     else:
         address = robot.address
         if walls_m is not None:
@@ -126,12 +125,10 @@ def station_of(
         walls = (sim_options(address) or {}).get("walls")
         desk = stack.enter_context(DeskRobot(child_options(address, options.seed)))
         station = kind(
-            robot.name,
-            desk.uri,
+            Chosen(robot.name, desk.uri, desk.token),
             options.unattended or CONTINUE,
             "simulated",
             walls_m=None if walls is None else float(walls),
-            token=desk.token,
             pull=desk.pull,
             twin=twin,
         )

@@ -16,8 +16,7 @@ from host.commands._watch_keys import FOOT, HELP_FOOT, HELP_KEY, KeyActions, in_
 from host.commands._watch_lines import lines
 from host.commands._watch_table import SeveralRobots
 from host.errors import KickctlError, NoLink
-from host.link.addresses import make_link
-from host.link.names import Chosen
+from host.link.names import Chosen, link_to
 
 _LOOK_S = 0.1
 # A robot that is being looked for when the watch ends need not be found any more.
@@ -75,7 +74,7 @@ class _Row:
         """Stop the robot, over a link of its own until it is connected."""
         if self._robot is not None:
             return self._robot.stop_at_once()
-        return stop_robot(make_link(self._chosen.address, self._options.seed))
+        return stop_robot(link_to(self._chosen, self._options.seed))
 
     def _say(self, words: str) -> None:
         self._add(f"{self.name}: {words}")

@@ -13,8 +13,8 @@ from host.commands._hints import name_robot
 from host.commands._side_by_side import Outcome, failed, show_each
 from host.commands._terminal import answer
 from host.errors import WrongUse
-from host.link.addresses import make_link, sim_options
-from host.link.names import ALL, Chosen, chosen, every, is_several, named
+from host.link.addresses import sim_options
+from host.link.names import ALL, Chosen, chosen, every, is_several, link_to, named
 
 HELP = (
     "stop the motors. It needs no token, and works with a robot of another version. Without"
@@ -66,7 +66,7 @@ def _stop(robot: Chosen, seed: int | None) -> Stopped:
             " in each command, and ends with it",
             _NAME_ONE,
         )
-    return stop_robot(make_link(robot.address, seed))
+    return stop_robot(link_to(robot, seed))
 
 
 def _stop_all(options: argparse.Namespace, names: list[str]) -> int:

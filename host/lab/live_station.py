@@ -14,6 +14,7 @@ from contextlib import suppress
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from host.client.access import find_token
 from host.client.robot import Robot
 from host.client.stop import Stopped, stop_robot
 from host.errors import KickctlError, NoLink, NotDone
@@ -30,7 +31,7 @@ from host.lab.station import (
 )
 from host.lab.stopper import BACK, LAB
 from host.lab.urgent import UrgentThread
-from host.link.addresses import make_link
+from host.link.names import Chosen, link_to, own_token
 from host.logs.tap import Event
 from host.util.own_name import own_name
 from robot.record import Record
@@ -75,12 +76,10 @@ class LiveStation(Station):
     """A robot that is reached by an address.
 
     Args:
-        name: What people call the robot.
-        uri: Its address.
+        robot: The robot, with its own token file if it has one.
         rule: What happens when nobody drives it any more: STOP or CONTINUE.
         label: 'simulated' or 'real'.
         walls_m: How far apart the walls are (m); None if there are none.
-        token: The path of its token file; None for the usual place.
         pull: Pulls a wheel of a simulated robot: gets its name and the angle (rad) or None.
         twin: Its simulated twin; None for none.
 
@@ -91,22 +90,20 @@ class LiveStation(Station):
 
     def __init__(
         self,
-        name: str,
-        uri: str,
+        robot: Chosen,
         rule: str,
         label: str,
         walls_m: float | None = None,
-        token: str | None = None,
         pull: Callable[[str, float | None], None] | None = None,
         twin: LiveTwin | None = None,
     ) -> None:
-        super().__init__(name, uri, rule, label, walls_m, twin)
+        super().__init__(robot.name, robot.address, rule, label, walls_m, twin)
         self.hand_possible = pull is not None
-        self._token = token
+        self._chosen = robot
         self._pull = pull
         self.met = threading.Event()
         self.again_s = AGAIN_S
-        self._is_line = make_link(uri).is_line
+        self._is_line = link_to(robot).is_line
         self._watcher: Robot | None = None
         self._driver: Robot | None = None
         self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
@@ -122,7 +119,7 @@ class LiveStation(Station):
         self._performs = False
         self._driven = False
         self._threads = [
-            UrgentThread(target=work, name=f"lab {what} {name}", daemon=True)
+            UrgentThread(target=work, name=f"lab {what} {robot.name}", daemon=True)
             for what, work in (("watch", self._watch), ("drive", self._drive), ("stop", self._halt))
         ]
 
@@ -173,8 +170,10 @@ class LiveStation(Station):
                     self._stop_wanted.set()
 
     def _connect(self, *, observe: bool) -> Robot:
-        token = None if observe else self._token
-        return Robot.connect(self.uri, token=token, name=self._who, observe=observe)
+        robot = self._chosen
+        link = link_to(robot)
+        token = None if observe else find_token(link, robot.token, own_token(robot))
+        return Robot(link, token, self._who)
 
     def _note_trouble(self, words: str) -> None:
         self.trouble = words
@@ -358,7 +357,7 @@ class LiveStation(Station):
         watcher = self._watcher
         if watcher is not None:
             return watcher.stop_at_once()
-        return stop_robot(make_link(self.uri), self._who)
+        return stop_robot(link_to(self._chosen), self._who)
 
     def hand(self, wheel: str, angle_rad: float | None) -> None:
         if self._pull is not None:

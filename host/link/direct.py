@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from typing import Self
 
-from host.link.transport import LinkLost
+from host.link.transport import LinkLost, Meant
 from robot.loop import Loop
 from robot.session import Session, new_id
 from robot.wire import TOKEN_BYTES, Decoder
@@ -27,6 +27,7 @@ class DirectLink:
     virtual = True
     opens_fast = True
     is_line = False
+    meant: Meant | None = None
 
     def __init__(self, uri: str, brick: SimBrick) -> None:
         self.uri = uri

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from host.errors import WrongUse, quotable
 from host.link import robots_file
-from host.link.addresses import FORMS, SIM, place_of, sim_options, with_host
+from host.link.addresses import FORMS, SIM, make_link, place_of, sim_options, with_host
+from host.link.transport import Link, Meant
 from host.util.arguments import need_text
 
 if TYPE_CHECKING:
@@ -32,11 +33,13 @@ class Chosen(NamedTuple):
         name: Its name; its address if it has no name.
         address: Its address.
         token: The path of its own token file; None if it has none that is known.
+        hardware_id: That of its machine; None if it is not known, or an address was named.
     """
 
     name: str
     address: str
     token: str | None = None
+    hardware_id: str | None = None
 
 
 def chosen(text: str | None) -> Chosen:
@@ -120,7 +123,7 @@ def every() -> list[Chosen]:
     Raises:
         WrongUse: None has one.
     """
-    robots = [Chosen(one.name, one.address, one.token) for one in robots_file.read().values()]
+    robots = [Chosen(*one) for one in robots_file.read().values()]
     if not robots:
         raise WrongUse(
             "no robot has a name on this computer yet",
@@ -141,8 +144,21 @@ def _find(text: str) -> Chosen:
             f"no robot is named '{text}', and it is no address of one",
             f"did you mean {close[0]}?" if close else f"{known}; {FORMS}",
         )
-    found = robots[text]
-    return Chosen(found.name, found.address, found.token)
+    return Chosen(*robots[text])
+
+
+def link_to(robot: Chosen, seed: int | None = None) -> Link:
+    """The link to a robot, not opened yet; `seed` is for a simulated one.
+
+    Who named it means that machine, and no other one that has got its address since.
+
+    Raises:
+        WrongUse: Its address is none.
+    """
+    link = make_link(robot.address, seed)
+    if robot.hardware_id is not None:
+        link.meant = Meant(robot.name, robot.hardware_id)
+    return link
 
 
 def own_token(robot: Chosen) -> str | None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Self
 
 from host.errors import NoLink, printable
-from host.link.transport import CONNECT_TIMEOUT_S, READ_BYTES, LinkLost
+from host.link.transport import CONNECT_TIMEOUT_S, READ_BYTES, LinkLost, Meant
 
 # What the kernel says of a line that another program has locked, or keeps for itself.
 _TAKEN = (errno.EAGAIN, errno.EBUSY)
@@ -36,6 +36,7 @@ class SerialLink:
     virtual = False
     opens_fast = False
     is_line = True
+    meant: Meant | None = None
 
     def __init__(self, uri: str, device: str, baud: int, *, shared: bool = False) -> None:
         import serial
@@ -52,7 +53,9 @@ class SerialLink:
 
         Who sends a stop must not have to wait until a line is free.
         """
-        return type(self)(self.uri, self.device, int(self._serial.baudrate), shared=True)
+        other = type(self)(self.uri, self.device, int(self._serial.baudrate), shared=True)
+        other.meant = self.meant
+        return other
 
     def open(self) -> None:
         """Open the line, closing it first if it is open. Raises NoLink."""

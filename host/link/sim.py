@@ -15,7 +15,7 @@ from typing import Any, Self
 from host.errors import WrongUse, quotable
 from host.link.settings import number_or_text
 from host.link.sim_settings import settings
-from host.link.transport import LinkLost
+from host.link.transport import LinkLost, Meant
 from host.util.arguments import need_seed
 from host.util.interrupts import uninterrupted
 from robot.errors import Refused
@@ -48,6 +48,7 @@ class SimLink:
     virtual = True
     opens_fast = True
     is_line = False
+    meant: Meant | None = None
 
     def __init__(
         self,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import select
 import socket
 import time
-from typing import Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 from host.errors import NoLink
 from host.util.installation import deploy_command
@@ -18,19 +18,37 @@ class LinkLost(Exception):
     """The other end is gone; `open` may find it again."""
 
 
+class Meant(NamedTuple):
+    """Which robot is meant by who names it.
+
+    Attributes:
+        name: Its name.
+        hardware_id: That of its machine.
+    """
+
+    name: str
+    hardware_id: str
+
+    def is_other(self, hello: dict[str, Any]) -> bool:
+        """Whether this is the hello of another machine. Older robots do not say which they are."""
+        return bool(hello.get("hardware_id", self.hardware_id) != self.hardware_id)
+
+
 class Link(Protocol):
     """A way to a robot.
 
     uri: the robot's address. virtual: whether the link carries its own robot, which has its own
     time. opens_fast: whether a second link is opened as quickly as a frame is sent, so that a stop
     had better take one of its own. is_line: whether it is a serial line, which one
-    connection at a time can use, and on which frames get lost.
+    connection at a time can use, and on which frames get lost. meant: which robot it should lead
+    to, since an address may pass to another one; None if whichever is there.
     """
 
     uri: str
     virtual: bool
     opens_fast: bool
     is_line: bool
+    meant: Meant | None
 
     def another(self) -> Link:
         """A second way to the same robot for a stop, not opened yet."""
@@ -60,6 +78,7 @@ class TcpLink:
     virtual = False
     opens_fast = True
     is_line = False
+    meant: Meant | None = None
 
     def __init__(self, uri: str, host: str, port: int) -> None:
         self.uri = uri
@@ -68,7 +87,9 @@ class TcpLink:
 
     def another(self) -> Self:
         """A second connection to the same port, not opened yet."""
-        return type(self)(self.uri, *self._address)
+        other = type(self)(self.uri, *self._address)
+        other.meant = self.meant
+        return other
 
     def open(self) -> None:
         """Close what was open, and connect. Raises NoLink."""

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from host.errors import WrongUse
 from host.experiments.registry import BODIES, TABLE
 from host.link.addresses import sim_options
-from host.link.names import chosen, own_token
+from host.link.names import address_of
 from host.perform.run import RESULTS, perform
 from host.runs import html_report as report
 from host.runs.claims import Claim
@@ -94,9 +94,7 @@ def reproduce(
         raise WrongUse(
             f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(claim_ids())
         )
-    robot = chosen(uri)
-    uri, token = robot.address, own_token(robot) if token is None else token
-    simulated = sim_options(uri) is not None
+    simulated = sim_options(address_of(uri)) is not None
     skipped = (
         {}
         if simulated or only

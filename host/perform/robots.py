@@ -17,6 +17,7 @@ from host.errors import LeaseLost, NoLink, NotDone, RobotFault
 from host.kicking.outcome import require_control
 from host.kicking.robot_claims import PAPER
 from host.link.addresses import SIM, sim_options
+from host.link.names import Chosen
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
 from host.runs.contract import Cell, Experiment, Row, Setting
@@ -33,7 +34,7 @@ PAUSE_S = 1.0
 @contextmanager
 def robots(
     experiment: Experiment,
-    uri: str,
+    chosen: Chosen,
     setting: Setting,
     token: str | None,
     logs: Path,
@@ -48,8 +49,8 @@ def robots(
         NotDone: The robot runs other code than this host.
     """
     logs.mkdir(exist_ok=True)
-    if sim_options(uri) is None:
-        with connect(uri, token=token) as robot:
+    if sim_options(chosen.address) is None:
+        with connect(chosen.name, token=token) as robot:
             robot.on_trouble = say
             _require_same_sources(robot)
             if take_over:
@@ -73,7 +74,7 @@ def robots(
 
     def simulate(cell: Cell) -> Outcome:
         world = {**setting.preset.scene, **experiment.world(cell)}
-        with connect(_in_world(uri, world), setting.seed_of(cell)) as robot:
+        with connect(_in_world(chosen.address, world), setting.seed_of(cell)) as robot:
             return _trial(experiment, cell, robot, setting, logs), []
 
     yield simulate

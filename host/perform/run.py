@@ -13,7 +13,7 @@ from typing import Any
 from host.errors import WrongUse
 from host.experiments.efforts import EFFORTS, in_words
 from host.link.addresses import SIM, make_link, sim_options
-from host.link.names import chosen, own_token
+from host.link.names import Chosen, chosen, own_token
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.drawings import USUAL, drawing, files
 from host.perform.sweep import FAILURES, Sweep, forgiving
@@ -106,18 +106,16 @@ def perform(
         "version": __version__,
         "sources": sources(),
     }
-    simulated: dict[str, str] | None = {}
-    if found.kind == STUDY:
+    robot, simulated = _robot_of(name, found.kind, uri)
+    if robot is None:
         out = out / "theory"
         setting = Setting(DEFAULT_SEED if seed is None else seed, options)
     else:
-        robot = chosen(uri)
-        uri, token = robot.address, own_token(robot) if token is None else token
-        simulated = _simulated(name, found.kind, uri)
+        token = own_token(robot) if token is None else token
         setting = setting_of(options, simulated, seed)
-        # By value: your own motor of this name may have other constants tomorrow.
+        # The motor by value: your own one of this name may have other constants tomorrow.
         motor = {} if simulated is None else {"motor": asdict(setting.constants)}
-        settings |= {"brick": uri, **motor}
+        settings |= {"brick": robot.address, **motor}
     settings["seed"] = setting.seed
     batch = simulated is not None and experiment.simulate is not None
     if scheduler:
@@ -138,7 +136,7 @@ def perform(
                 parts=(sweep or found).parts,
                 processes=found.kind == BODY,
             )
-        elif uri is not None and (missing := sum(cell not in study for cell in cells)):
+        elif robot is not None and (missing := sum(cell not in study for cell in cells)):
             if simulated is None and name in EFFORTS:
                 whole_s = sum(EFFORTS[name].seconds({**options, **at}) for at in points(swept))
                 busy_s = whole_s * missing / len(cells)
@@ -149,7 +147,7 @@ def perform(
             # On a real robot somebody may have stepped in: a cell that fails ends a sweep, too.
             failures = () if simulated is None else FAILURES
             with robots(
-                experiment, uri, setting, token, study.folder / "logs", say, take_over=take_over
+                experiment, robot, setting, token, study.folder / "logs", say, take_over=take_over
             ) as work:
                 do_cells(name, cells, study, work if sweep is None else forgiving(work, failures))
         rows = study.rows(cells)
@@ -171,6 +169,17 @@ def _require_cluster(scheduler: str, *, batch: bool) -> None:
             "--scheduler is for simulations, and this experiment runs on a robot", "leave it out"
         )
     require_scheduler(scheduler)
+
+
+def _robot_of(name: str, kind: str, uri: str | None) -> tuple[Chosen | None, dict[str, str] | None]:
+    """The robot of an experiment, and the options in its address as `_simulated` returns them.
+
+    A study has no robot, and none of these.
+    """
+    if kind == STUDY:
+        return None, {}
+    robot = chosen(uri)
+    return robot, _simulated(name, kind, robot.address)
 
 
 def _simulated(name: str, kind: str, uri: str) -> dict[str, str] | None:

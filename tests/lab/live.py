@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 from host.lab.live_station import LiveStation
 from host.lab.station import STOP
+from host.link.names import Chosen
 
 
 class Ears:
@@ -49,7 +50,7 @@ def controller(observer):
 
 @contextmanager
 def station_at(uri, token, rule=STOP):
-    station = LiveStation("anna", uri, rule, "simulated", token=token)
+    station = LiveStation(Chosen("anna", uri, token), rule, "simulated")
     station.pages = Ears()
     station.start()
     try:
