@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import threading
+from contextlib import suppress
 from queue import SimpleQueue
 from typing import Any
 
@@ -41,7 +42,12 @@ def run(options: argparse.Namespace) -> int:
         return _stop_all(options, _all_known())
     if is_several(text):
         # One that is unknown must not keep the others from being stopped.
-        return _stop_all(options, [name.strip() for name in text.split(",")])
+        names = [name.strip() for name in text.split(",")]
+        if ALL in names:
+            with suppress(WrongUse):  # no robot has a name, which is said of 'all'
+                known = _all_known()
+                names = [name for name in dict.fromkeys([*known, *names]) if name != ALL]
+        return _stop_all(options, names)
     robot = chosen(text)
     stopped = _stop(robot, options.seed)
     answer(options, _result(robot, stopped), stopped.sentence())

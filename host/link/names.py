@@ -112,6 +112,8 @@ def several(text: str) -> list[Chosen]:
     for name in names:
         if not name:
             raise WrongUse(f"a name is missing in '{quotable(text)}'", "write it as in anna,bert")
+        if name == ALL:
+            raise WrongUse(f"'{ALL}' stands for all robots with a name", f"write {ALL} alone")
         if names.count(name) > 1:
             raise WrongUse(f"'{quotable(name)}' stands twice in '{quotable(text)}'", "name it once")
     return [_find(name) for name in names]

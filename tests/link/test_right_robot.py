@@ -69,6 +69,19 @@ def test_a_stop_that_another_robot_has_obeyed_is_none(bert, capsys, named):
     assert "anna any more, whose motors may still be running" in said.err + said.out
 
 
+@pytest.mark.parametrize("names", ["all,{}", "{},all"])
+def test_a_stop_of_all_and_one_more_stops_them_all(capsys, names):
+    machines = [TcpRobot(link_loss="continue") for _ in range(2)]
+    try:
+        named, other = (f"tcp://127.0.0.1:{machine.port}" for machine in machines)
+        robots_file.add("anna", named)
+        assert main(["--brick", names.format(other), "stop"]) == 0
+        assert [state(machine) for machine in machines] == ["stopped"] * 2
+    finally:
+        for machine in machines:
+            machine.close()
+
+
 @pytest.mark.parametrize("line", ["status", "kick --mode phase", "experiment wall", "record 1"])
 def test_every_verb_refuses_another_robot(bert, capsys, line):
     assert main(["--brick", "anna", *line.split()]) == 3

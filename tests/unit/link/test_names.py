@@ -271,6 +271,7 @@ def test_several_robots(by_hand):
         ("anna,anan", "no robot is named 'anan'"),
         ("anna,,bert", "a name is missing"),
         ("anna,anna", "stands twice"),
+        ("anna,all", "'all' stands for all robots with a name"),
     ):
         with pytest.raises(WrongUse, match=words):
             several(text)
