@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from host.errors import WrongUse
 from host.experiments.registry import BODIES, TABLE
 from host.link.addresses import sim_options
-from host.link.names import address_of
+from host.link.names import chosen
 from host.perform.run import RESULTS, perform
 from host.runs import html_report as report
 from host.runs.claims import Claim
@@ -94,7 +94,8 @@ def reproduce(
         raise WrongUse(
             f"there is no claim {', '.join(unknown)}", "there are " + ", ".join(claim_ids())
         )
-    simulated = sim_options(address_of(uri)) is not None
+    robot = chosen(uri)
+    simulated = sim_options(robot.address) is not None
     skipped = (
         {}
         if simulated or only
@@ -124,11 +125,11 @@ def reproduce(
                 )
         return claims
 
-    claims = {**run(TABLE, uri), **run(STUDIES, None)}
+    claims = {**run(TABLE, robot.name), **run(STUDIES, None)}
     at_preset: dict[str, Claim] = {}
     if simulated:
         open_to_choice = {name: entry for name, entry in TABLE.items() if OPTION in entry.options}
-        at_preset = run(open_to_choice, uri, **{OPTION.name: PAPER})
+        at_preset = run(open_to_choice, robot.name, **{OPTION.name: PAPER})
     name = "-".join(["report", *(wanted if only else [])])
     found = [claims[number] for number in wanted]
     page: Path | None = Path(out) / f"{name}.html"
