@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
@@ -47,8 +48,10 @@ def draw(rows: list[Row], findings: Findings) -> Figure:
         panels[1, 1].set_xlabel("phase of the wheel when the kick begins (°)")
         bar = figure.colorbar(image, ax=panels, shrink=0.9, pad=0.02)
         bar.set_label("reversed (%); beside each row: at all phases together")
+        gaps = any(np.ma.is_masked(axes.images[0].get_array()) for axes in panels.flat)
         figure.suptitle(
-            f"Which kicks reverse a wheel, and when: {numbers['kicks']:,} kicks; the best framed",
+            f"Which kicks reverse a wheel, and when: {numbers['kicks']:,} kicks; the best"
+            f" framed{'; white: not tried' if gaps else ''}",
             fontsize=16,
         )
     return figure

@@ -260,3 +260,19 @@ def test_on_a_robot_the_phase_is_that_of_the_kicks_first_tick():
     assert [entry["phase"] for entry in found] == [phase_bin(phi) for phi in phis]
     assert [entry["tried"] for entry in found] == [1, 1]
     assert len(kick_map.cells({"kicks": 72}, batch=False)) == 2 * len(KINDS) * len(LENGTHS)
+
+
+@pytest.mark.parametrize("tried", ["all", "all but one bin"])
+def test_the_figure_says_what_is_white_where_something_is(tried):
+    from host.figures.robot.kick_map import draw
+
+    everything = [
+        row
+        for mode, sign in ((POSITION, 0), (PHASE, 1), (PHASE, -1))
+        for before in (1, -1)
+        for ticks in LENGTHS
+        for row in rows(mode, sign, ticks, 1.0, before)
+    ]
+    some = everything if tried == "all" else everything[:-1]
+    figure = draw(some, kick_map.report(some, Setting(1, {"trials": len(some)})))
+    assert ("white: not tried" in figure.get_suptitle()) == (tried != "all")
