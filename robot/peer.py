@@ -12,37 +12,7 @@ READ_BYTES = 2048
 FULL_BYTES = 16384
 # Its records wait in the black box once this much waits here.
 STREAM_BYTES = 8192
-# How a stop begins. No JSON holds these bytes, so a stop is found without decoding all frames that
-# come before it, which could take the brick longer than its watchdog bears.
-_STOP_MARK = wire.SYNC + bytes([wire.STOP])
-_LENGTH_BYTES = 2
-# How many beginnings of stops may be noise. Each costs a checksum, and a peer may send them on
-# purpose.
-_TRIES = 4
 _LATER = (errno.EAGAIN, errno.EWOULDBLOCK, errno.EINTR)
-
-
-class _Frames(wire.Decoder):
-    """What came over a link, as frames."""
-
-    def find_stop(self):
-        """Find a whole stop among all that is left.
-
-        Returns:
-            What it carries, bytes; None if there is none.
-        """
-        data = bytes(self._buffer)
-        at = data.find(_STOP_MARK)
-        for _ in range(_TRIES):
-            if at < 0:
-                break
-            begin = at + len(_STOP_MARK) + _LENGTH_BYTES
-            length = int.from_bytes(data[begin - _LENGTH_BYTES : begin], "big")
-            payload = data[begin : begin + min(length, wire.MAX_PAYLOAD)]
-            if data.startswith(wire.encode(wire.STOP, payload), at):
-                return payload
-            at = data.find(_STOP_MARK, at + 1)
-        return None
 
 
 class Peer(object):
@@ -73,7 +43,7 @@ class Peer(object):
         self.session = session
         self.since = self.heard = self.moved = since
         self.lasting = self.first = self.seated = lasting
-        self.decoder = _Frames()
+        self.decoder = wire.Decoder()
         self.frame = None
         self.out = bytearray()
         self.due = self.streaming = False

@@ -33,6 +33,10 @@ _TRIES = range(MAX_FALSE_STARTS)
 # Frame types. A number is never given to another type.
 HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP, BEAT = range(1, 10)
 TYPES = (HELLO, AUTH, ASK, COMMAND, REPLY, EVENT, SAMPLES, STOP, BEAT)
+# What a stop that had no turn begins with, and how many such beginnings are tried at a link's end,
+# within one tick.
+_STOP_MARK = SYNC + bytes([STOP])
+_STOP_TRIES = range(4)
 
 NONCE_BYTES = 16
 TOKEN_BYTES = 32
@@ -240,6 +244,28 @@ class Decoder(object):
                     return kind, body[_HEADER_BYTES:]
             self._discard(1)
         self._discard(len(buffer))
+        return None
+
+    def find_stop(self):
+        """Find a whole stop among all that is left, which stays as it is.
+
+        No JSON holds the bytes with which a stop begins. So it is found without decoding all that
+        comes before it, which could take the brick longer than its watchdog bears.
+
+        Returns:
+            What the stop carries, bytes; None if there is none.
+        """
+        data = bytes(self._buffer)
+        at = data.find(_STOP_MARK)
+        for _ in _STOP_TRIES:
+            if at < 0:
+                break
+            begin = at + _HEADER_BYTES
+            length = int.from_bytes(data[at + len(_STOP_MARK) : begin], "big")
+            payload = data[begin : begin + min(length, MAX_PAYLOAD)]
+            if data.startswith(encode(STOP, payload), at):
+                return payload
+            at = data.find(_STOP_MARK, at + 1)
         return None
 
     def _discard_to_sync(self):
