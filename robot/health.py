@@ -128,7 +128,8 @@ def main():
     arguments.add("token", token.default_path(), "its token file", "FILE")
     options = arguments.parse(sys.argv[1:])
     try:
-        words, fault = _describe(examine(options.host, options.port, token.load(options.token)))
+        secret = token.load(options.token, token.DELETE)
+        words, fault = _describe(examine(options.host, options.port, secret))
     except token.TokenError as error:
         return _report("the robot's program cannot be asked: {}".format(error), UNWELL)
     except _TROUBLE as error:

@@ -16,7 +16,17 @@ DELETE = "delete it, and a new one is made"
 
 
 class TokenError(Exception):
-    """The token file cannot be used; the message says why and what to do."""
+    """The token file cannot be used. The message says why, and what to do if that is known.
+
+    Args:
+        why: Why, in words; also an attribute.
+        remedy: What to do, in words; also an attribute. Empty if only a person can know it.
+    """
+
+    def __init__(self, why, remedy=""):
+        super().__init__("; ".join(filter(None, (why, remedy))))
+        self.why = why
+        self.remedy = remedy
 
 
 def default_path():
@@ -59,7 +69,7 @@ def load(path, remedy=COPY):
         raise TokenError("the token file {} cannot be read: {}".format(path, error)) from error
     if mode & (stat.S_IRWXG | stat.S_IRWXO):
         raise TokenError(
-            "others may read the token file {}; close it: chmod 600 {}".format(path, path)
+            "others may read the token file {}".format(path), "close it: chmod 600 {}".format(path)
         )
     try:
         token = binascii.unhexlify(text.strip())
@@ -67,7 +77,7 @@ def load(path, remedy=COPY):
         token = b""
     if len(token) != TOKEN_BYTES:
         raise TokenError(
-            "{} holds no token of {} hexadecimal digits; {}".format(path, 2 * TOKEN_BYTES, remedy)
+            "{} holds no token of {} hexadecimal digits".format(path, 2 * TOKEN_BYTES), remedy
         )
     return token
 
@@ -105,5 +115,5 @@ def load_or_make(path):
 def _require_place(path):
     if not path:
         raise TokenError(
-            "this user has no home folder for the token: name its file by KICK_TOKEN or --token"
+            "this user has no home folder for the token", "name its file by KICK_TOKEN or --token"
         )

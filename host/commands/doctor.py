@@ -146,7 +146,7 @@ def _token(path: str | None) -> Iterator[Finding]:
     try:
         load(chosen)
     except TokenError as error:
-        yield Finding("token", str(error), "mend the file, or delete it and copy the robot's again")
+        yield Finding("token", error.why, error.remedy or "copy the robot's token file here again")
     else:
         yield Finding("token", chosen)
 

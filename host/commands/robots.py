@@ -133,10 +133,8 @@ def _checked(token: str) -> Path:
     try:
         load(str(path))
     except TokenError as error:
-        hint = "then add the robot again"
-        if error.__cause__ is not None or not path.is_file():  # its words do not say what to do
-            hint = f"name a file that holds the robot's token, {hint}"
-        raise WrongUse(str(error), hint) from error
+        remedy = error.remedy or "name a file that holds the robot's token"
+        raise WrongUse(error.why, f"{remedy}, then add the robot again") from error
     return path
 
 
