@@ -103,7 +103,8 @@ def _introduce(
         raise NoLink(
             f"{link.uri} does not lead to {name}: another robot has this address now",
             f"is {name} switched on? Then `kickctl discover --save` finds it again. But if this is"
-            f" {name}, with another brick, delete its hardware_id in {robots_file.file_path()}",
+            f" {name}, with another brick, delete {name}'s line hardware_id in"
+            f" {robots_file.file_path()}",
         )
     if talk.token is not None:
         send(talk.auth_frame())
