@@ -210,7 +210,7 @@ def test_every_failure_has_an_error(kickctl, monkeypatch, verb):
     def fail(*_, **__):
         raise NoLink("nobody is there", "look: kickctl status")
 
-    monkeypatch.setattr("host.client.robot.make_link", fail)
+    monkeypatch.setattr("host.link.names.make_link", fail)
     monkeypatch.setattr("host.commands.stop.make_link", fail)
     monkeypatch.setattr("host.perform.robots.connect", fail)
     monkeypatch.setattr("host.link.discovery.look_around", lambda seconds: [])
