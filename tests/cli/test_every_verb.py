@@ -211,7 +211,6 @@ def test_every_failure_has_an_error(kickctl, monkeypatch, verb):
         raise NoLink("nobody is there", "look: kickctl status")
 
     monkeypatch.setattr("host.link.names.make_link", fail)
-    monkeypatch.setattr("host.commands.stop.make_link", fail)
     monkeypatch.setattr("host.perform.robots.connect", fail)
     monkeypatch.setattr("host.link.discovery.look_around", lambda seconds: [])
     words = next(words for words in LEAVES if words[0] == verb)
