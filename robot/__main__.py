@@ -66,7 +66,8 @@ def main():
     """Run the robot's program until it is interrupted.
 
     Returns:
-        The exit status: 0 when it was ended, 2 if it could not start.
+        The exit status: 0 when it was ended, 1 if a motor did not obey then, 2 if it could not
+        start.
     """
     known = arguments("The robot's program on the brick.", _everywhere())
     known.add("left", _LEFT, "port of the left motor", "PORT", choices=PORTS)

@@ -64,6 +64,7 @@ class Loop(object):
         real_time, memory_locked: What the kernel grants, see robot.schedule; None: not asked.
         done: Set it to end `run`.
         motor: The model of both motors; empty if they do not say it, or differ.
+        unstopped: The wheels whose motor did not obey the latest stop, 'left' and 'right'.
         incurable: Why no fault can be cleared while this program runs; empty if one can.
         epoch: When the loop was made, on the clock, s. Times in records count from here.
         deadline: When the next tick is to begin, on the clock, s.
@@ -81,7 +82,7 @@ class Loop(object):
         self.missed = self.overruns = self.clamped = 0
         self.real_time = self.memory_locked = None
         self.done = False
-        self.incurable = ""
+        self.incurable, self.unstopped = "", []
         models = {motor.model for motor in motors}
         self.motor = models.pop() if len(models) == 1 else ""
         self._power = Power(battery)
@@ -163,9 +164,14 @@ class Loop(object):
     def _drive(self, side, polarity, tick, dt_s):
         """One wheel's tick, from its angle to its duty cycle in %. Raises MotorFault."""
         wheel, motor = side.wheel, side.motor
-        wheel.phi = phi = polarity * motor.angle_rad()
-        if not isfinite(phi):
-            raise MotorFault("the {} motor's angle is no number: {}".format(wheel.side, phi))
+        angle = motor.angle_rad()
+        try:
+            known = isfinite(angle)
+        except (TypeError, OverflowError):  # an engineer's own motor
+            known = False
+        if not known:
+            raise MotorFault("the {} motor's angle is no number: {!r}".format(wheel.side, angle))
+        wheel.phi = phi = polarity * angle
         side.travel.append(phi)
         if self.safety.state != RUNNING:
             wheel.rest()
@@ -378,16 +384,17 @@ class Loop(object):
             self.blackbox.note("fault", reason=self.safety.reason)
 
     def _stop_motors(self):
-        """Stop every motor, also if another one does not obey."""
+        """Stop every motor, also if another one does not obey; `unstopped` says which did not."""
         self._kick = None
-        broken = None
+        broken, self.unstopped = None, []
         for side in self._sides:
             side.wheel.rest()
             try:
                 side.motor.stop()
             except MotorFault as fault:
+                self.unstopped.append(side.wheel.side)
                 self._fail(str(fault))
-            except Exception as error:  # noqa: BLE001 - the other motor has to stop too
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - the other motor has to stop too
                 broken = error
         if broken is not None:
             raise broken

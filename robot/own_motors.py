@@ -80,7 +80,7 @@ def stop_all(motors):
         try:
             if motor.emergency_stop is not None:
                 motor.emergency_stop()
-        except Exception as error:  # noqa: BLE001 - the other motor has to stop too
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - the other motor has to stop too
             failed.append("{} motor: {}".format(side, _words(error)))
     return failed
 
@@ -145,7 +145,9 @@ def _try_out(side, motor):
     what = "angle_rad of the {} motor".format(side)
     angle = _call(what, motor.angle_rad)
     if isinstance(angle, bool) or not isinstance(angle, (int, float)) or not isfinite(angle):
-        raise NoMotors("{} returned {!r}: let it return the angle in rad".format(what, angle))
+        raise NoMotors(
+            "{} returned {!r}: let it return the angle in rad, as a float".format(what, angle)
+        )
     if not isinstance(motor.model, str):
         raise NoMotors(
             "the model of the {} motor is {!r}: make it a name, or leave it out".format(

@@ -89,7 +89,8 @@ def run(options, motors, battery, clock, seed, panels=(), brick=False):
             times a second, and the program is kept from being swapped out, if the kernel allows it.
 
     Returns:
-        The exit status: 0 when it was ended, 2 if it could not start.
+        The exit status: 0 when it was ended, 1 if a motor did not obey then, 2 if it could not
+        start.
     """
     try:
         secret, new = token.load_or_make(options.token)
@@ -118,6 +119,12 @@ def run(options, motors, battery, clock, seed, panels=(), brick=False):
     finally:
         for panel in panels:
             panel.close()
+    if loop.unstopped:
+        _warn(
+            "the {} motor did not obey when the program ended, and may run on ({}): look, and cut"
+            " its power if it does".format(" and the ".join(loop.unstopped), loop.safety.reason)
+        )
+        return 1
     return 0
 
 
@@ -185,7 +192,11 @@ def _attach(server, argument):
 
 def _serve(options, loop, server, port, panels):
     """Run the loop and serve hosts until a signal ends it."""
-    for number in (signal.SIGINT, signal.SIGTERM):
+    ends = [signal.SIGINT, signal.SIGTERM]
+    # Who wants the program to outlive its terminal has made it deaf to this one.
+    if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:
+        ends.append(signal.SIGHUP)
+    for number in ends:
         signal.signal(number, lambda number, frame: setattr(loop, "done", True))
     if not options.idle:
         try:
@@ -214,14 +225,17 @@ def _serve(options, loop, server, port, panels):
                 panel.serve(loop)
         server.serve(timeout_s)
 
-    _run(loop, server, serve)
+    try:
+        _run(loop, server, serve)
+    except SystemExit as error:  # of a motor's own code, and perhaps with status 0
+        raise RuntimeError("a part of the robot's program has ended it") from error
 
 
 def _run(loop, server, serve):
     """Run the loop. If it fails, say why to the hosts before they hear no more."""
     try:
         loop.run(serve)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         try:
             loop.fail("the robot's program failed ({!r}); start it again".format(error))
         finally:

@@ -225,7 +225,12 @@ class Session(object):
     def _stop(self, payload):
         tick = self._loop.stop(person(self.name or _name_in(payload)) + " stopped it")
         safety = self._loop.safety
-        result = {"tick": tick, "state": STATES[safety.state], "reason": safety.reason}
+        result = {
+            "tick": tick,
+            "state": STATES[safety.state],
+            "reason": safety.reason,
+            "unstopped": self._loop.unstopped,
+        }
         return wire.encode_json(wire.REPLY, {"id": None, "result": result})
 
     def _hello(self, message):

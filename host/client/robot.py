@@ -185,8 +185,11 @@ class Robot(Watcher):
 
         Raises:
             NoLink: Nobody has confirmed the stop, so the motors may be running.
+            RobotFault: A motor has not obeyed it.
         """
-        return self.stop_at_once().tick
+        stopped = self.stop_at_once()
+        stopped.require_obeyed()
+        return stopped.tick
 
     def clear(self) -> int:
         """Leave a fault whose cause is mended.

@@ -12,6 +12,7 @@ from host.link.transport import Link, LinkLost
 from host.util.installation import deploy_command
 from host.util.own_name import own_name
 from robot import wire
+from robot.kicks import WHEELS
 from robot.record import STATES, unpack
 
 # How long the robot may take to confirm a stop.
@@ -27,15 +28,22 @@ class Stopped(NamedTuple):
     """What the robot has said about a stop.
 
     tick: the first tick of the stop, or a tick in which the motors were off. state: the robot's
-    state, 'unknown' if an older program answered. reason: why it is in that state.
+    state, 'unknown' if an older program answered. reason: why it is in that state. unstopped: the
+    wheels whose motor did not obey, as far as the robot says so.
     """
 
     tick: int
     state: str
     reason: str
+    unstopped: tuple[str, ...] = ()
 
     def sentence(self) -> str:
         """What is known, and no more: a robot in fault may have a motor that does not obey."""
+        if self.unstopped:
+            return (
+                f"the {' and the '.join(self.unstopped)} motor has NOT obeyed the stop, and may be"
+                f" running: {self.reason}"
+            )
         if self.state == "fault":
             return (
                 f"the robot has obeyed the stop before tick {self.tick}, and is in fault:"
@@ -44,6 +52,11 @@ class Stopped(NamedTuple):
         if self.state == "unknown":
             return f"the robot, which runs another release, has obeyed the stop in tick {self.tick}"
         return f"motors stopped before tick {self.tick}; the robot is {self.state}"
+
+    def require_obeyed(self) -> None:
+        """Raise RobotFault if a motor did not obey."""
+        if self.unstopped:
+            raise RobotFault(self.sentence(), "press the back button, or cut the motors' power")
 
 
 def stop_frame(name: str) -> bytes:
@@ -78,10 +91,11 @@ def confirmation(kind: int, payload: bytes) -> Stopped | None:
 
 def answered(result: dict[str, Any]) -> Stopped:
     """A robot's answer to STOP. Raises KeyError, TypeError or ValueError if it is none."""
-    said = {"state": "unknown", "reason": "", **result}
+    said = {"state": "unknown", "reason": "", "unstopped": [], **result}
     if said["state"] not in (*_AT_REST, "unknown"):
         raise ValueError(f"a stopped robot is not '{said['state']}'")
-    return Stopped(int(said["tick"]), str(said["state"]), printable(str(said["reason"])))
+    unstopped = tuple(side for side in WHEELS if side in said["unstopped"])
+    return Stopped(int(said["tick"]), str(said["state"]), printable(str(said["reason"])), unstopped)
 
 
 def stop_robot(link: Link, name: str | None = None, patience_s: float | None = None) -> Stopped:

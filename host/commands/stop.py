@@ -65,14 +65,16 @@ def _all_known() -> list[str]:
 
 
 def _stop(robot: Chosen, seed: int | None) -> Stopped:
-    """Stop one robot. Raises KickctlError if nobody has confirmed it."""
+    """Stop one robot. Raises KickctlError if nobody has confirmed it, or a motor did not obey."""
     if sim_options(robot.address) is not None:
         raise WrongUse(
             "no robot of its own is named, so none has been stopped: a simulated robot is embedded"
             " in each command, and ends with it",
             _NAME_ONE,
         )
-    return stop_robot(link_to(robot, seed))
+    stopped = stop_robot(link_to(robot, seed))
+    stopped.require_obeyed()
+    return stopped
 
 
 def _stop_all(options: argparse.Namespace, names: list[str]) -> int:

@@ -10,8 +10,9 @@ from contextlib import contextmanager
 
 import pytest
 
+from host.cli import main
 from host.client.robot import connect
-from host.errors import NoLink
+from host.errors import NoLink, RobotFault
 from host.logs.log import Log
 from tests.lint.sources import ROOT
 
@@ -19,8 +20,8 @@ PATIENCE_S = 20.0
 
 # Motors in files, as a kernel shows them: another process sees the duty cycle, and can stop them.
 FILES = """
-import os, time
-from robot.motors import Motor
+import os, sys, time
+from robot.motors import Motor, MotorFault
 
 class FileMotor(Motor):
     model = "file"
@@ -33,6 +34,8 @@ class FileMotor(Motor):
             time.sleep(3600)
         if os.path.exists("raise"):
             raise ValueError("no such register")
+        if os.path.exists("exit"):
+            sys.exit(0)
         return 0.5
 
     def write_duty(self, duty_pct):
@@ -40,6 +43,8 @@ class FileMotor(Motor):
             file.write(str(duty_pct))
 
     def stop(self):
+        if os.path.exists("deaf") and self.name == "left":
+            raise MotorFault("the left motor is deaf")
         self.write_duty(0)
 
 class Watched(FileMotor):
@@ -122,6 +127,59 @@ def test_a_robot_says_which_motor_it_has_and_that_nobody_else_can_stop_it(tmp_pa
     assert process.returncode == 0
     assert "the watchdog cannot stop the left and the right motor" in err
     assert "`kickctl stop`" in err
+    assert duties(tmp_path) == ["0", "0"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM, signal.SIGINT])
+def test_the_end_of_its_terminal_and_all_that_asks_it_to_end_stop_the_motors(tmp_path, number):
+    with program(tmp_path, "--motors", "motor_files:bare") as process:
+        assert line_of(process.stdout).startswith("READY")
+        wait_until(lambda: runs(tmp_path))
+        process.send_signal(number)
+        assert process.wait(PATIENCE_S) == 0
+        assert duties(tmp_path) == ["0", "0"]
+
+
+def test_a_program_that_is_to_outlive_its_terminal_does(tmp_path):
+    deaf = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with program(tmp_path, "--motors", "motor_files:bare") as process:
+            assert line_of(process.stdout).startswith("READY")
+            process.send_signal(signal.SIGHUP)
+            (tmp_path / "exit").touch()  # the next tick ends it, and no signal has
+            assert process.wait(PATIENCE_S) == 1
+    finally:
+        signal.signal(signal.SIGHUP, deaf)
+
+
+@pytest.mark.parametrize("factory", ["bare", "watched"])
+def test_a_motor_that_does_not_obey_in_the_end_is_said_and_the_status_is_1(tmp_path, factory):
+    with program(tmp_path, "--motors", "motor_files:" + factory) as process:
+        uri = line_of(process.stdout).split()[1]
+        wait_until(lambda: runs(tmp_path))
+        (tmp_path / "deaf").touch()
+        with connect(uri, observe=True) as robot:
+            assert robot.stop_at_once().unstopped == ("left",)
+            with pytest.raises(RobotFault, match="left motor has NOT obeyed the stop"):
+                robot.stop()
+        assert main(["--brick", uri, "stop"]) == 5
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 1
+    assert "the left motor did not obey when the program ended, and may run on" in err
+    assert "the left motor is deaf" in err
+    assert (duties(tmp_path)[0] == "0") == (factory == "watched")  # which the watchdog has stopped
+
+
+def test_a_motor_that_ends_the_program_stops_both_and_is_said(tmp_path):
+    with program(tmp_path, "--motors", "motor_files:watched") as process:
+        assert line_of(process.stdout).startswith("READY")
+        wait_until(lambda: runs(tmp_path))
+        (tmp_path / "exit").touch()
+        _, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 1
+    assert "a part of the robot's program has ended it" in err
+    assert "motor_files.py" in err
     assert duties(tmp_path) == ["0", "0"]
 
 

@@ -23,7 +23,7 @@ def test_an_observer_may_look_and_stop_and_nothing_else(rig):
         refused("token", observer.ask, name)
     assert rig.fingerprint() == before
     assert not observer.session.closing
-    assert observer.stop() == (3, "stopped", "'tester' stopped it")
+    assert observer.stop() == (3, "stopped", "'tester' stopped it", ())
     rig.run(1)
     assert (rig.last.state, rig.duties) == (3, (0, 0))
 
@@ -36,6 +36,7 @@ def test_a_stop_frame_needs_no_hello_no_token_and_no_sense(rig):
             "tick": 3,
             "state": "stopped",
             "reason": "somebody without a name stopped it",
+            "unstopped": [],
         },
     }
     assert rig.duties == (0, 0)

@@ -124,7 +124,7 @@ def test_a_stop_over_a_serial_line_passes_a_request_that_is_never_answered(tmp_p
             blocked = Blocked(robot, monkeypatch)
             stopped = robot.stop_at_once()
             assert blocked.thread.is_alive()
-            assert stopped == (stopped.tick, "stopped", "'serial' stopped it")
+            assert stopped == Stopped(stopped.tick, "stopped", "'serial' stopped it")
             blocked.end()
     finally:
         machine.close()

@@ -206,15 +206,17 @@ def none():
     assert own_motors.stop_all(none) == []
 
 
-@pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf])
-def test_an_angle_that_is_no_number_stops_the_robot(wrong):
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf, None, "2", [0.5], 10**400])
+def test_an_angle_that_is_no_number_stops_the_robot_and_is_in_no_record(wrong):
     rig = Rig()
     rig.loop.start()
     rig.motors[1].angle_rad = lambda: wrong
     rig.run()
     assert rig.loop.safety.state == FAULT
-    assert rig.loop.safety.reason == "the right motor's angle is no number: " + str(wrong)
+    said = "the right motor's angle is no number: " + repr(wrong)
+    assert rig.loop.safety.reason.startswith(said[:80])
     assert rig.duties == (0, 0)
+    assert all(math.isfinite(value) for record in rig.records for value in record)
 
 
 def test_the_robot_says_its_motor_if_both_are_of_one_model():

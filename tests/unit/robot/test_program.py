@@ -52,20 +52,21 @@ class Server:
         self.served += 1
 
 
+@pytest.mark.parametrize("error", [TypeError, SystemExit])
 @pytest.mark.parametrize("where", ["read", "stop", "serve"])
-def test_a_programming_error_stops_the_motors_and_names_itself(where):
+def test_a_programming_error_stops_the_motors_and_names_itself(where, error):
     """Also one in what stops a motor, or in what serves the hosts."""
     rig, server = Rig(), Server()
     rig.loop.start()
 
     def broken(*arguments):
-        raise TypeError("the dog ate it")
+        raise error("the dog ate it")
 
     if where == "read":
         rig.motors[0].angle_rad = broken
     elif where == "stop":
         rig.motors[0].angle_rad = rig.motors[0].stop = broken
-    with pytest.raises(TypeError, match="the dog ate it"):
+    with pytest.raises(error, match="the dog ate it"):
         program._run(rig.loop, server, broken if where == "serve" else server.serve)
     assert "the dog ate it" in rig.loop.safety.reason
     assert rig.motors[1].done[-1] == "stop"
