@@ -15,6 +15,10 @@ LOOP_PRIORITY, WATCHDOG_PRIORITY = 10, 11
 # mlockall(2): what is there, and what is to come.
 _CURRENT_AND_FUTURE = 1 | 2
 COLLECT_S = 1.0
+# The share of each period that the program sleeps whatever hosts want, if it has that priority.
+# The kernel halts one that never sleeps, by default for 50 ms in each second, which is more than a
+# tick: sched(7), sched_rt_runtime_us.
+REST_SHARE = 0.08
 
 
 def take_priority(priority):

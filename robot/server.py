@@ -4,8 +4,10 @@ Who controls the robot comes first, then all others by turns. A stop waits for n
 """
 
 import select
+import time
+from types import SimpleNamespace
 
-from robot import wire
+from robot import schedule, wire
 from robot.bare import socket
 from robot.peer import Peer
 from robot.safety import HELD, RUNNING
@@ -37,15 +39,6 @@ LINE_RETRY_S = 1.0
 # Nobody pauses for this long within a frame: what looks like the beginning of one was noise.
 LINE_SILENCE_S = 0.2
 _LOST = select.EPOLLHUP | select.EPOLLERR
-
-
-class _Line(object):
-    """A serial line to be kept open."""
-
-    def __init__(self, open_line):
-        self.open = open_line
-        self.peer = None
-        self.next_try = 0.0
 
 
 class Server(object):
@@ -129,7 +122,7 @@ class Server(object):
         Args:
             open_line: Returns the open line, a link as for `adopt`, or raises OSError.
         """
-        self._lines.append(_Line(open_line))
+        self._lines.append(SimpleNamespace(open=open_line, peer=None, next_try=0.0))
 
     def close(self):
         """Send everybody what is left, as far as the links take it, and close them."""
@@ -146,10 +139,16 @@ class Server(object):
         """Answer and send what is due. What does not fit into the time waits for the next call.
 
         Args:
-            timeout_s: How long to wait for more (s).
+            timeout_s: How long it is until the next tick (s).
         """
         now = self._now()
-        until = now + timeout_s
+        loop = self._loop
+        rest_s = schedule.REST_SHARE * loop.params.tick_s if loop.real_time else 0.0
+        if 0.0 < timeout_s <= rest_s:
+            time.sleep(timeout_s)
+            self._hear(now)
+            return
+        end, until = now + timeout_s, now + max(0.0, timeout_s - rest_s)
         for line in self._lines:
             if line.peer is None and now >= line.next_try:
                 self._open(line, now)
@@ -166,7 +165,7 @@ class Server(object):
             accepted = self._hear(until)
             worked = self._turns.queue and self._work(until)
             more = worked or (accepted and self._now() <= until)
-        left_s = until - self._now() if timeout_s > 0.0 else 0.0
+        left_s = end - self._now() if timeout_s > 0.0 else 0.0
         if left_s > 0.0:
             # An epoll object waits for whole milliseconds only.
             select.select((self._poll.fileno(),), (), (), left_s)
