@@ -97,3 +97,9 @@ def test_the_page_lists_all_requests_and_frames():
     assert rows("| type | name | from | payload |") == [str(kind) for kind in wire.TYPES]
     for key in record.describe()[0]:
         assert f"`{key}`" in PROTOCOL.partition("A record holds")[2]
+
+
+def test_the_page_has_every_field_of_a_kick_in_an_event():
+    table = PROTOCOL.partition("The `kick` of an event and of a snapshot says all")[2]
+    rows = re.findall(r"^\| (`.*?) \|", table, re.MULTILINE)
+    assert set(re.findall(r"`(\w+)`", " ".join(rows))) == set(kicks.Kick.__slots__)
