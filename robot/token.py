@@ -115,5 +115,6 @@ def load_or_make(path):
 def _require_place(path):
     if not path:
         raise TokenError(
-            "this user has no home folder for the token", "name its file by KICK_TOKEN or --token"
+            "no file for the token is named, or this user has no home folder for it",
+            "name its file by KICK_TOKEN or --token",
         )
