@@ -165,6 +165,8 @@ def _is_other(link: Link, decoder: Any, name: str) -> bool:
                 kind, payload = received
                 if kind == wire.HELLO:
                     return link.meant.is_other(wire.load(payload))
+                if kind == wire.REPLY and "error" in wire.load(payload):
+                    return False  # it has no place for another host
     except (LinkLost, wire.BadMessage):
         pass  # an older program, which does not say who it is
     return False

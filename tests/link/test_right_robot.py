@@ -113,6 +113,13 @@ def test_the_lab_says_so_and_its_stop_does_not_claim_to_have_stopped_it(bert):
     assert state(bert) == "stopped"
 
 
+def test_a_robot_without_a_place_for_who_stops_it_has_stopped(bert, monkeypatch):
+    monkeypatch.setattr("robot.server.PLACES", 0)
+    monkeypatch.setattr("host.client.stop.WHO_S", 1e9)
+    assert main(["--brick", "anna", "stop"]) == 0
+    assert state(bert) == "stopped"
+
+
 def test_an_older_program_that_hangs_up_on_a_hello_has_stopped():
     with socket.create_server(("127.0.0.1", 0)) as server:
 
