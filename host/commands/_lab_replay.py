@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from host.commands._log_damage import damage_facts, damage_status
 from host.commands._options import refuse_unused
-from host.commands._outputs import add_force, path_argument, require_place
+from host.commands._outputs import add_force, require_place
 from host.commands._terminal import answer, print_result, say, show_next
 from host.errors import WrongUse
 from host.util.numbers import Number
+from host.util.paths import path_argument
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from host.commands._log_damage import damage_facts, damage_status
-from host.commands._outputs import add_force, answer_beside, path_argument, require_place
+from host.commands._outputs import add_force, answer_beside, require_place
 from host.errors import NotDone, WrongUse
 from host.util.numbers import Number
+from host.util.paths import path_argument
 
 if TYPE_CHECKING:
     from host.logs.curves import Curves

@@ -13,13 +13,6 @@ from host.util.whole_files import descriptor_of, require_folder, require_free
 _STANDARD_OUTPUT = 1
 
 
-def path_argument(text: str) -> Path:
-    """The path that an option takes. Raises argparse.ArgumentTypeError if it is empty."""
-    if not text:
-        raise argparse.ArgumentTypeError("cannot be empty; give the name of a file or a folder")
-    return Path(text)
-
-
 def add_force(parser: argparse._ActionsContainer) -> None:
     """Add --force, which lets a command replace files."""
     parser.add_argument(

@@ -11,11 +11,12 @@ from shlex import join
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from host.commands._failures import os_words
-from host.commands._outputs import add_force, path_argument, require_place
+from host.commands._outputs import add_force, require_place
 from host.commands._recording import figure_words
 from host.commands._terminal import print_result, say, show
 from host.errors import KickctlError, NotDone, WrongUse, mark_kept
 from host.util.numbers import Number
+from host.util.paths import path_argument
 from host.util.whole_files import write_text
 
 if TYPE_CHECKING:

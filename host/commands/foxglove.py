@@ -7,11 +7,12 @@ import time
 from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING
 
-from host.commands._outputs import add_force, answer_beside, path_argument, require_place
+from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._stations import add_port, add_unattended, network_address, robots_of, station_of
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
 from host.util.extras import need
+from host.util.paths import path_argument
 from host.util.whole_files import write_text
 
 if TYPE_CHECKING:

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from host.commands._options import add_take_over
-from host.commands._outputs import path_argument
 from host.commands._recording import conclude, recorded
 from host.commands._terminal import robot_of
 from host.errors import NotDone, WrongUse
 from host.util.angles import parse_angle
 from host.util.numbers import Number, parse_number
+from host.util.paths import path_argument
 from robot.errors import Refused
 from robot.kick_requests import CHANGED, parse
 from robot.kicks import (

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 from host.commands import _log_pictures
 from host.commands._log_damage import damage_facts, damage_status
 from host.commands._options import EVERY, common
-from host.commands._outputs import add_force, answer_beside, path_argument, require_place
+from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._terminal import answer, robot_of, say, show
 from host.errors import NotDone, WrongUse
+from host.util.paths import path_argument
 from host.util.whole_files import descriptor_of, require_folder
 
 if TYPE_CHECKING:

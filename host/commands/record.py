@@ -7,11 +7,11 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from host.commands._outputs import path_argument
 from host.commands._terminal import answer, robot_of
 from host.errors import Interrupted, KickctlError, RobotFault, mark_kept, printable
 from host.logs.tap import Span
 from host.util.numbers import Number
+from host.util.paths import path_argument
 from robot.record import Record
 
 if TYPE_CHECKING:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from host.commands._options import add_take_over
 from host.commands._terminal import essential, print_table, say, show
 from host.errors import NotDone
+from host.util.paths import path_argument
 
 if TYPE_CHECKING:
     from host.runs.claims import Claim
@@ -23,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--only", metavar="IDS", help="only these claims, such as R5,M7")
     parser.add_argument(
         "--out",
+        type=path_argument,
         default="results",
         metavar="FOLDER",
         help="folder for the results (default %(default)s)",

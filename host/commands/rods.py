@@ -4,9 +4,10 @@ import argparse
 from pathlib import Path
 
 from host.commands._options import add_take_over
-from host.commands._outputs import add_force, answer_beside, path_argument, require_place
+from host.commands._outputs import add_force, answer_beside, require_place
 from host.commands._recording import recorded
 from host.commands._terminal import robot_of
+from host.util.paths import path_argument
 
 HELP = "a film of a wheel's transmission rods, slowed down, while a kick reverses it"
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from host.errors import WrongUse
 from host.util.arguments import shown
 from host.util.numbers import Values
+from host.util.paths import path_argument
 
 # Options of some runs that people look for in others, and what to tell them there.
 ELSEWHERE = {
@@ -172,6 +173,7 @@ def add_options(parser: argparse.ArgumentParser, entry: Entry) -> None:
             parser.add_argument(flag, dest=name, nargs="?", const=True, help=argparse.SUPPRESS)
     parser.add_argument(
         "--out",
+        type=path_argument,
         default="results",
         metavar="FOLDER",
         help=(

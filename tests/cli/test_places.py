@@ -32,6 +32,27 @@ def test_a_name_is_not_empty(kickctl, line):
     assert "cannot be empty" in err
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        *(line.partition("{}")[0] + "{}" for line in WRITERS),
+        "body car --out {}",
+        "theory hopf --out {}",
+        "experiment starts --out {}",
+        "body car --film {}",
+        "rods --out {}",
+        "reproduce --out {}",
+        "foxglove --layout {}",
+    ],
+)
+def test_a_dash_is_no_name(kickctl, line):
+    """Who types it means standard output, and found a file named '-'."""
+    status, answer, err = kickctl(*line.format("-").split())
+    assert (status, answer) == (2, "")
+    assert "cannot be '-', which would be a file of that name" in err
+    assert not Path("-").exists()
+
+
 def test_a_scheduler_that_is_none_is_refused_before_the_run_has_a_folder(kickctl):
     status, _, err = kickctl("theory", "hopf", "--scheduler", "nonsense")
     assert status == 2
