@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 CARS_OF_A_TRAIN = 5
 # How wheels stand at the start: the rods push all of them forward, or at random angles.
 PUSHED_FORWARD, RANDOM = "pushed", "random"
+# What is said of what acts on the controller alone.
+WITHOUT_CONTROLLER = "with a constant torque the wheels have no controller"
+ONE_OF_THEM = "leave one of the two out"
 
 
 class BodyRequest(NamedTuple):
@@ -81,7 +84,8 @@ def build_scene(request: BodyRequest) -> mujoco.MjSpec:
     """The scene with the cars in it, not yet compiled.
 
     Raises:
-        WrongUse: if MuJoCo is not installed, or the scene is impossible.
+        WrongUse: if MuJoCo is not installed, the scene is impossible, or parts of the request
+            exclude each other.
     """
     need("mujoco", "bodies")
     from sim_motor.bodies.model import compose
@@ -90,6 +94,9 @@ def build_scene(request: BodyRequest) -> mujoco.MjSpec:
     for name, value in numbers.items():
         if value is not None and not isfinite(value):
             raise WrongUse(f"{name} cannot be {value!r}", "give a finite number")
+    for name in ("a", "k", "tau"):
+        if request.torque is not None and getattr(request, name) is not None:
+            raise WrongUse(f"{WITHOUT_CONTROLLER}, so {name} does nothing", ONE_OF_THEM)
     own = choose_preset(request)
     with value_errors_as_wrong_use():
         return compose(

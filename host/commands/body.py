@@ -115,7 +115,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Simulate, and keep what there is even if it ends early."""
-    from host.bodies.build import CARS_OF_A_TRAIN, BodyRequest, build_body, build_scene
+    from host.bodies.build import (
+        CARS_OF_A_TRAIN,
+        ONE_OF_THEM,
+        WITHOUT_CONTROLLER,
+        BodyRequest,
+        build_body,
+        build_scene,
+    )
     from host.bodies.keeping import BLOCK
     from host.bodies.kicks import parse_kick
     from host.runs.folder import digest
@@ -123,6 +130,8 @@ def run(options: argparse.Namespace) -> int:
 
     if options.body == "car" and options.cars not in (None, 1):
         raise WrongUse(f"a car is one car, not {options.cars}", "kickctl body train --cars N")
+    if options.torque is not None and options.kick:
+        raise WrongUse(f"{WITHOUT_CONTROLLER}, so a kick does nothing", ONE_OF_THEM)
     cars = options.cars
     if cars is None:
         cars = 1 if options.body == "car" else CARS_OF_A_TRAIN

@@ -16,6 +16,8 @@ from sim_motor.bodies.presets import HERE, Preset
 SCENES = ("flat", "walls", "octagon", "slopes", "funnel", "halfpipe", "hills", "box")
 # Scenes whose slopes can be given another angle.
 SLOPED = ("slopes", "funnel")
+# Scenes with walls. Own scenes may have geoms whose names begin with 'wall', too.
+WALLED = ("walls", "octagon")
 SIDES = ("left", "right")
 # A wall against which a robot of the program of 2019 bounces about as in LPZRobots: time constant
 # (s) and damping ratio.
@@ -56,7 +58,8 @@ def compose(
         timestep: MuJoCo's, s.
 
     Raises:
-        ValueError: A file is no MJCF, or there is no scene or number of cars as given.
+        ValueError: A file is no MJCF, or there is no scene or number of cars as given, or it has no
+            slopes or walls for `angle` and `bouncy`.
     """
     if scene not in SCENES and not scene.endswith(".xml"):
         raise ValueError(
@@ -220,9 +223,12 @@ def _shape(
         for geom in spec.geoms:
             if geom.name.startswith("slope_"):
                 _tilt(geom, angle)
-    for geom in spec.geoms:
-        if bouncy and geom.name.startswith("wall"):
-            geom.solref[:2] = BOUNCY
+    if bouncy:
+        walls = [geom for geom in spec.geoms if geom.name.startswith("wall")]
+        if not walls:
+            raise ValueError(f"the scene '{scene}' has no walls; {' and '.join(WALLED)} have")
+        for wall in walls:
+            wall.solref[:2] = BOUNCY
     if scene == "octagon":
         _strew(spec, rng)
     elif scene == "hills":

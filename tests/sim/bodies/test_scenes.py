@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from host.bodies.build import BodyRequest, build_body, build_scene
-from sim_motor.bodies.model import SCENES
+from host.errors import WrongUse
+from sim_motor.bodies.model import BOUNCY, SCENES, WALLED
 from sim_motor.bodies.presets import HERE, preset
 from tests.sim.bodies.body_rows import column
 
@@ -40,6 +41,19 @@ def test_slopes_take_their_angle():
             foot = model.geom(f"slope_{side}").pos
             # The plane passes through the floor 4 m from the middle.
             assert abs(np.dot(matrix[[2, 5, 8]], foot)) == pytest.approx(4.0 * sin(angle), rel=1e-4)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_walls_are_bouncy_where_there_are_walls(scene):
+    request = BodyRequest(scene=scene, bouncy=True)
+    if scene not in WALLED:
+        with pytest.raises(WrongUse, match="no walls"):
+            build_scene(request)
+        return
+    model = build_scene(request).compile()
+    walls = [geom for geom in map(model.geom, range(model.ngeom)) if geom.name.startswith("wall")]
+    assert len(walls) >= 2
+    assert all(tuple(wall.solref) == BOUNCY for wall in walls)
 
 
 def test_boxes_and_hills_come_from_the_seed():
