@@ -33,22 +33,21 @@ def open_study(
 ) -> Iterator[Study]:
     """Yields the study of a run.
 
-    Says how many cells are complete, at first and if the run ends early.
+    Says how many cells are complete. If the run ends early, the error has that as a note: so it is
+    part of the hint, in words and in JSON.
     """
     study = Study(results, settings)
-    name = settings["experiment"]
-    say(
-        f"{name}: {sum(cell in study for cell in cells)} of {len(cells)} cells complete in"
-        f" {study.folder}"
-    )
+
+    def complete() -> str:
+        done = sum(cell in study for cell in cells)
+        return f"{done} of {len(cells)} cells complete in {study.folder}"
+
+    say(f"{settings['experiment']}: {complete()}")
     try:
         yield study
     except (KickctlError, KeyboardInterrupt, OSError) as error:
         mark_kept(error, study.folder)
-        say(
-            f"{sum(cell in study for cell in cells)} of {len(cells)} cells complete in"
-            f" {study.folder}; the same command resumes the run"
-        )
+        error.add_note(f"{complete()}; the same command resumes the run")
         raise
     finally:
         study.close()

@@ -99,11 +99,11 @@ def results(folder):
 def test_a_run_that_was_interrupted_anywhere_comes_to_the_same(toy, tmp_path, cut):
     whole = perform("toy", "sim://", out=tmp_path / "whole")
     toy.trouble = {cut: [KeyboardInterrupt()]}
-    said = []
-    with pytest.raises(KeyboardInterrupt):
-        perform("toy", "sim://", out=tmp_path / "cut", say=said.append)
-    assert f"{cut} of {COUNT} cells complete in" in said[-1]
-    assert "resumes the run" in said[-1]
+    with pytest.raises(KeyboardInterrupt) as interrupt:
+        perform("toy", "sim://", out=tmp_path / "cut")
+    (note,) = interrupt.value.__notes__
+    assert f"{cut} of {COUNT} cells complete in" in note
+    assert "resumes the run" in note
     toy.done.clear()
     resumed = perform("toy", "sim://", out=tmp_path / "cut")
     assert toy.done == list(range(cut, COUNT))
@@ -221,10 +221,9 @@ def test_on_a_robot_a_try_into_which_a_fault_came_is_repeated_and_counted_apart(
 
 def test_a_robot_that_stays_in_fault_ends_the_run_and_keeps_what_was_measured(toy, desk, tmp_path):
     toy.trouble = {2: [RobotFault("its cable came off")] * run.TRIES}
-    said = []
-    with pytest.raises(RobotFault):
-        perform("toy", desk[0], out=tmp_path, say=said.append)
-    assert f"2 of {COUNT} cells complete" in said[-1]
+    with pytest.raises(RobotFault) as fault:
+        perform("toy", desk[0], out=tmp_path)
+    assert f"2 of {COUNT} cells complete" in fault.value.__notes__[-1]
     assert perform("toy", desk[0], out=tmp_path)["trials"] == COUNT
 
 
@@ -242,10 +241,9 @@ def test_a_link_that_ends_in_the_middle_is_told_and_what_was_measured_kept(
         return real(cell, robot, log, setting)
 
     toy.trial = trial
-    said = []
-    with pytest.raises(NoLink, match="did not come back"):
-        perform("toy", uri, out=tmp_path, say=said.append)
-    assert f"3 of {COUNT} cells complete" in said[-1]
+    with pytest.raises(NoLink, match="did not come back") as loss:
+        perform("toy", uri, out=tmp_path)
+    assert f"3 of {COUNT} cells complete" in loss.value.__notes__[-1]
 
 
 def test_a_robot_that_runs_other_code_is_refused_before_anything_moves(

@@ -87,6 +87,17 @@ def test_the_place_of_what_is_kept_is_in_the_error(kickctl, monkeypatch, line, p
     assert error["kept"] in err
 
 
+@pytest.mark.parametrize("line", ["theory hopf", "experiment starts --starts 2"])
+def test_that_a_run_can_be_resumed_is_in_the_error(kickctl, monkeypatch, line):
+    monkeypatch.setattr("host.runs.folder.Study.keep", interrupted)
+    hint = end_of(kickctl, *line.split(), "--seed", "1", "--json")
+    assert "cells complete in results" in hint
+    assert "the same command resumes the run" in hint
+    status, out, err = kickctl(*line.split(), "--seed", "1")
+    assert (status, out) == (130, "")
+    assert err.endswith(f"kickctl: interrupted\n  {hint}\n")
+
+
 @pytest.mark.parametrize("method", ["info", "wait", "status"])
 def test_before_the_kick_it_is_said_that_none_was_sent(kickctl, monkeypatch, method):
     monkeypatch.setattr(Robot, method, interrupted)
