@@ -101,8 +101,13 @@ class LogFile:
         if self.breaks_off:
             place = "at its beginning" if self.last_tick is None else f"after tick {self.last_tick}"
             lost = self.lost
-            gone = "what follows is" if lost is None else f"{lost:,} of {self.total:,} ticks are"
-            found.append(f"breaks off or is damaged {place}; {gone} missing")
+            # Without an index nobody knows if anything follows: perhaps only the index is lost.
+            gone = (
+                "what may follow was not read"
+                if lost is None
+                else f"{lost:,} of {self.total:,} ticks are missing"
+            )
+            found.append(f"breaks off or is damaged {place}; {gone}")
         if self.left_out:
             more = f", and {self.left_out - 1} more" if self.left_out > 1 else ""
             found.append(f"{self.first_left_out} is left out{more}")

@@ -94,6 +94,19 @@ def test_whoever_reads_a_damaged_log_says_what_is_missing(kickctl, log, damage, 
     assert (status, "recover" in err, "damage" in err) == (0, False, False)
 
 
+@pytest.mark.parametrize("kept", [lambda size: size - 10, lambda size: size * 2 // 3])
+def test_a_log_without_its_end_is_not_said_to_lack_ticks(kickctl, log, kept):
+    """Perhaps only the end of the index is lost: the reader cannot know."""
+    path, data = Path("short.mcap"), log.read_bytes()
+    path.write_bytes(data[: kept(len(data))])
+    last = Log.load(path).records[-1].tick
+    status, _, err = kickctl("log", "replay", str(path))
+    assert status == 1
+    words = f"breaks off or is damaged after tick {last}; what may follow was not read\n"
+    assert words in err
+    assert "missing" not in err
+
+
 def test_recover_goes_on_behind_a_damaged_place_and_says_how_much_is_lost(kickctl, log):
     path, ticks = with_a_damaged_place(log), len(Log.load(log))
     status, answer, err = kickctl("log", "recover", path.name, "--json")
