@@ -18,6 +18,8 @@ DRIVER = "lego-ev3-l-motor"
 RAD_PER_DEGREE = pi / 180
 READ_BYTES = 16
 STOP_TRIES = 3
+# There is no motor now, or none was found.
+_ABSENT = (errno.ENODEV, errno.ENOENT, errno.EBADF)
 # The text of every valid duty cycle. Any other value is a MotorFault here, instead of the kernel's
 # EINVAL.
 DUTY_TEXT = {duty: b"%d" % duty for duty in range(-100, 101)}
@@ -182,7 +184,7 @@ class Ev3Motor(Motor):
                 number, ("the kernel reports: {}".format(error), "clear the fault")
             )
             self._lost = "{}: {}: {}".format(self._label, cause, remedy)
-        return MotorFault(self._lost)
+        return MotorFault(self._lost, absent=number in _ABSENT)
 
     def _missing(self, error):
         # python-ev3dev2 has one error for a motor that is not there or disappears just now, and one

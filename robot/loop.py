@@ -392,7 +392,7 @@ class Loop(object):
             try:
                 side.motor.stop()
             except MotorFault as fault:
-                self.unstopped.append(side.wheel.side)
+                self.unstopped += [] if fault.absent else [side.wheel.side]
                 self._fail(str(fault))
             except (Exception, SystemExit) as error:  # noqa: BLE001 - the other motor has to stop too
                 broken = error

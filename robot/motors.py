@@ -10,7 +10,17 @@ HELD_UP_S = 0.1
 
 
 class MotorFault(Exception):
-    """A motor does not obey or answer; the message says which, why and what to do."""
+    """A motor does not obey or answer; the message says which, why and what to do.
+
+    Args:
+        message: In words.
+        absent: Whether there is no motor that this program could drive, or has driven; also an
+            attribute.
+    """
+
+    def __init__(self, message, absent=False):
+        super().__init__(message)
+        self.absent = absent
 
 
 class Motor:

@@ -80,6 +80,7 @@ def test_a_cable_that_comes_off_is_a_fault_until_it_is_back_and_cleared(live):
         assert "left motor (outB): its cable came off" in robot.status()["reason"]
         assert text(live, "outC", "state") == ""
         assert text(live, "outC", "duty_cycle") == "0"
+        assert robot.stop_at_once().unstopped == ()  # no motor is there that could run
         with pytest.raises(RobotFault, match="there is none"):
             robot.clear()
         with pytest.raises(RobotFault, match="is in fault"):

@@ -224,10 +224,23 @@ def test_a_stop_gets_through_io_errors(live, motor, times):
 def test_a_stop_that_does_not_get_through_says_so(live, motor):
     motor.write_duty(60)
     inject(live, "eio outB 3")
-    with pytest.raises(MotorFault, match="EIO"):
+    with pytest.raises(MotorFault, match="EIO") as deaf:
         motor.stop()
+    assert not deaf.value.absent
     motor.stop()
     assert text(motor_folder(live, "outB"), "duty_cycle") == "0"
+
+
+@needs_mount
+def test_a_motor_that_is_gone_need_not_be_stopped(live, motor):
+    motor.write_duty(60)
+    inject(live, "unplug outB")
+    for _ in range(2):  # its files are open, and then they are closed
+        with pytest.raises(MotorFault, match="cable|none") as gone:
+            motor.stop()
+        assert gone.value.absent
+        with pytest.raises(MotorFault):
+            motor.find()
 
 
 @needs_mount
