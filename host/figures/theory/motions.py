@@ -13,6 +13,7 @@ COLOUR: dict[MotionKind, str] = {
     "rolling": COLOURS[0],
     "chaotic": COLOURS[1],
     "quasi-periodic": COLOURS[2],
+    "undecided": COLOURS[5],
 }
 # Those of motions that do not repeat themselves are small.
 MARKER: dict[MotionKind, str] = {
@@ -21,6 +22,7 @@ MARKER: dict[MotionKind, str] = {
     "rolling": "o",
     "chaotic": ".",
     "quasi-periodic": "x",
+    "undecided": "+",
 }
 LETTERS = {"tau": r"$\tau$", "a": "$a$", "k": "$k$", "f": "$f$", "I": "$I$"}
 UNITS = {"tau": " s", "f": " s", "I": " s²"}

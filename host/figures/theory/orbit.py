@@ -55,7 +55,7 @@ def _draw(axes: Axes, rows: list[OrbitRow], column: Coordinate) -> None:
                 MARKER[kind],
                 color=colour,
                 markersize=size,
-                markeredgewidth=0.5 if MARKER[kind] == "x" else 0,
+                markeredgewidth=0.5 if MARKER[kind] in "x+" else 0,
             )
 
 

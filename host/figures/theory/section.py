@@ -69,7 +69,7 @@ def _draw_points(section: Axes, returns: Axes, rows: list[CrossingRow], numbers:
         along, across = _column(own, name), _column(own, "section_x2")
         kind, size = own[0]["kind"], 8.0 if own[0]["period"] else 2.5
         style: Any = {"color": COLOUR[kind], "marker": MARKER[kind], "linestyle": ""}
-        style |= {"markersize": size, "markeredgewidth": 0.5 if MARKER[kind] == "x" else 0}
+        style |= {"markersize": size, "markeredgewidth": 0.5 if MARKER[kind] in "x+" else 0}
         section.plot(along, across, **style)
         returns.plot(along[:-1], along[1:], **style)
     rotation = numbers["rotation"]

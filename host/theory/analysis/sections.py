@@ -15,13 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.theory.analysis.attractors import KINDS, STILL, Kind
+from host.theory.analysis.fixpoints import fixpoint
 from host.theory.engine.crossings import Surface
 from host.theory.model.laws import array_rates, law_of
 from host.theory.model.wheel import OMEGA, PHI, Array, Wheel
 
-MotionKind = Literal[Kind, "quasi-periodic"]
+MotionKind = Literal[Kind, "quasi-periodic", "undecided"]
 REST, BACK, ROLL, CHAOS = KINDS
 TORUS: MotionKind = "quasi-periodic"
+UNDECIDED: MotionKind = "undecided"
 # Points are the same if they differ by less than SAME, potentials in 1 and speeds in units of the
 # greatest one; those of a period differ from each other by more than APART. In between, a wheel
 # still settles.
@@ -30,6 +32,10 @@ SAME, APART = 1e-6, 1e-3
 CLOSER = 0.9
 # A wheel that does not repeat itself is chaotic if its largest exponent is above this (1/s).
 GROWS = 0.01
+# A swing still settles if all of it gets smaller from each of PARTS parts of the time to the next
+# one, or larger. It comes to rest if it shrinks as fast as close to rest, to this part of that
+# rate.
+PARTS, AS_AT_REST = 8, 0.5
 # The longest period that is looked for, and the fewest pairs of points by which a wheel is known to
 # repeat itself: one that has settled, and one that still settles.
 LONGEST, FEWEST, FEWEST_SETTLING = 64, 2, 16
@@ -136,7 +142,7 @@ class Motion(NamedTuple):
     """What a wheel does in the end.
 
     Attributes:
-        kind: at rest, forth-and-back, rolling, chaotic or quasi-periodic.
+        kind: at rest, forth-and-back, rolling, chaotic, quasi-periodic, or undecided.
         repeat: how it repeats itself; None if it does not, or has no points on the section.
     """
 
@@ -157,7 +163,7 @@ def motion(found: Points, ended: Array, *, settling: bool = False) -> Motion | N
     """
     if not len(found.times_s):
         return Motion(REST if abs(ended[OMEGA]) < STILL else ROLL, None)
-    sizes = np.abs(found.states[:, [PHI, OMEGA]]).max(axis=1)
+    sizes = _sizes(found)
     if sizes[-1] < STILL:
         return Motion(REST, None) if sizes[-1] <= sizes[0] else None
     cycle = repeat(found, settling=settling)
@@ -166,6 +172,38 @@ def motion(found: Points, ended: Array, *, settling: bool = False) -> Motion | N
     return cycle and Motion(ROLL if cycle.quarters else BACK, cycle)
 
 
-def irregular(exponent: float) -> Motion:
-    """The motion of a wheel that does not repeat itself, by its largest exponent, 1/s."""
-    return Motion(CHAOS if exponent > GROWS else TORUS, None)
+def irregular(found: Points, exponent: float, wheel: Wheel) -> Motion:
+    """The motion of a wheel that does not repeat itself.
+
+    A torus has a largest exponent of 0, but so have a cycle and a rest that are close to a Hopf
+    bifurcation, to which a wheel takes long to settle.
+
+    Args:
+        found: Its points on the section.
+        exponent: Its largest exponent, 1/s.
+        wheel: The wheel.
+
+    Returns:
+        At rest, chaotic, quasi-periodic or undecided.
+    """
+    if exponent > GROWS:
+        return Motion(CHAOS, None)
+    if not _still_settles(found):
+        return Motion(TORUS, None)
+    at_rest = float(fixpoint(0.0, wheel).eigenvalues[0].real)
+    rests = at_rest < 0.0 and abs(exponent - at_rest) < AS_AT_REST * -at_rest
+    return Motion(REST if rests else UNDECIDED, None)
+
+
+def _still_settles(found: Points) -> bool:
+    """Whether a wheel swings in one well, and ever less or ever more."""
+    if len(found.times_s) < 2 * PARTS or np.ptp(found.quarters):
+        return False
+    parts = np.array_split(_sizes(found), PARTS)
+    least, most = (np.array([limit(part) for part in parts]) for limit in (np.min, np.max))
+    return bool((most[1:] < least[:-1]).all() or (least[1:] > most[:-1]).all())
+
+
+def _sizes(found: Points) -> Array:
+    """How far from rest each point is, (crossings,)."""
+    return np.asarray(np.abs(found.states[:, [PHI, OMEGA]]).max(axis=1))

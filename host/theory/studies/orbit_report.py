@@ -7,7 +7,7 @@ from typing import Any, TypedDict
 
 from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
-from host.theory.analysis.sections import MotionKind
+from host.theory.analysis.sections import UNDECIDED, MotionKind
 from host.theory.engine.crossings import Surface
 from host.theory.studies.orbit_rows import WAYS, OrbitRow, Way, motions_along
 from host.theory.studies.section_report import WORDS
@@ -39,7 +39,7 @@ class Numbers(TypedDict):
         windows: stretches of values with the same motion, from the first value to the last one: a
             window may be longer by less than a step on either side. period_s: the periods (s) at
             both ends.
-        coexistence: stretches where the motion differs between the ways.
+        coexistence: stretches where the motion differs between the ways, and is decided on both.
     """
 
     constants: dict[str, float]
@@ -73,7 +73,7 @@ def report(rows: list[OrbitRow], setting: Setting) -> Findings:
             for kinds, group in groupby(
                 zip(up, down, strict=True), key=lambda both: tuple(row["kind"] for row in both)
             )
-            if kinds[0] != kinds[1]
+            if kinds[0] != kinds[1] and UNDECIDED not in kinds
             for own in [list(group)]
         ],
     }

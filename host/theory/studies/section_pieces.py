@@ -81,7 +81,7 @@ def motions_of(wheels: list[Wheel], settled: list[Settled]) -> list[MotionColumn
         exponents = dict(zip(odd, found.tolist(), strict=True))
     rows: list[MotionColumns] = []
     for number, known in enumerate(whats):
-        what = known or irregular(exponents[number])
+        what = known or irregular(settled[number].points, exponents[number], wheels[number])
         cycle = what.repeat
         rows.append(
             {

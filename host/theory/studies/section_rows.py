@@ -35,7 +35,7 @@ class MotionColumns(TypedDict):
     """What a wheel does in the end.
 
     Attributes:
-        kind: at rest, forth-and-back, rolling, chaotic or quasi-periodic.
+        kind: at rest, forth-and-back, rolling, chaotic, quasi-periodic, or undecided.
         period: number of crossings until it repeats itself, up to the symmetries; None if it does
             not, or never crosses the section.
         period_s: time until it repeats itself, whole turns apart (s).

@@ -78,7 +78,10 @@ def test_the_answer_has_a_line_for_each_window(summary):
 
 def test_where_the_ways_differ_attractors_coexist():
     setting = Setting(1, complete_options("orbit", TABLE["orbit"], {}))
-    kinds = {"up": ["rolling", "rolling", "chaotic"], "down": ["rolling", "chaotic", "chaotic"]}
+    kinds = {
+        "up": ["rolling", "rolling", "chaotic", "at rest"],
+        "down": ["rolling", "chaotic", "chaotic", "undecided"],
+    }
     rows = [
         {
             "way": way,

@@ -14,7 +14,7 @@ from host.theory.engine.crossings import crossings
 from host.theory.engine.flow import FINENESS
 from host.theory.model.wheel import Wheel
 from host.theory.studies import section
-from host.theory.studies.section_pieces import follow_wheels
+from host.theory.studies.section_pieces import follow_wheels, settle_longer
 from tests.paper.theory import independent
 
 CHAOTIC, ROLLING, SWINGING = Wheel(k=15.0, tau=1.0), Wheel(k=8.0), Wheel(k=1.65)
@@ -91,11 +91,41 @@ def test_a_wheel_that_does_not_repeat_itself_or_never_crosses(settled):
         )
     )
     assert chaotic is None
-    assert sections.irregular(0.8).kind == "chaotic"
-    assert sections.irregular(0.001).kind == "quasi-periodic"
     assert (rests.kind, rests.repeat) == ("at rest", None)
     assert (rolls.kind, rolls.repeat.crossings) == ("rolling", 0)
     assert rolls.repeat.period_s == pytest.approx(settled[ROLLING].motion.repeat.period_s)
+
+
+NUMBER = np.arange(200.0)
+
+
+@pytest.mark.parametrize(
+    ("tau", "exponent", "sizes", "kind"),
+    [
+        (1.0, 0.8, 0.3 + 0.1 * np.cos(2.0 * NUMBER), "chaotic"),
+        (1.0, 0.001, 0.3 + 0.1 * np.cos(2.0 * NUMBER), "quasi-periodic"),
+        # Rest is stable up to tau = 0.115329 s. Its rate is -0.0041/s at 0.11506 s.
+        (0.11506, -0.0041, 0.02 * 0.99**NUMBER, "at rest"),
+        (0.11506, -0.0041, 0.3 + 0.1 * np.cos(2.0 * NUMBER), "quasi-periodic"),
+        (0.11506, -0.0001, 0.3 + 0.1 * 0.99**NUMBER, "undecided"),
+        (0.11534, -0.0004, 0.02 * 0.99**NUMBER, "undecided"),
+        (0.11534, 0.0002, 0.02 * 1.001**NUMBER, "undecided"),
+    ],
+)
+def test_what_a_wheel_is_that_does_not_repeat_itself(tau, exponent, sizes, kind):
+    states = np.zeros((len(NUMBER), 4))
+    states[:, 3] = sizes
+    alike = np.zeros(len(NUMBER), dtype=int)
+    found = sections.Points(NUMBER, states, alike, alike.astype(bool))
+    assert sections.irregular(found, exponent, Wheel(k=3.0, tau=tau)).kind == kind
+
+
+def test_a_wheel_just_below_the_hopf_bifurcation_comes_to_rest():
+    wheel = Wheel(k=3.0, tau=0.11506)
+    start = np.array([[1.0], [0.0], [0.0], [0.4]])
+    settled = follow_wheels([wheel], start, 100.0, "phi", FINENESS)
+    (found,) = settle_longer([wheel], settled, "phi", FINENESS)
+    assert found["kind"] == "at rest"
 
 
 def test_without_springs_there_is_no_rotation_to_search_for():
