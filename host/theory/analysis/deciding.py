@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.theory.analysis.attractors import AGREE, CHAOS, REST, settle, watch
+from host.theory.analysis.hopf import rests_stably
 from host.theory.engine.ensemble import rate_per_s
-from host.theory.model.wheel import Array
+from host.theory.model.wheel import PHI, Array, Wheel
 
 UNDECIDED = -1
 # Each round takes twice the time of the one before, s.
@@ -56,6 +57,22 @@ def settle_beside_close(
     return parted(settle(with_close(states), pairs, seconds, _FINENESS))
 
 
+def stay_at_rest(states: Array, parameters: Array) -> NDArray[np.bool_]:
+    """Which wheels that stand still do so for good.
+
+    Rest may be unstable and disturbances still grow so slowly that nothing moves for minutes.
+
+    Args:
+        states: Where the wheels stand, (4, wheels).
+        parameters: Their constants, (constants, wheels).
+
+    Returns:
+        Whether rest is stable, (wheels,).
+    """
+    both = zip(parameters.T.tolist(), states[PHI].tolist(), strict=True)
+    return np.array([rests_stably(Wheel(*own), phi) for own, phi in both], dtype=bool)
+
+
 def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
     """The attractors of wheels.
 
@@ -83,6 +100,10 @@ def decide(states: Array, parameters: Array) -> NDArray[np.int64]:
         regular, now = seen.apart < AGREE, np.hypot(seen.omega_mean, seen.omega_std)
         # One that gets slower rests, unless a later round sees otherwise.
         so_far = np.where((now < sizes) & (now < STILL), REST, UNDECIDED)
-        kinds[left] = np.where(regular, seen.kinds(), so_far)
+        found = np.where(regular, seen.kinds(), so_far)
+        rests = np.flatnonzero(found == REST)
+        leave = rests[~stay_at_rest(seen.states[:, rests], parameters[:, left[rests]])]
+        found[leave], regular[leave] = UNDECIDED, False
+        kinds[left] = found
         states, left, sizes = seen.states[:, ~regular], left[~regular], now[~regular]
     return kinds

@@ -114,6 +114,19 @@ def critical_k(wheel: Wheel) -> float:
     return float(friction * (inertia + friction * tau_s) / pull) if pull else inf
 
 
+def rests_stably(wheel: Wheel, phi: float) -> bool:
+    """Whether a wheel that stands still close to an angle (rad) stays there.
+
+    Dry friction holds it, and without springs or neurons nothing pulls it away.
+    """
+    if wheel.dry_friction or not (wheel.k and wheel.a):
+        return True
+    law = law_of(wheel)
+    if law.one_rod or law.own:
+        return fixpoint(phi, wheel).stable
+    return wheel.k < critical_k(wheel)
+
+
 def above_hopf(wheel: Wheel) -> float:
     """ln(k / k_c): how far a wheel with friction and neurons is above the Hopf bifurcation."""
     return log(wheel.k / critical_k(wheel))

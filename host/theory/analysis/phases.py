@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 
 from host.theory.analysis.attractors import BACK, CHAOS, REST, ROLL
-from host.theory.analysis.deciding import UNDECIDED, decide
+from host.theory.analysis.deciding import UNDECIDED, decide, stay_at_rest
 from host.theory.engine.ensemble import Averages
-from host.theory.model.wheel import Array
+from host.theory.model.wheel import PHI, Array
 
 Phase = Literal["S", "FB", "LLM", "C", "undecided"]
 PHASES: tuple[Phase, ...] = ("S", "FB", "LLM", "C", "undecided")
@@ -17,8 +17,10 @@ PHASES: tuple[Phase, ...] = ("S", "FB", "LLM", "C", "undecided")
 # A wheel rolls one way if the mean of omega is above ROLLING_MEAN (rad/s) and its deviation below
 # ROLLING_SPREAD of the mean.
 ROLLING_MEAN, ROLLING_SPREAD = 0.1, 0.6
-# A slower wheel (rad/s) rests, and is not about to begin to swing.
+# A slower wheel (rad/s) rests if rest is stable, and is not about to begin to swing.
 _DEAD = 1e-6
+# If rest is unstable it is pushed (rad): from nearer to rest even a transient looks chaotic.
+_PUSH = 1e-3
 _OF_KIND: dict[int, Phase] = {
     REST: "S",
     BACK: "FB",
@@ -31,8 +33,8 @@ _OF_KIND: dict[int, Phase] = {
 def phases(found: Averages, parameters: Array) -> list[Phase]:
     """The phases of wheels.
 
-    Those that neither rest nor roll are followed on: one that repeats itself goes forth and back,
-    or rolls unevenly, and one that does not is chaotic if small differences grow.
+    Those that neither rest for good nor roll are followed on: one that repeats itself goes forth
+    and back, or rolls unevenly, and one that does not is chaotic if small differences grow.
 
     Args:
         found: Averages of the wheels, and where they ended.
@@ -44,9 +46,13 @@ def phases(found: Averages, parameters: Array) -> list[Phase]:
     """
     mean, std = np.abs(found.omega_mean), found.omega_std
     rolls = (mean > ROLLING_MEAN) & (std < ROLLING_SPREAD * mean)
-    dead = np.maximum(mean, std) < _DEAD
+    still = ~rolls & (np.maximum(mean, std) < _DEAD)
+    dead = still.copy()
+    dead[still] = stay_at_rest(found.states[:, still], parameters[:, still])
     kinds = np.where(rolls, ROLL, REST)
     open_ = ~rolls & ~dead
     if open_.any():
-        kinds[open_] = decide(found.states[:, open_], parameters[:, open_])
+        states = found.states.copy()
+        states[PHI, still & ~dead] += _PUSH
+        kinds[open_] = decide(states[:, open_], parameters[:, open_])
     return [_OF_KIND[kind] for kind in kinds.tolist()]

@@ -150,6 +150,24 @@ def test_beside_rest_wheels_roll_above_the_merging_and_swing_below(tau):
     assert phases(found, parameters) == ["FB", "LLM"]
 
 
+@pytest.mark.parametrize(("k", "tau"), [(1.0, 1000.0), (30.0, 1000.0), (0.01, 500.0)])
+def test_slow_neurons_do_not_make_a_wheel_rest_where_rest_is_unstable(k, tau):
+    wheel = Wheel(k=k, tau=tau)
+    assert k > 8 * critical_k(wheel)
+    found = averages(resting(np.array([1e-3])), wheel.columns(1), 100.0, 100.0)
+    assert found.omega_std < 2e-4
+    assert phases(found, wheel.columns(1)) != ["S"]
+
+
+@pytest.mark.parametrize(("phi", "phase"), [(0.0, "S"), (np.pi / 2, "LLM")])
+def test_one_rod_holds_a_wheel_at_0_for_every_k_and_at_90_degrees_for_a_small_one(phi, phase):
+    wheel = Wheel(k=8.0, tau=0.25, rods=1.0)
+    still = averages(resting(np.array([phi])), wheel.columns(1), 1.0, 1.0)
+    assert still.omega_std < 1e-9
+    assert phases(still, wheel.columns(1)) == [phase]
+    assert phases(still, wheel._replace(k=0.5).columns(1)) == ["S"]
+
+
 @pytest.fixture
 def hasty(monkeypatch):
     """Wheels are not followed for long."""
