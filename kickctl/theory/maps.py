@@ -16,6 +16,7 @@ from host.theory.analysis.phases import phases
 from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.ensemble import averages
 from host.theory.engine.kicked import KICKS, Continuous
+from host.theory.model.laws import require_friction
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel, resting
 from host.theory.studies import basins as study
@@ -80,7 +81,8 @@ def phase_diagram(
         The averages and the phase of each wheel.
 
     Raises:
-        WrongUse: An argument is none of these, or wheels are too stiff to be followed.
+        WrongUse: An argument is none of these, or wheels never settle, or are too stiff to be
+            followed.
     """
     wheel = need_wheel(wheel)
     ks = need_ascending("k", k, "numbers that ascend from 0", 0.0)
@@ -93,6 +95,7 @@ def phase_diagram(
             f"{len(ks):,} values of k and {len(taus):,} of tau are too many points",
             f"give at most {_MOST_POINTS:,} points at once",
         )
+    require_friction(wheel)
     parameters = wheel.columns(
         len(ks) * len(taus), tau=np.repeat(taus, len(ks)), k=np.tile(ks, len(taus))
     )

@@ -75,6 +75,15 @@ def test_a_trajectory_is_that_of_another_integrator_at_the_times_that_were_asked
             (functools.partial(refusing, Wheel(dry_friction=0.1)), "dry friction")
             for refusing in (theory.fixpoints, theory.hopf, branch, lyapunov, kicks)
         ],
+        *[
+            (functools.partial(refusing, Wheel(f=0.0)), "without friction a wheel can roll faster")
+            for refusing in (
+                functools.partial(phase_diagram, k=[1], tau=[0.25], start="roll"),
+                lyapunov,
+                basins,
+                kicks,
+            )
+        ],
         (lambda: phase_diagram(Wheel(), k=[], tau=[1]), "k cannot be"),
         (lambda: phase_diagram(Wheel(), k=[1], tau=[0]), "tau cannot be"),
         (lambda: phase_diagram(Wheel(), k=[1], tau=[1], start="up"), "start cannot be 'up'"),

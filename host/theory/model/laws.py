@@ -18,7 +18,7 @@ import numpy as np
 
 from host.errors import WrongUse
 from host.theory.model import own_functions
-from host.theory.model.wheel import NUMPY, Array, Wheel, rates, torque
+from host.theory.model.wheel import NUMPY, Array, Wheel, acceleration, rates, torque
 from robot.controller import motor_torque, tangential_force
 from sim_motor.mathematics import with_mathematics
 
@@ -146,3 +146,16 @@ def has_symmetries(wheel: Wheel) -> bool:
 @cache
 def _scalar(law: Law) -> Callable[..., Any]:
     return rates if law == PAPER else under(law, rates)
+
+
+def require_friction(wheel: Wheel) -> None:
+    """Raise WrongUse for a wheel that nothing slows down, and that therefore never settles.
+
+    Dry friction slows it down, and so may mechanics of the user.
+    """
+    own_mechanics = acceleration.__name__ in own_functions.parts(int(wheel.own))
+    if not (wheel.f or wheel.dry_friction or own_mechanics):
+        raise WrongUse(
+            "without friction a wheel can roll faster and faster, and never settles",
+            "give f above 0",
+        )

@@ -38,7 +38,7 @@ from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.ensemble import FINE, rate_per_s
 from host.theory.engine.kicked import KICKS, Continuous, Model, Sampled, memory_s
 from host.theory.engine.sampled import as_robot, ticks_in
-from host.theory.model.laws import rates_of
+from host.theory.model.laws import rates_of, require_friction
 from host.theory.model.wheel import PHI, Array, Wheel, wheel_of
 from host.theory.studies.basins_report import report
 from host.theory.studies.basins_rows import (
@@ -96,6 +96,7 @@ def cells(options: dict[str, Any], *, batch: bool = True) -> list[BasinsCell]:
 
 def require_settling(wheel: Wheel) -> None:
     """Raise WrongUse for a wheel that takes too many steps to settle."""
+    require_friction(wheel)
     steps = memory_s(wheel) * (SETTLE + 2 * WINDOW) * float(rate_per_s(wheel.columns(1))[0])
     if not steps <= MOST_STEPS:
         raise WrongUse(

@@ -16,6 +16,7 @@ from host.runs.answers import Answer
 from host.runs.contract import Findings, Setting
 from host.theory.analysis.escape_times import Stay, arrhenius, levels, settled, stay
 from host.theory.engine.noise import FINENESS, Noise, escapes, require_followed, seeds_of
+from host.theory.model.laws import require_friction
 from host.theory.model.wheel import wheel_of
 from host.theory.studies.escape_rows import (
     CheckRow,
@@ -37,11 +38,13 @@ FINER = 2.0
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[EscapeCell]:
     """Batches of wheels for each strength, and a check.
 
-    Raises WrongUse without noise, or if wheels do not stay on the attractor without it.
+    Raises WrongUse without noise or friction, or if wheels do not stay on the attractor without
+    noise.
     """
     wheel = wheel_of(options)
     if not (options["noise"] or options["angle_noise"]):
         raise WrongUse("without noise no wheel escapes", "give --noise or --angle-noise above 0")
+    require_friction(wheel)
     require_followed(wheel.columns(1), options["seconds"], FINER * FINENESS)
     settled(wheel, options["start"], 2, np.random.default_rng(0))
     found: list[EscapeCell] = [

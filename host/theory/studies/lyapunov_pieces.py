@@ -22,7 +22,7 @@ from host.theory.analysis.tangent import pair_growth
 from host.theory.analysis.trajectories import SAMPLE_S, trajectory
 from host.theory.analysis.transients import lives
 from host.theory.engine.ensemble import FINE, rate_per_s
-from host.theory.model.laws import array_rates, law_of
+from host.theory.model.laws import array_rates, law_of, require_friction
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import Array, Wheel
 from host.theory.studies.lyapunov_rows import (
@@ -65,11 +65,7 @@ def midpoints(most: float, points: int) -> Array:
 
 def require_slow(wheel: Wheel) -> None:
     """Raise WrongUse for a wheel that never settles, or is too fast to be followed for minutes."""
-    if wheel.f == 0.0:
-        raise WrongUse(
-            "without friction a wheel can roll faster and faster, and never settles",
-            "give f above 0",
-        )
+    require_friction(wheel)
     fastest = float(rate_per_s(wheel.columns(1))[0])
     if not fastest <= FASTEST:
         raise WrongUse(

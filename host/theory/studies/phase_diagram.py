@@ -15,6 +15,7 @@ import numpy as np
 from host.runs.contract import Part, Row, Setting, as_rows
 from host.theory.analysis.phases import phases
 from host.theory.engine.ensemble import FINE, Averages, averages, require_loose
+from host.theory.model.laws import require_friction
 from host.theory.model.turning import rolling_states
 from host.theory.model.wheel import PHI, Array, Wheel, resting, wheel_of
 from host.theory.studies.phase_diagram_report import report
@@ -59,8 +60,9 @@ def axes_of(panel: Panel, options: dict[str, Any]) -> tuple[Array, Array]:
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[PhaseDiagramCell]:
     """Bands of time constants, and a sample for the step size.
 
-    Raises WrongUse if wheels are too stiff to be followed.
+    Raises WrongUse if wheels never settle, or are too stiff to be followed.
     """
+    require_friction(wheel_of(options))
     for panel in PANELS:
         ks, taus = axes_of(panel, options)
         stiffest = _parameters(options, taus, np.full(len(taus), ks[-1]))

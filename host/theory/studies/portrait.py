@@ -23,6 +23,7 @@ from host.theory.analysis.manifolds import stable_manifolds, unstable_manifolds
 from host.theory.analysis.phases import Phase
 from host.theory.analysis.trajectories import limit_cycle, phase_of_cycle, trajectory
 from host.theory.engine.flow import FINENESS, steps_for
+from host.theory.model.laws import require_friction
 from host.theory.model.turning import turning
 from host.theory.model.wheel import OMEGA, PHI, Array, wheel_of
 from host.theory.studies.portrait_rows import (
@@ -67,9 +68,11 @@ REACH = 2.5
 def cells(options: dict[str, Any], *, batch: bool = True) -> list[PortraitCell]:
     """One portrait each.
 
-    Raises WrongUse if the wheel can rest at any angle, or is too stiff to be followed.
+    Raises WrongUse if the wheel can rest at any angle, never settles, or is too stiff to be
+    followed.
     """
     require_two_rods(options)
+    require_friction(wheel_of(options))
     ks = PAPERS_K if options["k"] is None else (options["k"],)
     for k in ks:
         wheel = wheel_of(options)._replace(k=k)

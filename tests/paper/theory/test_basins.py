@@ -298,7 +298,7 @@ def test_without_springs_a_wheel_rests_anywhere_and_none_rolls(model):
     assert rolling_states(model, WHEEL._replace(k=0.0), 4) is None
 
 
-@pytest.mark.parametrize("changed", [{"f": 0.0}, {"f": 1e-3}, {"I": 1e-6}])
+@pytest.mark.parametrize("changed", [{"f": 1e-3}, {"I": 1e-6}])
 def test_wheels_that_hardly_settle_or_are_stiff_are_refused(changed):
     with pytest.raises(WrongUse, match="settles too slowly"):
         basins.cells(OPTIONS | changed)

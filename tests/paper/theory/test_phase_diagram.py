@@ -194,7 +194,7 @@ def test_a_cell_that_is_resumed_in_the_middle_is_the_same_bits(monkeypatch, hast
     assert list(phase_diagram.parts(cell, setting, kept)) == rest
 
 
-@pytest.mark.parametrize("change", [{"f": 0.0}, {"a": 0.0}, {"I": 1e-3}])
+@pytest.mark.parametrize("change", [{"f": 1e-3}, {"a": 0.0}, {"I": 1e-3}])
 def test_degenerate_wheels_have_a_diagram_without_gaps(hasty, change):
     options = {**OPTIONS, **change, "points": 4, "start": "rest", "transient": 2.0, "seconds": 2.0}
     setting = Setting(1, options)

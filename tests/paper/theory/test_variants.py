@@ -24,7 +24,7 @@ from host.theory.engine.crossings import crossings
 from host.theory.engine.ensemble import advance
 from host.theory.engine.kicked import Continuous, seen_in
 from host.theory.engine.sampled import Clock
-from host.theory.model.laws import has_symmetries
+from host.theory.model.laws import has_symmetries, require_friction
 from host.theory.model.symbolic import jacobian_at
 from host.theory.model.wheel import PHI, Wheel
 from host.theory.studies.registry import TABLE
@@ -156,6 +156,15 @@ def test_the_papers_wheel_written_by_a_user_gives_the_papers_numbers(papers):
         for wheel in (papers, paper)
     ]
     assert exponents[0] == pytest.approx(exponents[1], abs=1e-7)
+
+
+def test_a_wheel_needs_friction_of_some_kind():
+    free = Wheel(f=0.0)
+    for braked in (Wheel(), Wheel(f=0.0, dry_friction=0.1), free.with_functions(mechanics=drag)):
+        require_friction(braked)
+    for unbraked in (free, free.with_functions(logistic)):
+        with pytest.raises(WrongUse, match="without friction"):
+            require_friction(unbraked)
 
 
 def test_a_user_s_mechanics_move_the_wheel_and_its_kicks():
