@@ -59,15 +59,17 @@ class Fixpoint(NamedTuple):
     def kind(self) -> Kind:
         """A saddle, a node or a focus.
 
-        A disturbance of a saddle grows along one direction; around a focus a disturbance spirals.
+        A disturbance of a saddle grows along one direction, and shrinks along the others. One of
+        an unstable node grows along two or more. Around a focus a disturbance spirals, away from an
+        unstable one.
         """
-        leading = self.eigenvalues[0]
-        if leading.imag == 0.0 and not self.stable:
-            return "saddle"
-        spirals = bool(np.any(self.eigenvalues.imag != 0.0))
         if self.stable:
+            spirals = bool(np.any(self.eigenvalues.imag != 0.0))
             return "stable focus" if spirals else "stable node"
-        return "unstable focus" if spirals else "unstable node"
+        growing = self.eigenvalues[self.eigenvalues.real >= 0.0]
+        if len(growing) == 1:
+            return "saddle"
+        return "unstable focus" if np.any(growing.imag != 0.0) else "unstable node"
 
 
 def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:

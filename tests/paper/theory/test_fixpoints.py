@@ -71,6 +71,20 @@ def test_odd_ones_are_saddles_and_even_ones_stable_just_below_the_hopf_line(whee
         assert [point.stable for point in fixpoints(near)[::2]] == [stable] * 4
 
 
+@pytest.mark.parametrize(
+    ("k", "tau", "even"),
+    [
+        (1.4, 0.25, "stable focus"),
+        (2.0, 0.25, "unstable focus"),
+        (15.0, 1.0, "unstable node"),
+        (0.01, 0.25, "stable node"),
+    ],
+)
+def test_a_saddle_grows_in_one_direction_and_an_unstable_node_in_two(k, tau, even):
+    found = fixpoints(Wheel(k=k, tau=tau))
+    assert [point.kind for point in found] == 4 * [even, "saddle"]
+
+
 @given(WHEELS)
 @settings(max_examples=30)
 def test_the_jacobian_is_that_of_the_rates_anywhere(wheel):
