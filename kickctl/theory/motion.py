@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isclose
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def trajectory(
             rests at 0.01 rad.
 
     Returns:
-        The states every 0.02 s, or at the times that were given.
+        The states every 0.02 s and at the end, or at the times that were given.
 
     Raises:
         WrongUse: An argument is none of these, or the wheel is too stiff to be followed.
@@ -80,7 +81,7 @@ def trajectory(
                 f"at most {_MOST_SAMPLES * _SAMPLE_S:g} s, which are {_MOST_SAMPLES:,} states, or"
                 " the times of the states that you need, of two or more",
             )
-        times = np.asarray(np.arange(round(times[0] / _SAMPLE_S) + 1) * _SAMPLE_S)
+        times = _samples(float(times[0]))
     state = need_numbers("start", start, "four numbers: x1, x2, phi (rad) and omega (rad/s)")
     if len(state) != 4:
         raise wrong("start", start, "four numbers: x1, x2, phi (rad) and omega (rad/s)")
@@ -91,6 +92,15 @@ def trajectory(
         now = time_s
         states.append(at[:, 0])
     return Trajectory(times, *np.array(states).T)
+
+
+def _samples(seconds: float) -> Array:
+    """The times, s, at which a wheel is shown that is followed for so long."""
+    count = round(seconds / _SAMPLE_S)
+    times: Array = np.asarray(np.arange(count + 1) * _SAMPLE_S)
+    if isclose(times[-1], seconds, rel_tol=1e-12):
+        return times
+    return np.append(times[times < seconds], seconds)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

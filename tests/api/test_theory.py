@@ -55,6 +55,25 @@ def test_a_trajectory_is_that_of_another_integrator_at_the_times_that_were_asked
 
 
 @pytest.mark.parametrize(
+    ("seconds", "times"),
+    [
+        (0.0, [0.0]),
+        (0.009, [0.0, 0.009]),
+        (0.049, [0.0, 0.02, 0.04, 0.049]),
+        (0.051, [0.0, 0.02, 0.04, 0.051]),
+        (0.06, [0.0, 0.02, 0.04, 0.06]),
+    ],
+)
+def test_a_trajectory_ends_when_it_was_asked_to(seconds, times):
+    assert trajectory(Wheel(), t=seconds).t.tolist() == times
+
+
+def test_multiples_of_the_time_between_samples_have_no_sample_twice():
+    for count in (7, 29, 57, 58, 113, 407):  # some of the products are rounded
+        assert len(trajectory(Wheel(), t=count / 50).t) == count + 1
+
+
+@pytest.mark.parametrize(
     ("call", "words"),
     [
         (lambda: trajectory(8.0), "wheel cannot be 8.0"),
