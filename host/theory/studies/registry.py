@@ -269,8 +269,9 @@ TABLE = {
         (A, TAU, K._replace(default=8.0), F, I, *VARIANTS),
     ),
     "escape": Entry(
-        "how long noise takes to drive a wheel from its attractor: mean times with 95 % intervals"
-        " for six strengths of noise, and Arrhenius's law. Takes about half a minute",
+        "how long noise takes to drive a wheel from its attractor: mean times with standard errors"
+        " (95 % intervals in the figure and in summary.json) for six strengths of noise, and"
+        " Arrhenius's law. Takes about half a minute",
         (
             A,
             TAU,

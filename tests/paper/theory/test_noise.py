@@ -125,6 +125,9 @@ def test_the_study_measures_how_long_a_wheel_rolls_one_way_and_says_its_seed():
     assert [level["wheels"] for level in numbers["levels"]] == [8] * escape.LEVELS
     first = numbers["levels"][0]
     assert first["low_s"] < first["mean_s"] < first["high_s"]
+    shown = escape.report(rows, setting).answers[0]
+    assert shown.error == pytest.approx((first["high_s"] - first["low_s"]) / (2 * 1.96), rel=1e-4)
+    assert "standard errors" in TABLE["escape"].help
     cell = escape.cells(setting.options)[0]
     assert escape.simulate(cell, setting) == escape.simulate(cell, setting)
 
