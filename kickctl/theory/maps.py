@@ -47,7 +47,8 @@ class PhaseDiagram(Result):
         omega_mean: mean of omega, rad/s, (taus, ks).
         omega_std: standard deviation of omega, rad/s, (taus, ks).
         phase: 'S' the wheel rests, 'FB' it rolls forth and back, 'LLM' it rolls one way, 'C' it is
-            chaotic, 'undecided' it has not settled after 6000 s more, (taus, ks).
+            chaotic, 'undecided' it has not settled after 6000 s more, or is so fast that a part
+            of these would take more than 100 000 steps of integration, (taus, ks).
     """
 
     k: Array

@@ -14,11 +14,13 @@ from host.theory.analysis.deciding import STILL
 from host.theory.analysis.hopf import critical_k
 from host.theory.analysis.merging import merging
 from host.theory.analysis.phases import phases
-from host.theory.engine.ensemble import averages
+from host.theory.engine.ensemble import averages, rate_per_s
 from host.theory.model.turning import constant_velocity, rolling_states, turning
 from host.theory.model.wheel import OMEGA, Wheel, resting
 from host.theory.studies import phase_diagram
 from host.theory.studies.registry import TABLE
+from kickctl.theory import PhaseDiagram
+from tests.lint.sources import ROOT
 from tests.paper.theory.independent import follow
 from tests.paper.theory.table import rows_of
 
@@ -166,6 +168,16 @@ def test_one_rod_holds_a_wheel_at_0_for_every_k_and_at_90_degrees_for_a_small_on
     assert still.omega_std < 1e-9
     assert phases(still, wheel.columns(1)) == [phase]
     assert phases(still, wheel._replace(k=0.5).columns(1)) == ["S"]
+
+
+def test_a_wheel_too_fast_for_a_round_is_undecided_and_the_words_say_so(hasty):
+    fast = Wheel(k=15.0, tau=1.0, I=1e-4)
+    assert rate_per_s(fast.columns(1)) * deciding.FIRST_S > deciding.MOST_STEPS
+    found = averages(resting(np.array([1e-3])), fast.columns(1), 2.0, 2.0)
+    assert phases(found, fast.columns(1)) == ["undecided"]
+    steps = f"{deciding.MOST_STEPS:,}".replace(",", " ")
+    for words in (phases.__doc__, PhaseDiagram.__doc__, (ROOT / "docs" / "theory.md").read_text()):
+        assert f"more than {steps} steps" in " ".join(words.split())
 
 
 @pytest.fixture
