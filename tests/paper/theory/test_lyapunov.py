@@ -29,6 +29,7 @@ from host.theory.studies import lyapunov_line, lyapunov_plane
 from host.theory.studies import lyapunov_pieces as pieces
 from host.theory.studies.lyapunov_report import in_words, spectrum
 from host.theory.studies.registry import TABLE
+from tests.lint.sources import ROOT
 from tests.paper.theory import independent
 
 RESTING, SWINGING, ROLLING, CHAOTIC = (
@@ -200,6 +201,13 @@ def test_rolling_loses_its_stability_where_scipy_finds_a_multiplier_on_the_circl
     assert abs(pair) == pytest.approx(1.0, abs=1e-7)
     assert (found["type"], found["above"]) == ("neimark-sacker", "chaotic")
     assert found["omega_mean"] == pytest.approx(np.pi / 2 / quarter_s)
+
+
+def test_the_glossary_names_the_study_that_shows_a_torus_bifurcation():
+    """`branch` has none at its defaults."""
+    rows = (ROOT / "host" / "GLOSSARY.md").read_text(encoding="utf-8").splitlines()
+    (row,) = (row for row in rows if row.startswith("| Neimark-Sacker"))
+    assert row.endswith("| `kickctl theory lyapunov-line` |")
 
 
 def test_where_rolling_stays_stable_it_has_no_end():
