@@ -18,6 +18,8 @@ PANELS = ("up", "down")
 
 # The room that the period of a window takes, as a part of the axis.
 _LABEL = 0.03
+# The titles of the panels stand this far (points) above them: the periods are in between.
+_TITLE_PAD = 22
 
 
 def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
@@ -33,7 +35,7 @@ def draw(rows: list[OrbitRow], findings: Findings) -> Figure:
             _draw(axes, [row for row in rows if row["way"] == way], column)
             _name_windows(axes, [own for own in numbers["windows"] if own["way"] == way])
             axes.set_ylabel(label)
-            axes.set_title(f"{LETTERS[over]} {words}", fontsize=13, loc="left")
+            axes.set_title(f"{LETTERS[over]} {words}", fontsize=13, loc="left", pad=_TITLE_PAD)
         panels[1].set_xlabel(LETTERS[over] + (f" ({UNITS[over].strip()})" if over in UNITS else ""))
         figure.legend(
             handles=handles({row["kind"] for row in rows}), loc="outside lower center", ncols=5
