@@ -18,7 +18,7 @@ from host.errors import WrongUse
 from host.theory.analysis.bisection import last_alike
 from host.theory.model.laws import law_of, rates_of
 from host.theory.model.symbolic import jacobian_at
-from host.theory.model.wheel import OMEGA, Array, Wheel, resting
+from host.theory.model.wheel import OMEGA, Array, Wheel, resting, too_extreme
 
 NDComplex = NDArray[np.complex128]
 Kind = Literal["saddle", "stable focus", "stable node", "unstable focus", "unstable node"]
@@ -83,7 +83,8 @@ def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
         The fixpoint.
 
     Raises:
-        WrongUse: The rods do not pull: the wheel can rest at any angle.
+        WrongUse: The rods do not pull: the wheel can rest at any angle. Or its constants are too
+            large or too small.
     """
     for name in ("k", "a"):
         if getattr(wheel.checked(), name) == 0.0:
@@ -92,7 +93,10 @@ def fixpoint(phi: float, wheel: Wheel) -> Fixpoint:
                 f"give {name} above 0",
             )
     state = resting(np.array([phi]))[:, 0]
-    values, vectors = np.linalg.eig(jacobian_at(state.tolist(), wheel))
+    matrix = jacobian_at(state.tolist(), wheel)
+    if not np.isfinite(matrix).all():
+        raise too_extreme(wheel)
+    values, vectors = np.linalg.eig(matrix)
     order = np.argsort(-values.real, kind="stable")
     return Fixpoint(phi, state, values[order].astype(complex), vectors[:, order].astype(complex))
 

@@ -20,7 +20,7 @@ from host.theory.analysis.bisection import last_alike
 from host.theory.analysis.fixpoints import angles, fixpoint
 from host.theory.model.laws import law_of
 from host.theory.model.symbolic import derivatives, jacobian_at
-from host.theory.model.wheel import Wheel, resting
+from host.theory.model.wheel import Wheel, resting, too_extreme
 from robot.controller import target_position
 
 # Values of k among which a bifurcation is looked for by numbers.
@@ -68,6 +68,7 @@ def hopf(wheel: Wheel) -> Hopf:
     Raises:
         WrongUse: There is none: without friction every resting wheel is unstable, and with a = 0
             the rods do not pull; a single rod pulls a wheel out of its rest only with a above 2.
+            Or its constants are too large or too small.
     """
     if wheel.checked().f == 0.0 or wheel.a == 0.0:
         why = (
@@ -87,6 +88,8 @@ def hopf(wheel: Wheel) -> Hopf:
             )
         return Hopf(k, omega, _lyapunov_coefficient(wheel._replace(k=k), omega, phi), phi)
     k, stiff = critical_k(wheel), _stiffness(wheel)
+    if k == inf and not (wheel.rods == 1 and wheel.a <= 2.0):
+        raise too_extreme(wheel)
     if k == inf:
         raise WrongUse(
             "there is no Hopf bifurcation: with a up to 2 a single rod holds a wheel at 90° for no"
@@ -169,6 +172,18 @@ def _crossing(wheel: Wheel) -> tuple[float, float, float]:
 
 
 def _lyapunov_coefficient(wheel: Wheel, omega: float, phi: float) -> float:
+    """l1 at a bifurcation. Raises WrongUse where rounding leaves nothing of it."""
+    try:
+        with np.errstate(all="ignore"):
+            found = _coefficient(wheel, omega, phi)
+    except (np.linalg.LinAlgError, ZeroDivisionError, OverflowError):
+        raise too_extreme(wheel) from None
+    if not isfinite(found):
+        raise too_extreme(wheel)
+    return found
+
+
+def _coefficient(wheel: Wheel, omega: float, phi: float) -> float:
     state, law = resting(np.array([phi]))[:, 0].tolist(), law_of(wheel)
     second, third = (np.array(derivatives(order, law)(*state, *wheel)) for order in (2, 3))
     quadratic, cubic = second.reshape(4, 4, 4), third.reshape(4, 4, 4, 4)

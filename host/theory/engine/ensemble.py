@@ -21,7 +21,7 @@ from host.theory.engine import runge_kutta, sliding, taylor
 from host.theory.engine.elementary import MATHEMATICS, inlined, vectorised
 from host.theory.engine.taylor import AROUND, SQUARE
 from host.theory.model.laws import PAPER, Law, law_of, under
-from host.theory.model.wheel import OMEGA, PHI, Array, rates
+from host.theory.model.wheel import OMEGA, PHI, Array, in_words, rates
 from sim_motor.compiled import over_cores
 
 # Wheels in a block: at most as many as the fastest cache holds with all stages; but no wheel beyond
@@ -117,12 +117,9 @@ def _edges(needed: Array) -> Whole:
 
 def too_stiff(seconds: float, constants: Array, steps: float) -> WrongUse:
     """The exception for a wheel with these constants that would take that many steps."""
-    words = ", ".join(
-        f"{name} = {value:g}"
-        for name, value in zip(("a", "tau", "k", "I", "f"), constants.tolist(), strict=False)
-    )
     return WrongUse(
-        f"{seconds:g} s of a wheel with {words} would take {steps:.1e} steps",
+        f"{seconds:g} s of a wheel with {in_words(constants.tolist())} would take {steps:.1e}"
+        " steps",
         "choose a shorter time, a larger tau or I, or a smaller k"
         if constants[4]
         else "give f above 0",
@@ -216,8 +213,9 @@ def _back(found: Array, order: Whole, parameters: Array) -> Array:
     if not np.isfinite(found).all():
         lost = int(np.flatnonzero(~np.isfinite(found).all(axis=0))[0])
         raise WrongUse(
-            f"the wheel with constants {parameters[:, lost].tolist()} ran away",
-            "choose a larger tau or I, a smaller k",
+            f"a wheel with {in_words(parameters[:, lost].tolist())} ran away: its numbers became"
+            " too large",
+            "choose a larger tau or I, a smaller k, or a start nearer to 0",
         )
     return found
 

@@ -10,7 +10,7 @@ these times s. Arrays of states are (4, wheels), of parameters (constants, wheel
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import inf, isfinite
 from numbers import Real
 from typing import Any, NamedTuple
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from host.errors import WrongUse
 from host.theory.model import own_functions
-from host.util.arguments import wrong
+from host.util.arguments import need_seconds, wrong
 from robot.controller import (
     actual_positions,
     membrane_rate,
@@ -173,8 +173,12 @@ class Wheel(NamedTuple):
 
         Args:
             lag_s: How much older the rods are, s, at a constant speed.
+
+        Raises:
+            WrongUse: The lag is below 0, or no wheel can have that friction.
         """
-        return self._replace(f=self.f + self.k * lag_s)
+        lag = need_seconds("lag_s", lag_s)
+        return self.checked()._replace(f=self.f + self.k * lag).checked()
 
     def options(self) -> dict[str, Any]:
         """The constants as a study takes them, by the paper's letters: the inverse of `wheel_of`.
@@ -230,6 +234,21 @@ class Wheel(NamedTuple):
         for name, values in varied.items():
             parameters[self._fields.index(name)] = values
         return parameters
+
+
+def in_words(constants: Iterable[float]) -> str:
+    """The constants of a wheel by the paper's letters: the first five."""
+    letters = ("a", "tau", "k", "I", "f")
+    return ", ".join(f"{name} = {value:g}" for name, value in zip(letters, constants, strict=False))
+
+
+def too_extreme(wheel: Wheel) -> WrongUse:
+    """The exception for a wheel whose constants leave no digits to compute with."""
+    return WrongUse(
+        f"a wheel with {in_words(wheel)} cannot be computed: its numbers are too large or too"
+        " small",
+        "give constants that are nearer to the paper's",
+    )
 
 
 def wheel_of(options: Mapping[str, Any]) -> Wheel:
