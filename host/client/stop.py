@@ -119,7 +119,7 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
     """
     name = name or own_name()
     frame, decoder = stop_frame(name), wire.Decoder()
-    link, other = link.another(), False
+    link, other = link.another(), None
     try:
         link.open()
         patience = Patience(link, patience_s or CONFIRM_S)
@@ -132,10 +132,10 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
             while (received := decoder.next()) is not None:
                 stopped = confirmation(*received)
                 if stopped is not None:
-                    other = _is_other(link, decoder, name)
-                    if link.meant is None or not other:
+                    other = _other_robot(link, name)
+                    if other is None:
                         return stopped
-                    raise _other_robot(link.uri, link.meant.name)
+                    raise other
         failure = unconfirmed(link.uri, "no answer has come")
     except LinkLost as error:
         failure = unconfirmed(link.uri, f"the link broke ({error})")
@@ -144,41 +144,33 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
     finally:
         reached = _logged_in(link)
         link.close()
-    raise _halted(link, failure) if reached and not other else failure
+    raise _halted(link, failure) if reached and other is None else failure
 
 
-def _is_other(link: Link, decoder: Any, name: str) -> bool:
-    """Whether another robot than the one that is meant has answered; it is asked who it is.
+def _other_robot(link: Link, name: str) -> NoLink | None:
+    """The error if another robot than the one that is meant has obeyed; it is asked who it is.
 
     A line leads where its cable does, and another program may be talking over it.
     """
     if link.meant is None or link.is_line:
-        return False
-    nonce = os.urandom(wire.NONCE_BYTES).hex()
-    hello = {"protocol": wire.PROTOCOL, "name": name[:40], "client": nonce, "nonce": nonce}
+        return None
+    from host.client.access import hear
+    from host.client.conversation import Conversation
+
+    talk = Conversation(None, name[:40], client=os.urandom(wire.NONCE_BYTES).hex())
+    talk.begin()
     try:
-        link.send(bytes(wire.encode_json(wire.HELLO, hello)))
-        patience = Patience(link, WHO_S)
-        while not patience.is_over():
-            decoder.feed(link.receive(0.1))
-            while (received := decoder.next()) is not None:
-                kind, payload = received
-                if kind == wire.HELLO:
-                    return link.meant.is_other(wire.load(payload))
-                if kind == wire.REPLY and "error" in wire.load(payload):
-                    return False  # it has no place for another host
-    except (LinkLost, wire.BadMessage):
-        pass  # an older program, which does not say who it is
-    return False
-
-
-def _other_robot(uri: str, name: str) -> NoLink:
-    """The error for a stop that another robot has obeyed."""
+        link.send(talk.hello_frame())
+        hear(link, talk, lambda: bool(talk.hello), WHO_S)
+    except (KickctlError, LinkLost):
+        return None  # an older program, which does not say who it is, or one without a place
+    if not link.meant.is_other(talk.hello):
+        return None
     return NoLink(
-        f"another robot has obeyed the stop: {uri} does not lead to {name} any more, whose motors"
-        " may still be running",
-        f"press the back button on {name}, or take out its battery. `kickctl discover --save`"
-        " finds it again",
+        f"another robot has obeyed the stop: {link.uri} does not lead to {link.meant.name} any"
+        " more, whose motors may still be running",
+        f"press the back button on {link.meant.name}, or take out its battery. `kickctl discover"
+        " --save` finds it again",
     )
 
 

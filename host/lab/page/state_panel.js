@@ -31,7 +31,6 @@ export function createState(root, lab) {
         identify.disabled = !mayDrive;
         if (!robot) return;
         const { info, status } = robot;
-        const reason = sentences(texts.reason(status, page), status.hint);
         const facts = {
             label: texts.robotLabel(robot.name, info.label),
             address: info.uri,
@@ -40,7 +39,9 @@ export function createState(root, lab) {
             punctual: texts.punctual(status),
             driver: status.controller ?? texts.nobody,
             unattended: texts.unattended[welcome.unattended?.[robot.name]] ?? texts.unknown,
-            reason: robot.lost ? reason : whyOf(robot, lab.store),
+            reason: robot.lost
+                ? sentences(texts.reason(status, page), status.hint)
+                : whyOf(robot, lab.store),
             missed: String(robot.missed),
         };
         for (const [name, value] of Object.entries(facts)) setText(values[name], value);

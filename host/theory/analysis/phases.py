@@ -42,8 +42,8 @@ def phases(found: Averages, parameters: Array) -> list[Phase]:
 
     Returns:
         S for rest, FB for forth and back, LLM for rolling one way, C for chaos, 'undecided' for
-        what has not settled after 6000 s more, or would take more than 100 000 steps of
-        integration for one of the rounds of which these consist, from 50 s to 1600 s.
+        what has not settled after 6000 s more. These are followed in rounds of 50 s to 1600 s. A
+        wheel whose round would take more than 100 000 steps of integration is undecided, too.
     """
     mean, std = np.abs(found.omega_mean), found.omega_std
     rolls = (mean > ROLLING_MEAN) & (std < ROLLING_SPREAD * mean)
