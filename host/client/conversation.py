@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from math import isfinite
 from typing import Any, NamedTuple
 
+from host.client.hello import hello_frame
 from host.client.stop import Stopped, answered
 from host.errors import NoLink, RefusedByRobot, WrongUse, from_robot, printable
 from host.util.arguments import plain, shown, wrong
@@ -75,14 +76,7 @@ class Conversation:
     def hello_frame(self) -> bytes:
         """What the host says first."""
         self._nonce = os.urandom(wire.NONCE_BYTES)
-        message = {
-            "protocol": wire.PROTOCOL,
-            "name": self._name,
-            "client": self._client,
-            "nonce": self._nonce.hex(),
-            "token": self.token is not None,
-        }
-        return _bytes(wire.encode_json(wire.HELLO, message))
+        return hello_frame(self._name, self._client, self._nonce, token=self.token is not None)
 
     def auth_frame(self) -> bytes:
         """The proof that the host has the token."""

@@ -6,6 +6,7 @@ import os
 import struct
 from typing import Any, NamedTuple
 
+from host.client.hello import hello_frame
 from host.errors import KickctlError, NoLink, RobotFault, printable
 from host.link.patience import Patience
 from host.link.transport import Link, LinkLost
@@ -132,7 +133,7 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
             while (received := decoder.next()) is not None:
                 stopped = confirmation(*received)
                 if stopped is not None:
-                    other = _other_robot(link, name)
+                    other = _other_robot(link, decoder, name)
                     if other is None:
                         return stopped
                     raise other
@@ -147,24 +148,13 @@ def stop_robot(link: Link, name: str | None = None, patience_s: float | None = N
     raise _halted(link, failure) if reached and other is None else failure
 
 
-def _other_robot(link: Link, name: str) -> NoLink | None:
+def _other_robot(link: Link, decoder: Any, name: str) -> NoLink | None:
     """The error if another robot than the one that is meant has obeyed; it is asked who it is.
 
     A line leads where its cable does, and another program may be talking over it.
     """
-    if link.meant is None or link.is_line:
-        return None
-    from host.client.access import hear
-    from host.client.conversation import Conversation
-
-    talk = Conversation(None, name[:40], client=os.urandom(wire.NONCE_BYTES).hex())
-    talk.begin()
-    try:
-        link.send(talk.hello_frame())
-        hear(link, talk, lambda: bool(talk.hello), WHO_S)
-    except (KickctlError, LinkLost):
-        return None  # an older program, which does not say who it is, or one without a place
-    if not link.meant.is_other(talk.hello):
+    hello = {} if link.meant is None or link.is_line else _hello(link, decoder, name)
+    if link.meant is None or not link.meant.is_other(hello):
         return None
     return NoLink(
         f"another robot has obeyed the stop: {link.uri} does not lead to {link.meant.name} any"
@@ -172,6 +162,25 @@ def _other_robot(link: Link, name: str) -> NoLink | None:
         f"press the back button on {link.meant.name}, or take out its battery. `kickctl discover"
         " --save` finds it again",
     )
+
+
+def _hello(link: Link, decoder: Any, name: str) -> dict[str, Any]:
+    """What a robot says of itself; empty if it says nothing."""
+    nonce = os.urandom(wire.NONCE_BYTES)
+    try:
+        link.send(hello_frame(name, nonce.hex(), nonce, token=False))
+        patience = Patience(link, WHO_S)
+        while not patience.is_over():
+            decoder.feed(link.receive(0.1))
+            while (received := decoder.next()) is not None:
+                kind, payload = received
+                if kind == wire.HELLO:
+                    return dict(wire.load(payload))
+                if kind == wire.REPLY and "error" in wire.load(payload):
+                    return {}  # it has no place for another host
+    except (LinkLost, wire.BadMessage):
+        pass  # an older program
+    return {}
 
 
 def _logged_in(link: Any) -> bool:

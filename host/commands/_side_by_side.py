@@ -21,7 +21,8 @@ from host.commands._hints import name_robot
 from host.commands._streams import prepare
 from host.commands._terminal import as_dict, print_answer, print_result, say, show
 from host.errors import KickctlError, NotDone, WrongUse
-from host.link.names import Chosen, several
+from host.link.names import several
+from host.link.robots_file import Known
 
 InOneLine = Callable[[dict[str, Any]], str]
 
@@ -94,7 +95,7 @@ def on_each(options: argparse.Namespace, text: str, in_one_line: InOneLine | Non
 class _Run:
     """The process of one robot, and what it has printed so far."""
 
-    def __init__(self, robot: Chosen, options: argparse.Namespace) -> None:
+    def __init__(self, robot: Known, options: argparse.Namespace) -> None:
         self.robot = robot
         self.out = b""
         self._words = b""
@@ -138,7 +139,7 @@ class _Run:
         return Outcome(name, {"brick": self.robot.address, **result}, line, status)
 
 
-def _run_alone(robot: Chosen, options: argparse.Namespace) -> None:
+def _run_alone(robot: Known, options: argparse.Namespace) -> None:
     """Run the verb in a process of its own, which ends here."""
     status = 1
     try:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, TypeVar
 from host.commands._terminal import say
 from host.errors import WrongUse
 from host.link.addresses import SIM, sim_options, with_params
-from host.link.names import Chosen, chosen, is_several, named, several
+from host.link.names import chosen, is_several, named, several
+from host.link.robots_file import Known
 from host.util.interrupts import uninterrupted
 from host.util.numbers import Number
 
@@ -71,7 +72,7 @@ def add_unattended(parser: argparse.ArgumentParser, left_alone: str) -> None:
     )
 
 
-def robots_of(options: argparse.Namespace) -> list[Chosen]:
+def robots_of(options: argparse.Namespace) -> list[Known]:
     """The robots that a command line names. Raises WrongUse."""
     text = named(options.brick)
     robots = several(text) if text is not None and is_several(text) else [chosen(text)]
@@ -83,7 +84,7 @@ def robots_of(options: argparse.Namespace) -> list[Chosen]:
     return _told_apart(robots)
 
 
-def _told_apart(robots: list[Chosen]) -> list[Chosen]:
+def _told_apart(robots: list[Known]) -> list[Known]:
     """The robots with names by which people tell simulated ones without a name apart."""
     nameless = [
         one for one in robots if one.name == one.address and sim_options(one.address) is not None
@@ -95,7 +96,7 @@ def _told_apart(robots: list[Chosen]) -> list[Chosen]:
 
 
 def station_of(
-    robot: Chosen,
+    robot: Known,
     options: argparse.Namespace,
     stack: ExitStack,
     kind: type[S],
@@ -125,7 +126,7 @@ def station_of(
         walls = (sim_options(address) or {}).get("walls")
         desk = stack.enter_context(DeskRobot(child_options(address, options.seed)))
         station = kind(
-            Chosen(robot.name, desk.uri, desk.token),
+            Known(robot.name, desk.uri, desk.token),
             options.unattended or CONTINUE,
             "simulated",
             walls_m=None if walls is None else float(walls),

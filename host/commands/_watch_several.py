@@ -16,7 +16,8 @@ from host.commands._watch_keys import FOOT, HELP_FOOT, HELP_KEY, KeyActions, in_
 from host.commands._watch_lines import lines
 from host.commands._watch_table import SeveralRobots
 from host.errors import KickctlError, NoLink
-from host.link.names import Chosen, link_to
+from host.link.names import link_to
+from host.link.robots_file import Known
 
 _LOOK_S = 0.1
 # A robot that is being looked for when the watch ends need not be found any more.
@@ -35,7 +36,7 @@ class _Row:
     """
 
     def __init__(
-        self, robot: Chosen, options: argparse.Namespace, take: Take, add: Callable[[str], object]
+        self, robot: Known, options: argparse.Namespace, take: Take, add: Callable[[str], object]
     ) -> None:
         self.name = robot.name
         self.error: BaseException | None = None
@@ -80,7 +81,7 @@ class _Row:
         self._add(f"{self.name}: {words}")
 
 
-def watch_several(options: argparse.Namespace, robots: list[Chosen]) -> int:
+def watch_several(options: argparse.Namespace, robots: list[Known]) -> int:
     """Watch robots side by side until each has been watched for the time of the options.
 
     Args:

@@ -15,7 +15,7 @@ from host.commands._stations import add_port, add_unattended, network_address, r
 from host.commands._terminal import print_result, say, show_next
 from host.errors import WrongUse
 from host.link.addresses import sim_options
-from host.link.names import Chosen
+from host.link.robots_file import Known
 from host.util.numbers import Number
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ class _OwnAddress(argparse.Action):
         options.host = address
 
 
-def _walls_m(options: argparse.Namespace, robots: list[Chosen]) -> float | None:
+def _walls_m(options: argparse.Namespace, robots: list[Known]) -> float | None:
     """How far apart the walls are that were asked for. Raises WrongUse for a real robot."""
     if options.walls is not None and any(sim_options(one.address) is None for one in robots):
         raise WrongUse("--walls is for the simulated robot", "leave it or --brick out")

@@ -15,7 +15,8 @@ from host.commands._side_by_side import Outcome, failed, show_each
 from host.commands._terminal import answer
 from host.errors import WrongUse
 from host.link.addresses import sim_options
-from host.link.names import ALL, Chosen, chosen, every, is_several, link_to, named
+from host.link.names import ALL, chosen, every, is_several, link_to, named
+from host.link.robots_file import Known
 
 HELP = (
     "stop the motors. It needs no token, and works with a robot of another version. Without"
@@ -64,7 +65,7 @@ def _all_known() -> list[str]:
         ) from error
 
 
-def _stop(robot: Chosen, seed: int | None) -> Stopped:
+def _stop(robot: Known, seed: int | None) -> Stopped:
     """Stop one robot. Raises KickctlError if nobody has confirmed it, or a motor did not obey."""
     if sim_options(robot.address) is not None:
         raise WrongUse(
@@ -79,7 +80,7 @@ def _stop(robot: Chosen, seed: int | None) -> Stopped:
 
 def _stop_all(options: argparse.Namespace, names: list[str]) -> int:
     """Stop robots side by side: none waits for another one. Say of each what is known."""
-    ends: SimpleQueue[tuple[str, tuple[Chosen, Stopped] | BaseException]] = SimpleQueue()
+    ends: SimpleQueue[tuple[str, tuple[Known, Stopped] | BaseException]] = SimpleQueue()
 
     def stop(name: str) -> None:
         try:
@@ -94,7 +95,7 @@ def _stop_all(options: argparse.Namespace, names: list[str]) -> int:
     return show_each(options, names, outcomes)
 
 
-def _outcome(name: str, end: tuple[Chosen, Stopped] | BaseException, token: str | None) -> Outcome:
+def _outcome(name: str, end: tuple[Known, Stopped] | BaseException, token: str | None) -> Outcome:
     if isinstance(end, tuple):
         robot, stopped = end
         return Outcome(name, _result(robot, stopped), stopped.sentence(), 0)
@@ -105,5 +106,5 @@ def _outcome(name: str, end: tuple[Chosen, Stopped] | BaseException, token: str 
     return failed(name, failure)
 
 
-def _result(robot: Chosen, stopped: Stopped) -> dict[str, Any]:
+def _result(robot: Known, stopped: Stopped) -> dict[str, Any]:
     return {"brick": robot.address, "state": stopped.state, "tick": stopped.tick}

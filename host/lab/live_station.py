@@ -31,7 +31,8 @@ from host.lab.station import (
 )
 from host.lab.stopper import BACK, LAB
 from host.lab.urgent import UrgentThread
-from host.link.names import Chosen, link_to, own_token
+from host.link.names import link_to, own_token
+from host.link.robots_file import Known
 from host.logs.tap import Event
 from host.util.own_name import own_name
 from robot.record import Record
@@ -90,7 +91,7 @@ class LiveStation(Station):
 
     def __init__(
         self,
-        robot: Chosen,
+        robot: Known,
         rule: str,
         label: str,
         walls_m: float | None = None,

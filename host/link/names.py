@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from host.errors import WrongUse, quotable
 from host.link import robots_file
 from host.link.addresses import FORMS, SIM, make_link, place_of, sim_options, with_host
+from host.link.robots_file import Known
 from host.link.transport import Link, Meant
 from host.util.arguments import need_text
 
@@ -26,23 +27,7 @@ _ADDRESS = re.compile(r",\s*[a-z]+://")
 _WITH_COMMA = re.compile(r"serial://|[a-z]+://[^,]*\?")
 
 
-class Chosen(NamedTuple):
-    """A robot that was named.
-
-    Attributes:
-        name: Its name; its address if it has no name.
-        address: Its address.
-        token: The path of its own token file; None if it has none that is known.
-        hardware_id: That of its machine; None if it is not known, or an address was named.
-    """
-
-    name: str
-    address: str
-    token: str | None = None
-    hardware_id: str | None = None
-
-
-def chosen(text: str | None) -> Chosen:
+def chosen(text: str | None) -> Known:
     """The robot to use: the one named, else that of $KICK_BRICK, else the embedded simulated one.
 
     Args:
@@ -54,7 +39,7 @@ def chosen(text: str | None) -> Chosen:
     """
     text = named(text)
     if text is None:
-        return Chosen(SIM, SIM)
+        return Known(SIM, SIM)
     if is_several(text):
         raise WrongUse(
             f"'{quotable(text)}' means several robots, and one is wanted here",
@@ -97,7 +82,7 @@ def is_several(text: str) -> bool:
     return text == ALL or bool(comma and (not within or _ADDRESS.search("," + rest)))
 
 
-def several(text: str) -> list[Chosen]:
+def several(text: str) -> list[Known]:
     """The robots that a text means.
 
     Args:
@@ -119,13 +104,13 @@ def several(text: str) -> list[Chosen]:
     return [_find(name) for name in names]
 
 
-def every() -> list[Chosen]:
+def every() -> list[Known]:
     """All robots that have a name.
 
     Raises:
         WrongUse: None has one.
     """
-    robots = [Chosen(*one) for one in robots_file.read().values()]
+    robots = list(robots_file.read().values())
     if not robots:
         raise WrongUse(
             "no robot has a name on this computer yet",
@@ -134,10 +119,10 @@ def every() -> list[Chosen]:
     return robots
 
 
-def _find(text: str) -> Chosen:
+def _find(text: str) -> Known:
     """The robot of a name or an address. Raises WrongUse."""
     if not robots_file.is_name(text):
-        return Chosen(text, text, None)
+        return Known(text, text)
     robots = robots_file.read()
     if text not in robots:
         close = get_close_matches(text, [*robots, ALL], 1) if robots else []
@@ -146,10 +131,10 @@ def _find(text: str) -> Chosen:
             f"no robot is named '{text}', and it is no address of one",
             f"did you mean {close[0]}?" if close else f"{known}; {FORMS}",
         )
-    return Chosen(*robots[text])
+    return robots[text]
 
 
-def link_to(robot: Chosen, seed: int | None = None) -> Link:
+def link_to(robot: Known, seed: int | None = None) -> Link:
     """The link to a robot, not opened yet; `seed` is for a simulated one.
 
     Who named it means that machine, and no other one that has got its address since.
@@ -163,7 +148,7 @@ def link_to(robot: Chosen, seed: int | None = None) -> Link:
     return link
 
 
-def own_token(robot: Chosen) -> str | None:
+def own_token(robot: Known) -> str | None:
     """The token file of a robot: its own, or that of a robot with a name at the same place."""
     if robot.token is not None or sim_options(robot.address) is not None:
         return robot.token
@@ -178,7 +163,7 @@ def name_at(address: str) -> str:
         return ""
 
 
-def _at(address: str) -> Iterator[robots_file.Known]:
+def _at(address: str) -> Iterator[Known]:
     """The robots with a name that are at the place of an address."""
     place = place_of(address)
     return (one for one in robots_file.read().values() if _is_at(place, one.address))
@@ -227,7 +212,7 @@ def save(found: Iterable[Found]) -> Saved:
     return saved
 
 
-def same_robot(hardware_id: str | None, address: str) -> robots_file.Known | None:
+def same_robot(hardware_id: str | None, address: str) -> Known | None:
     """The robot with a name that is on this machine and listens at the port of this address."""
     port = place_of(address)[1]
     return next(
@@ -242,7 +227,7 @@ def same_robot(hardware_id: str | None, address: str) -> robots_file.Known | Non
     )
 
 
-def _at_place(found: Found, hardware_id: str | None) -> robots_file.Known | None:
+def _at_place(found: Found, hardware_id: str | None) -> Known | None:
     """The robot with a name at one of the addresses of what was found, unless its id is another."""
     port = place_of(found.uri)[1]
     places = [place_of(found.uri), *((host, port) for host in (found.host, *found.addresses))]

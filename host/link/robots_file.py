@@ -38,18 +38,19 @@ _NEW_FILE = (
 
 
 class Known(NamedTuple):
-    """A robot that has a name.
+    """A robot that this computer knows how to reach.
 
     Attributes:
-        name: Its name.
+        name: Its name; its address if it has no name.
         address: Its address.
-        token: The path of its own token file; None if it has none.
-        hardware_id: What its machine says of itself under any address; None if it is not known.
+        token: The path of its own token file; None if it has none that is known.
+        hardware_id: What its machine says of itself under any address; None if it is not known, or
+            the robot has no name.
     """
 
     name: str
     address: str
-    token: str | None
+    token: str | None = None
     hardware_id: str | None = None
 
 

@@ -17,7 +17,7 @@ from host.errors import LeaseLost, NoLink, NotDone, RobotFault
 from host.kicking.outcome import require_control
 from host.kicking.robot_claims import PAPER
 from host.link.addresses import SIM, sim_options
-from host.link.names import Chosen
+from host.link.robots_file import Known
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
 from host.runs.contract import Cell, Experiment, Row, Setting
@@ -34,7 +34,7 @@ PAUSE_S = 1.0
 @contextmanager
 def robots(
     experiment: Experiment,
-    chosen: Chosen,
+    chosen: Known,
     setting: Setting,
     token: str | None,
     logs: Path,

@@ -13,7 +13,8 @@ from typing import Any
 from host.errors import WrongUse
 from host.experiments.efforts import EFFORTS, in_words
 from host.link.addresses import SIM, make_link, sim_options
-from host.link.names import Chosen, chosen, own_token
+from host.link.names import chosen, own_token
+from host.link.robots_file import Known
 from host.perform.catalogue import BODY, STUDY, find
 from host.perform.drawings import USUAL, drawing, files
 from host.perform.sweep import FAILURES, Sweep, forgiving
@@ -171,7 +172,7 @@ def _require_cluster(scheduler: str, *, batch: bool) -> None:
     require_scheduler(scheduler)
 
 
-def _robot_of(name: str, kind: str, uri: str | None) -> tuple[Chosen | None, dict[str, str] | None]:
+def _robot_of(name: str, kind: str, uri: str | None) -> tuple[Known | None, dict[str, str] | None]:
     """The robot of an experiment, and the options in its address as `_simulated` returns them.
 
     A study has no robot, and none of these.

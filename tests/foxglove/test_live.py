@@ -8,7 +8,7 @@ from mcap.reader import make_reader
 from host.foxglove.server import Viewers
 from host.foxglove.station import ShownStation
 from host.lab.station import STOP
-from host.link.names import Chosen
+from host.link.robots_file import Known
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
 from host.logs.messages import EVENTS, TICKS
@@ -22,7 +22,7 @@ from tests.live import Relay
 def shown(uri, token=None, **settings):
     """The server of one robot, and what it has said."""
     said = []
-    station = ShownStation(Chosen("anna", uri, token), STOP, "real")
+    station = ShownStation(Known("anna", uri, token), STOP, "real")
     station.start()
     try:
         with Viewers([station], say=said.append, **settings) as viewers:

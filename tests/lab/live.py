@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from host.lab.live_station import LiveStation
 from host.lab.station import STOP
-from host.link.names import Chosen
+from host.link.robots_file import Known
 
 
 class Ears:
@@ -50,7 +50,7 @@ def controller(observer):
 
 @contextmanager
 def station_at(uri, token, rule=STOP):
-    station = LiveStation(Chosen("anna", uri, token), rule, "simulated")
+    station = LiveStation(Known("anna", uri, token), rule, "simulated")
     station.pages = Ears()
     station.start()
     try:

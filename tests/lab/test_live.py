@@ -13,7 +13,7 @@ from host.lab.live_station import LiveStation
 from host.lab.server import Lab
 from host.lab.station import CONTINUE, STOP
 from host.lab.stopper import LAB
-from host.link.names import Chosen
+from host.link.robots_file import Known
 from robot.record import STRUCT
 from tests.lab.browser import browse, held_up
 from tests.lab.live import Answers, Beating, Ears, controller, started, state, station_at
@@ -215,7 +215,7 @@ def test_a_connection_that_died_for_good_is_replaced(station, observer):
 
 
 def test_a_robot_that_is_not_there_is_lost_and_a_stop_says_so():
-    station = LiveStation(Chosen("anna", "tcp://127.0.0.1:1"), STOP, "real")
+    station = LiveStation(Known("anna", "tcp://127.0.0.1:1"), STOP, "real")
     station.pages = Ears()
     station.start()
     try:

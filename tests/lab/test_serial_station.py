@@ -4,7 +4,7 @@ import pytest
 
 from host.lab.live_station import LiveStation
 from host.lab.station import STOP
-from host.link.names import Chosen
+from host.link.robots_file import Known
 from tests.lab.live import Answers, Beating, Ears, started
 from tests.link.machines import Cable, Machine
 from tests.live import wait_until
@@ -26,7 +26,7 @@ def station(machine, tmp_path):
     token = tmp_path / "anna.token"
     token.write_text(TOKEN.hex(), encoding="ascii")
     token.chmod(0o600)
-    station = LiveStation(Chosen("anna", machine.uri, str(token)), STOP, "real")
+    station = LiveStation(Known("anna", machine.uri, str(token)), STOP, "real")
     station.pages = Ears()
     station.start()
     assert station.met.wait(20.0)

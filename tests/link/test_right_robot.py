@@ -12,7 +12,8 @@ from host.errors import NoLink
 from host.lab.live_station import LiveStation
 from host.lab.station import STOP as STOPS
 from host.link import robots_file
-from host.link.names import Chosen, link_to
+from host.link.names import link_to
+from host.link.robots_file import Known
 from host.link.transport import Meant
 from robot import wire
 from robot.record import STATES
@@ -104,7 +105,7 @@ def test_a_link_that_comes_back_to_another_robot_ends(monkeypatch):
 
 def test_the_lab_says_so_and_its_stop_does_not_claim_to_have_stopped_it(bert):
     (anna,) = robots_file.read().values()
-    station = LiveStation(Chosen(*anna), STOPS, "real")
+    station = LiveStation(anna, STOPS, "real")
     station.pages = Ears()
     with pytest.raises(NoLink, match="does not lead to anna"):
         station._connect(observe=True)
@@ -133,5 +134,5 @@ def test_an_older_program_that_hangs_up_on_a_hello_has_stopped():
         older = threading.Thread(target=answer_one_stop)
         older.start()
         uri = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        assert stop_robot(link_to(Chosen("anna", uri, None, ANNA))).tick == 7
+        assert stop_robot(link_to(Known("anna", uri, None, ANNA))).tick == 7
         older.join()

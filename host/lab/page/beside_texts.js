@@ -24,7 +24,7 @@ export const besideTexts = {
     toggleLabel: "Side by side: all robots and their twins at once",
     here: "Kicks go here",
     choose: "Kick this one",
-    shown: "Chosen",
+    shown: "Known",
     look: "Choose this one",
     chooseLabel: (words, name) => `${words}: ${name}`,
     stopLabel: (name) => `STOP ${name}`,

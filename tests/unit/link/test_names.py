@@ -13,7 +13,7 @@ from host.errors import WrongUse
 from host.link import robots_file
 from host.link.addresses import place_of
 from host.link.discovery import Found
-from host.link.names import Chosen, chosen, every, is_several, name_at, own_token, save, several
+from host.link.names import chosen, every, is_several, name_at, own_token, save, several
 from host.link.robots_file import (
     Known,
     add,
@@ -154,7 +154,7 @@ def test_a_spoiled_file_is_named_with_its_line_and_nothing_changes(by_hand, text
         assert why in error.value.message
         assert "kickctl robots add" in error.value.hint
     assert by_hand.read_text(encoding="utf-8") == text
-    assert chosen("tcp://h") == Chosen("tcp://h", "tcp://h")
+    assert chosen("tcp://h") == Known("tcp://h", "tcp://h")
 
 
 def test_a_file_that_is_no_text(by_hand):
@@ -220,9 +220,9 @@ def test_of_two_programs_that_add_at_once_none_loses_a_robot(tmp_path):
 
 
 def test_the_robot_that_is_used(monkeypatch, by_hand):
-    assert chosen(None) == Chosen("sim://", "sim://")
-    assert chosen("anna") == Chosen("anna", "tcp://10.0.0.1")
-    assert chosen("bert") == Chosen("bert", "tcp://10.0.0.2", "/keys/bert")
+    assert chosen(None) == Known("sim://", "sim://")
+    assert chosen("anna") == Known("anna", "tcp://10.0.0.1")
+    assert chosen("bert") == Known("bert", "tcp://10.0.0.2", "/keys/bert")
     monkeypatch.setenv("KICK_BRICK", "bert")
     assert (chosen(None).name, chosen("tcp://other").address) == ("bert", "tcp://other")
     with pytest.raises(WrongUse, match="is empty") as error:

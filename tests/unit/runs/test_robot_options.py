@@ -6,7 +6,7 @@ from host.errors import NotDone, WrongUse
 from host.experiments.registry import ROBOT, claimed
 from host.experiments.robot import bifurcation, chaos, reliability, wall
 from host.kicking.modes import CHAOS, MODES, WALL_TURNER
-from host.link.names import Chosen
+from host.link.robots_file import Known
 from host.perform.robots import robots
 from host.perform.run import perform
 from host.runs.contract import POINT, Setting
@@ -50,9 +50,7 @@ class Look:
 
 def test_a_robot_gets_them_at_each_point(tmp_path):
     setting = Setting(1, options("timeline", k=7.0))
-    with robots(
-        Look(), Chosen("sim://", "sim://"), setting, None, tmp_path / "logs", print
-    ) as work:
+    with robots(Look(), Known("sim://", "sim://"), setting, None, tmp_path / "logs", print) as work:
         for tick_s in (0.02, 0.04):
             rows, _ = work({POINT: {"tick": tick_s, "a": 3.0}, "cell": {}})
             params = rows[0]["status"]
