@@ -47,8 +47,8 @@ class PhaseDiagram(Result):
         omega_mean: mean of omega, rad/s, (taus, ks).
         omega_std: standard deviation of omega, rad/s, (taus, ks).
         phase: 'S' the wheel rests, 'FB' it rolls forth and back, 'LLM' it rolls one way, 'C' it is
-            chaotic, 'undecided' it has not settled after 6000 s more, or is too fast to be
-            followed for so long, (taus, ks).
+            chaotic, 'undecided' it has not settled after 6000 s more, or is so fast that one
+            round of these would take more than 100 000 steps of integration, (taus, ks).
     """
 
     k: Array
