@@ -24,6 +24,9 @@ SILENCE_S = 0.2
 # The loop does not wait for the bytes to come back. After this many ticks without one it takes the
 # watchdog for dead.
 MOST_UNANSWERED = 40
+# How long a loop that wakes waits for the watchdog to finish a stop: less than SILENCE_S, or this
+# would be the next silence.
+LAST_STOP_S = 0.1
 # A motor that does not obey gets the command again: TRIES times at once, as some errors pass; then
 # every AGAIN_S; and for at most LONGEST_S once the loop is dead.
 TRIES = 3
@@ -199,6 +202,8 @@ class Watchdog(object):
         try:
             echoes = self._echoes()
             self._send(_ALIVE)
+            if _STOPPED in echoes:
+                echoes += self._last_echoes()
         except OSError as error:
             raise MotorFault(
                 "the watchdog has ended ({}); start the robot's program again".format(
@@ -209,6 +214,20 @@ class Watchdog(object):
         if self._unanswered > MOST_UNANSWERED:
             raise MotorFault("the watchdog does not answer; start the robot's program again")
         return _STOPPED in echoes
+
+    def _last_echoes(self):
+        """Wait until the watchdog has heard that the loop lives, so that no stop is under way.
+
+        That stop would fall upon a robot that somebody has cleared and started meanwhile.
+        """
+        echoes = b""
+        until = time.monotonic() + LAST_STOP_S
+        while not echoes.endswith(_ALIVE):
+            left_s = max(until - time.monotonic(), 0.0)
+            if not select.select([self._link], (), (), left_s)[0]:
+                break
+            echoes += self._echoes()
+        return echoes
 
     def _send(self, what):
         try:

@@ -147,8 +147,30 @@ def test_a_loop_that_froze_and_came_back_finds_itself_stopped_and_can_go_on(tree
         assert eventually(lambda: stopped(tree))  # nobody feeds it any more
         assert eventually(dog.feed)
         for _ in range(2 * MOST_UNANSWERED):
-            assert select.select([dog._link], (), (), PATIENCE_S)[0]  # a busy machine needs time
             dog.feed()
+            assert select.select([dog._link], (), (), PATIENCE_S)[0]  # a busy machine needs time
+    dog.close()
+
+
+def test_a_stop_under_way_when_the_loop_wakes_is_no_other_silence(tree):
+    """Who clears the fault and starts the robot at once would find it in fault again."""
+    dog = Watchdog(lambda: stop_all(str(tree)), lambda: None)
+    dog._link.close()
+    dog._link, end = socket.socketpair()
+    dog._link.setblocking(False)
+    end.send(b"!")
+
+    def stop_and_listen():
+        beat = end.recv(64)  # the loop is awake
+        end.send(b"!")
+        end.send(beat)
+
+    with end:
+        watchdog = threading.Thread(target=stop_and_listen)
+        watchdog.start()
+        assert dog.feed()
+        watchdog.join()
+        assert not dog.feed()
     dog.close()
 
 
