@@ -80,13 +80,13 @@ def test_the_keyboard_alone_guesses_kicks_stops_and_starts(visit, station):
     assert focus == "solid"
 
 
-@pytest.mark.parametrize("width", [320, 390, 768, 1280, 1920])
-def test_nothing_scrolls_sideways(visit, width):
-    visitor = visit(viewport={"width": width, "height": 800})
-    visitor.page.click(".own summary")
-    visitor.page.click("#parameters summary")
-    wide = visitor.page.evaluate("document.documentElement.scrollWidth")
-    assert wide <= width
+def test_nothing_scrolls_sideways(visit):
+    page = visit(viewport={"width": 320, "height": 800}).page
+    page.click(".own summary")
+    page.click("#parameters summary")
+    for width in (320, 390, 768, 1280, 1920):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 def test_on_a_tablet_nothing_lies_over_start_after_a_stop(visit):
