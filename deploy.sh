@@ -14,7 +14,12 @@ fail() { # fail STATUS WHAT REMEDY
 }
 
 # quoted TEXT: as one word for a shell
-quoted() { printf "'%s'" "$(printf '%s' "$1" | sed "s/'/'\\\\''/g")"; }
+quoted() {
+    case $1 in
+    *\'*) printf "'%s'" "$(printf '%s' "$1" | sed "s/'/'\\\\''/g")" ;;
+    *) printf "'%s'" "$1" ;;
+    esac
+}
 
 typed() { # typed WORD...: a command as a person types it, quoted where that is needed
     line=''
@@ -75,7 +80,9 @@ END
 }
 
 # marked NAME: what brick.sh has printed under this name, among all that a login may print
-marked() { sed -n "s/.*kickctl-$1=\([^=]*\)=.*/\1/p" | tail -n 1; }
+marked() {
+    sed -n "/kickctl-$1=[^=]*=/h; $ { x; s/.*kickctl-$1=\([^=]*\)=.*/\1/p; }"
+}
 
 leave() {
     [ ! -e "$folder/ssh" ] ||
@@ -253,7 +260,8 @@ listens() {
 here=$PWD
 from=$(dirname "$0") # as it was typed, so that the closing words can be typed too
 # In a checkout robot/ lies beside this script; in an installed kickctl it lies one folder higher.
-cd "$(dirname "$(readlink -f "$0")")"
+self=$(readlink -f "$0")
+cd "${self%/*}/"
 [ -d robot ] || cd ..
 . host/deploy/ssh.sh
 
@@ -294,10 +302,11 @@ case $token in
 esac
 command -v python3 >/dev/null || fail 2 "this machine has no python3" "install it; kickctl needs it"
 # By the rules of host/link/ssh.py, as words of this shell.
-ssh_options=$(python3 -BS -c '
+ssh_options=''
+[ -z "${KICK_SSH_OPTIONS-}" ] || ssh_options=$(python3 -BS -c '
 import os, shlex
 try:
-    print(*map(shlex.quote, shlex.split(os.environ.get("KICK_SSH_OPTIONS", ""))))
+    print(*map(shlex.quote, shlex.split(os.environ["KICK_SSH_OPTIONS"])))
 except ValueError as error:
     raise SystemExit(str(error))' 2>&1) ||
     fail 2 "KICK_SSH_OPTIONS cannot be understood: $ssh_options" "close its quotes"

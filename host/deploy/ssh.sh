@@ -21,7 +21,7 @@ address() { # address TEXT: take [ssh://][USER@]HOST[:PORT] apart; non-zero if i
     esac
     port=${port#:}
     [ "${port:-22}" -le 65535 ] || return 1
-    host=$(printf '%s' "$host" | sed 's/%25\(.\)/%\1/') # so is a '%' written in a URI
+    case $host in *%25?*) host=${host%%%25*}%${host#*%25} ;; esac # so is a '%' written in a URI
     login=${user:+$user@}$host
     brick=$login${port:+:$port}
     case $host in *:*) brick="${user:+$user@}[$host]${port:+:$port}" ;; esac

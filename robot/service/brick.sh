@@ -39,32 +39,45 @@ give_up() { # give_up STATUS WHAT REMEDY
     exit "$1"
 }
 
+# A process more takes a brick some hundredths of a second, so the shell itself cuts texts.
+
 # release current|previous: its name, or nothing
-release() { basename "$(readlink "$ROOT/$1" 2>/dev/null || true)"; }
+release() {
+    to=$(readlink "$ROOT/$1" 2>/dev/null || true)
+    tell "${to##*/}"
+}
 
 # kept NAME: the path of robot.pid or robot.log, wherever the last start could write them
 kept() { if [ -e "$RUN/robot.pid" ]; then echo "$RUN/$1"; else echo "$ROOT/$1"; fi; }
 
 # The program's process id; nothing if it does not run, or if another process has this number now.
 program_pid() {
-    pid=$(cat "$(kept robot.pid)" 2>/dev/null) || return 0
+    { read -r pid <"$(kept robot.pid)"; } 2>/dev/null || return 0
     case $(readlink "/proc/$pid/cwd" 2>/dev/null) in
     "$(cd "$ROOT" && pwd -P)"/releases/*) echo "$pid" ;;
     esac
 }
 
-ready() { sed -n 's|^READY tcp://||p' "$(kept robot.log)" 2>/dev/null | tail -n 1; }
+# The last one, which `sed` holds until the end.
+ready() {
+    sed -n '\|^READY tcp://|h; $ { x; s|^READY tcp://||p; }' "$(kept robot.log)" 2>/dev/null || true
+}
 
-port() { ready | sed 's/.*://'; }
+port() {
+    at=$(ready)
+    tell "${at##*:}"
+}
 
 # Whether the program listens at one address of the brick only, by what the kernel says: arguments
 # and the log have many words for it. 0A is a socket that listens, and zeros are every address.
 at_one_address() {
-    sockets=$(readlink "/proc/$(program_pid)/fd"/* 2>/dev/null | tr '\n' ' ')
+    sockets=$(readlink "/proc/$(program_pid)/fd"/* 2>/dev/null || true)
     # Motors of an engineer's own may listen, too, at other ports.
     end=$(printf ':%04X' "$(port)" 2>/dev/null) || return 1
-    cat /proc/net/tcp /proc/net/tcp6 2>/dev/null | awk -v sockets="$sockets" -v end="$end$" '
-        $4 == "0A" && $2 ~ end && $2 !~ /^0+(FFFF0+)?:/ && index(sockets, "[" $10 "]") { one = 1 }
+    cat /proc/net/tcp /proc/net/tcp6 2>/dev/null | sockets=$sockets awk -v end="$end$" '
+        $4 == "0A" && $2 ~ end && $2 !~ /^0+(FFFF0+)?:/ && index(ENVIRON["sockets"], "[" $10 "]") {
+            one = 1
+        }
         END { exit !one }'
 }
 
@@ -73,8 +86,9 @@ at_one_address() {
 # another day the network may give it to another robot. So 127.0.0.1 counts while nothing is known.
 host() {
     at_one_address || return 0
-    at=$(ready | sed 's/:[0-9]*$//' | tr -d '[]')
-    case $at in 127.0.0.1 | localhost) ;; *) echo "$at" ;; esac
+    at=$(ready)
+    at=${at%:*} at=${at#[} at=${at%]}
+    case $at in 127.0.0.1 | localhost) ;; *) tell "$at" ;; esac
 }
 
 # What a login may print by itself must not be taken for what deploy.sh wants to know. For each
@@ -116,13 +130,13 @@ run() { # run [ARGUMENT ...]: become the robot's program; robot.pid keeps its nu
     main="import gc, sys; gc.disable(); sys.path.append('$PACKAGES')
 from robot.__main__ import main; raise SystemExit(main())"
     # Where Debian's packages are enough, Python itself need not look for more (-S): 0.4 s.
-    alone=''
-    case " $(arguments) $*" in
+    alone='' given=$(arguments)
+    case " $given $*" in
     *" --motors"* | *" --serial"*) ;;
     *) [ ! -d "$PACKAGES/ev3dev2" ] || alone=-S ;;
     esac
-    # shellcheck disable=SC2046 # one word each
-    exec python3 $alone -c "$main" --token "$TOKEN" $(arguments) "$@" >>"$log" 2>&1
+    # shellcheck disable=SC2086 # one word each
+    exec python3 $alone -c "$main" --token "$TOKEN" $given "$@" >>"$log" 2>&1
 }
 
 status() {
