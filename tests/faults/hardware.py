@@ -39,6 +39,7 @@ def replug(permissions_s):
         since = time.monotonic()
         live.inject(f"replug {port} {permissions_s}")
         while refusals[-1]:
+            live.robot.pump(TICK_S)
             refusals.append(live.refusal(live.robot.clear))
             assert time.monotonic() - since < 5.0, refusals[-1]
         seconds = time.monotonic() - since
