@@ -12,7 +12,7 @@ pytestmark = needs_sshd
     [
         ("__main__", "\nraise SystemExit('the dog ate it')\n", "the dog ate it"),
         ("program", "\nimport nothing_of_that_name\n", "nothing_of_that_name"),
-        ("server", "\nServer.serve = lambda self, timeout_s: None\n", "not well"),
+        ("server", "\nServer.serve = lambda self, timeout_s: time.sleep(timeout_s)\n", "it hangs"),
         (
             "loop",
             "\nLoop.tick = lambda self: setattr(self, 'deadline', self.deadline + 0.01)\n",
