@@ -4,6 +4,7 @@ Who logs in finds a folder of the test as home.
 """
 
 import contextlib
+import functools
 import getpass
 import os
 import re
@@ -12,6 +13,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -81,13 +83,23 @@ def write(path, text, mode=0o644):
     path.chmod(mode)
 
 
+@functools.cache
+def key(name):
+    """A key of ssh, the same for the same name: its private part and its public one."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "key"
+        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", path], check=True)
+        return tuple(each.read_text(encoding="utf-8") for each in (path, path.with_suffix(".pub")))
+
+
 class Brick:
     """The machine behind sshd.
 
     `home` is its user's folder, `sysfs` its devices, `etc` its settings, `bin` its own programs.
+    `name` tells it from other bricks of the same test: each has keys of its own.
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder, name="brick"):
         self.folder = folder
         self.home, self.sysfs, self.etc, self.bin = (
             folder / "brick" / name for name in ("home", "class", "etc", "bin")
@@ -102,10 +114,10 @@ class Brick:
         self.replace("python3", f'exec {sys.executable} "$@"')
         (folder / "brick" / "packages").symlink_to(Path(ev3dev2.__file__).parents[1])
         self.ssh_config = folder / "ssh_config"
-        for key in ("host_key", "user_key"):
-            subprocess.run(
-                ["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key], check=True
-            )
+        for of in ("host_key", "user_key"):
+            private, public = key(f"{of} of {name}")
+            write(folder / of, private, 0o600)
+            write(folder / f"{of}.pub", public)
         write(
             folder / "known_hosts",
             f"[127.0.0.1]:{self.port} {(folder / 'host_key.pub').read_text(encoding='utf-8')}",
@@ -122,11 +134,10 @@ class Brick:
         """Add lines to sshd's settings, before all others, and have it read them."""
         path = self.folder / "sshd_config"
         text = path.read_text(encoding="utf-8")
-        log = self.folder / "sshd.log"
-        before = log.read_text(encoding="utf-8").count("Server listening")
+        before = self._starts()
         write(path, "\n".join((*lines, text)))
         self._sshd.send_signal(signal.SIGHUP)
-        wait_until(lambda: log.read_text(encoding="utf-8").count("Server listening") > before)
+        wait_until(lambda: self._starts() > before)
 
     def greet(self, words):
         """Have each login begin with these words, as the user's .bashrc on the brick might."""
@@ -147,7 +158,7 @@ class Brick:
         )
 
     def boot(self):
-        """Start sshd, and wait until it answers."""
+        """Start sshd, and wait until it listens."""
         # A sshd of root insists on this empty folder, which its service makes. It stays, for other
         # tests may run beside this one.
         if os.getuid() == 0:
@@ -157,7 +168,7 @@ class Brick:
             self._sshd = subprocess.Popen(
                 [SSHD, "-D", "-e", "-f", self.folder / "sshd_config"], stderr=log
             )
-        wait_until(self._answers)
+        wait_until(self._starts)
 
     def take_card(self, other):
         """Have the brick hold what another one holds, as a copy of its card would."""
@@ -187,13 +198,11 @@ class Brick:
         self.do(f"setsid {program} </dev/null >/dev/null 2>&1 &")
         wait_until(lambda: "READY" in self.log())
 
-    def _answers(self):
-        assert self._sshd.poll() is None, (self.folder / "sshd.log").read_text(encoding="utf-8")
-        with (
-            contextlib.suppress(OSError),
-            socket.create_connection(("127.0.0.1", self.port), 1.0) as link,
-        ):
-            return link.recv(4) == b"SSH-"
+    def _starts(self):
+        """How often sshd has begun to listen."""
+        log = (self.folder / "sshd.log").read_text(encoding="utf-8")
+        assert self._sshd.poll() is None, log
+        return log.count("Server listening")
 
     def shut_down(self):
         """End sshd and every process that was left at work on the brick."""
@@ -206,14 +215,13 @@ class Brick:
 
     def processes(self):
         """Numbers of all processes that live in the brick's home."""
-        found = []
-        for process in Path("/proc").iterdir():
-            with contextlib.suppress(OSError):
-                if process.name.isdigit() and str((process / "cwd").readlink()).startswith(
-                    str(self.home)
-                ):
-                    found.append(int(process.name))
-        return found
+        pids = (int(path.name) for path in Path("/proc").iterdir() if path.name.isdigit())
+        return [pid for pid in pids if self._is_home_of(pid)]
+
+    def _is_home_of(self, pid):
+        with contextlib.suppress(OSError):
+            return str(Path(f"/proc/{pid}/cwd").readlink()).startswith(str(self.home))
+        return False
 
     # What deploy.sh has made of it
 
@@ -237,7 +245,7 @@ class Brick:
     def pid(self):
         """The number of the robot's program, None if it does not run."""
         pid = int("0" + self._text("robot.pid").strip())
-        return pid if pid in self.processes() else None
+        return pid if self._is_home_of(pid) else None
 
     def runs(self):
         """The name of the release whose program runs, None if none does."""

@@ -21,7 +21,7 @@ def bricks(tmp_path):
     found, settings = {}, []
     with ExitStack() as stack:
         for name in NAMES:
-            brick = Brick(tmp_path / name)
+            brick = Brick(tmp_path / name, name)
             stack.callback(brick.shut_down)
             brick.boot()
             settings.append(brick.ssh_config.read_text(encoding="utf-8"))
