@@ -6,7 +6,7 @@ from contextlib import ExitStack
 import pytest
 
 from tests.cli.test_desk import desk_robot
-from tests.deploy.brick import Brick, needs_sshd
+from tests.deploy.brick import Brick, needs_sshd, without_figures
 from tests.laptop import Laptop
 
 NAMES = ("anna", "bert", "carl")
@@ -33,10 +33,16 @@ def bricks(tmp_path):
         yield found
 
 
+def laptop_in(folder, name):
+    """A laptop whose ssh reaches the bricks."""
+    options = f"-F {folder / 'ssh_config'}"
+    return Laptop(folder / name, KICK_SSH_OPTIONS=options, PYTHONPATH=without_figures(folder))
+
+
 @pytest.fixture
 def teacher(bricks, tmp_path):
     """A laptop that knows all three, with their tokens."""
-    laptop = Laptop(tmp_path / "teacher", KICK_SSH_OPTIONS=f"-F {tmp_path / 'ssh_config'}")
+    laptop = laptop_in(tmp_path, "teacher")
     for name, (address, token) in bricks.items():
         laptop.knows(name, address, token)
     return laptop
@@ -45,7 +51,7 @@ def teacher(bricks, tmp_path):
 @pytest.fixture
 def pupil(bricks, tmp_path):
     """A laptop that knows all three, with the token of anna for each."""
-    laptop = Laptop(tmp_path / "pupil", KICK_SSH_OPTIONS=f"-F {tmp_path / 'ssh_config'}")
+    laptop = laptop_in(tmp_path, "pupil")
     for name, (address, _) in bricks.items():
         laptop.knows(name, address, bricks["anna"][1])
     return laptop
