@@ -301,15 +301,18 @@ case $token in
 *) token=$here/$token ;;
 esac
 command -v python3 >/dev/null || fail 2 "this machine has no python3" "install it; kickctl needs it"
-# By the rules of host/link/ssh.py, as words of this shell.
-ssh_options=''
-[ -z "${KICK_SSH_OPTIONS-}" ] || ssh_options=$(python3 -BS -c '
+# By the rules of host/link/ssh.py, as words of this shell; plain words are that already.
+ssh_options=${KICK_SSH_OPTIONS-}
+case $ssh_options in *[!A-Za-z0-9_./:@%+=,\ -]*)
+    ssh_options=$(python3 -BS -c '
 import os, shlex
 try:
     print(*map(shlex.quote, shlex.split(os.environ["KICK_SSH_OPTIONS"])))
 except ValueError as error:
     raise SystemExit(str(error))' 2>&1) ||
-    fail 2 "KICK_SSH_OPTIONS cannot be understood: $ssh_options" "close its quotes"
+        fail 2 "KICK_SSH_OPTIONS cannot be understood: $ssh_options" "close its quotes"
+    ;;
+esac
 # In /tmp even if TMPDIR is set: ssh needs a short and plain path for the connection that it shares.
 folder=$(mktemp -d /tmp/kickctl.XXXXXX) ||
     fail 1 "nothing can be written to /tmp" "is this machine's disk full? Mend that, and try again"
