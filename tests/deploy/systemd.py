@@ -1,9 +1,8 @@
 """As much of systemd as the service needs.
 
-`systemd.py start kickctl` and so on, in place of systemctl.
+`systemd.py start` and `systemd.py stop`, in place of systemctl.
 
-It does what the unit file says of ExecStart, ExecStopPost, WatchdogSec, Restart and RestartSec, and
-notes each command in systemctl.log.
+It does what the unit file says of ExecStart, ExecStopPost, WatchdogSec, Restart and RestartSec.
 """
 
 import configparser
@@ -71,8 +70,6 @@ def words(command):
 
 
 def main():
-    with (SYSTEM.parent / "systemctl.log").open("a", encoding="ascii") as log:
-        log.write(" ".join(sys.argv[1:]) + "\n")
     if sys.argv[1] == "start":
         parser = configparser.RawConfigParser(strict=False)
         parser.optionxform = str

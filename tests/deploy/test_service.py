@@ -19,7 +19,10 @@ from tests.deploy.brick import ROOT, charged, deployed_once, needs_sshd, wait_un
 pytestmark = needs_sshd
 
 
-SYSTEMCTL = f'exec {sys.executable} {Path(__file__).parent / "systemd.py"} "$@"'
+# Most commands only have to be noted.
+SYSTEMCTL = f"""\
+echo "$*" >>"$KICK_ETC/systemd/systemctl.log"
+case $1 in start | stop) exec {sys.executable} -S {Path(__file__).parent / "systemd.py"} $1 ;; esac"""
 
 
 def with_systemd(brick):
