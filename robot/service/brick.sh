@@ -24,7 +24,8 @@ TOKEN=$HOME/.config/kickctl/token
 CLASS=${KICK_SYSFS:-/sys/class}
 PACKAGES=${KICK_PACKAGES:-/usr/lib/python3/dist-packages}
 ETC=${KICK_ETC:-/etc}
-RUN=${KICK_RUN:-/run/lock}/kickctl$(printf '%s' "$HOME" | tr / -)
+# shellcheck disable=SC2086 # the folders of its path, with - between them
+RUN=${KICK_RUN:-/run/lock}/kickctl$(IFS=/ && set -f && set -- $HOME && IFS=- && echo "$*")
 UNIT=$ETC/systemd/system/kickctl.service
 AVAHI=$ETC/avahi/services/kickctl.service
 
@@ -85,10 +86,10 @@ at_one_address() {
 # listens at every address. READY names the address that the brick had when that one started, and
 # another day the network may give it to another robot. So 127.0.0.1 counts while nothing is known.
 host() {
-    at_one_address || return 0
     at=$(ready)
     at=${at%:*} at=${at#[} at=${at%]}
-    case $at in 127.0.0.1 | localhost) ;; *) tell "$at" ;; esac
+    case $at in 127.0.0.1 | localhost) return ;; esac
+    ! at_one_address || tell "$at"
 }
 
 # What a login may print by itself must not be taken for what deploy.sh wants to know. For each
