@@ -186,6 +186,10 @@ class Brick:
                 text = path.read_text(encoding="utf-8")
                 path.write_text(text.replace(str(other.folder), str(self.folder)), encoding="utf-8")
 
+    def take_releases(self, other):
+        """Have the brick hold the releases of another one, which it never ran."""
+        shutil.copytree(other.kickctl / "releases", self.kickctl / "releases")
+
     def do(self, command):
         """Run a command of the shell, as a login would."""
         environment = {"HOME": str(self.home), "PATH": os.environ["PATH"]}

@@ -33,6 +33,13 @@ def card(tmp_path_factory):
 
 
 @pytest.fixture
+def stocked(brick, card):
+    """A brick that has the checkout's release, which a deploy need not send, but never ran it."""
+    brick.take_releases(card[0])
+    return brick
+
+
+@pytest.fixture
 def running(brick, checkout, card):
     """A brick on which the checkout's release runs, as after a first deploy of it."""
     brick.take_card(card[0])

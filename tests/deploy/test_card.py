@@ -117,8 +117,8 @@ def test_what_the_bricks_shell_ends_with_is_never_taken_for_wrong_use(deployed, 
     assert deployed.pid() == pid
 
 
-def test_a_battery_and_a_disk_that_give_no_number_are_no_reason_to_refuse(brick, checkout):
-    write(brick.sysfs / "power_supply" / "lego-ev3-battery" / "voltage_now", "full\n")
+def test_a_battery_and_a_disk_that_give_no_number_are_no_reason_to_refuse(stocked, checkout):
+    write(stocked.sysfs / "power_supply" / "lego-ev3-battery" / "voltage_now", "full\n")
     status, output = checkout.deploy()
     assert status == 0, output
     assert "battery not measured" in output

@@ -49,13 +49,13 @@ def test_a_second_host_takes_over_the_bricks_token(running, checkout):
     )  # understood as a command: the motors are not there
 
 
-def test_a_token_that_is_open_to_others_is_not_sent(brick, checkout):
+def test_a_token_that_is_open_to_others_is_not_sent(stocked, checkout):
     write(checkout.token, "00" * 32 + "\n", 0o644)
     status, output = checkout.deploy()
     assert status == 1
     assert "chmod 600" in output
-    assert not (brick.home / ".config").exists()
-    assert brick.runs() is None
+    assert not (stocked.home / ".config").exists()
+    assert stocked.runs() is None
 
 
 def test_a_second_deploy_of_the_same_keeps_the_release_and_starts_it_anew(running, checkout):
@@ -83,13 +83,13 @@ def test_upgrade_then_rollback_and_forth_again(deployed, checkout):
     assert (deployed.runs(), deployed.release("previous")) == (new, old)
 
 
-def test_whoever_may_stand_beside_the_robot_is_warned_of_its_wheels(brick, checkout):
+def test_whoever_may_stand_beside_the_robot_is_warned_of_its_wheels(stocked, checkout):
     assert "wheels will turn" in checkout.deploy()[1]
     checkout.change()
     assert (
         "wheels will turn"
         not in checkout.deploy(
-            KICK_ROBOT_ARGS=f"--idle --sysfs {brick.sysfs} --host 127.0.0.1 --port 0"
+            KICK_ROBOT_ARGS=f"--idle --sysfs {stocked.sysfs} --host 127.0.0.1 --port 0"
         )[1]
     )
     assert "wheels will turn" not in checkout.deploy("--rollback")[1]
@@ -100,7 +100,7 @@ def test_whoever_may_stand_beside_the_robot_is_warned_of_its_wheels(brick, check
     assert "the wheels turn" in checkout.deploy("--dry-run", "--rollback")[1]
 
 
-def test_a_robot_in_fault_is_told_with_what_to_do(brick, checkout):
+def test_a_robot_in_fault_is_told_with_what_to_do(stocked, checkout):
     status, output = checkout.deploy()
     assert status == 0  # as --help says: another release would not bring the motor
     assert "left motor (outB): there is none" in output
@@ -111,7 +111,7 @@ def test_a_robot_in_fault_is_told_with_what_to_do(brick, checkout):
 
 
 @pytest.mark.parametrize("installed", [False, True])
-def test_the_closing_words_can_be_typed_as_they_stand(brick, checkout, installed):
+def test_the_closing_words_can_be_typed_as_they_stand(stocked, checkout, installed):
     environment = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
     if installed:
         environment["PATH"] += f":{checkout.bin}"
@@ -125,7 +125,7 @@ def test_the_closing_words_can_be_typed_as_they_stand(brick, checkout, installed
     done = subprocess.run(
         ["/bin/sh", "-c", hint], env=environment, capture_output=True, text=True, check=True
     )
-    robot = "brick" if installed else brick.uri()  # an installed kickctl gives it a name
+    robot = "brick" if installed else stocked.uri()  # an installed kickctl gives it a name
     assert done.stdout == f"--brick {robot} start\n"
 
 
@@ -151,8 +151,8 @@ def test_rollback_of_a_first_release_is_refused(brick, checkout):
     assert brick.runs() == brick.release()
 
 
-def test_every_motor_is_reset_whatever_its_port(brick, checkout):
-    motors = [brick.sysfs / "tacho-motor" / f"motor{number}" / "command" for number in (0, 3)]
+def test_every_motor_is_reset_whatever_its_port(stocked, checkout):
+    motors = [stocked.sysfs / "tacho-motor" / f"motor{number}" / "command" for number in (0, 3)]
     for motor in motors:
         write(motor, "")
     status, output = checkout.deploy()

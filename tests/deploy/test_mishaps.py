@@ -54,8 +54,8 @@ def test_a_brick_that_is_not_fit_is_refused_and_left_alone(
         ("NiMH", None, 0),
     ],
 )
-def test_an_empty_battery_is_refused(brick, checkout, technology, microvolts, status):
-    battery = brick.sysfs / "power_supply" / "lego-ev3-battery"
+def test_an_empty_battery_is_refused(stocked, checkout, technology, microvolts, status):
+    battery = stocked.sysfs / "power_supply" / "lego-ev3-battery"
     write(battery / "technology", technology + "\n")
     if microvolts is None:
         (battery / "voltage_now").unlink()
@@ -64,7 +64,7 @@ def test_an_empty_battery_is_refused(brick, checkout, technology, microvolts, st
     found, output = checkout.deploy()
     assert found == status, output
     assert ("charge it" in output) == (status == 4)
-    assert (brick.runs() is None) == (status == 4)
+    assert (stocked.runs() is None) == (status == 4)
 
 
 def test_a_program_that_hangs_is_told_and_a_deploy_ends_it(brick, checkout):
@@ -112,12 +112,12 @@ def test_a_process_that_only_has_the_old_number_is_left_alone(deployed, checkout
     assert deployed.runs() == deployed.release()
 
 
-def test_a_program_that_has_yet_to_write_its_number_is_waited_for(brick, checkout):
+def test_a_program_that_has_yet_to_write_its_number_is_waited_for(stocked, checkout):
     """Its shell creates robot.pid and then writes to it: deploy may look in between."""
-    brick.replace("setsid", ': >~/kickctl/robot.pid; sleep 1; exec /usr/bin/setsid "$@"')
+    stocked.replace("setsid", ': >~/kickctl/robot.pid; sleep 1; exec /usr/bin/setsid "$@"')
     status, output = checkout.deploy()
     assert status == 0, output
-    assert brick.runs() == brick.release()
+    assert stocked.runs() == stocked.release()
 
 
 def test_two_deploys_at_once_do_not_get_into_each_others_way(deployed, checkout):

@@ -13,6 +13,13 @@ SECRET = "5a" * 32
 SPOILED = ["", "Welcome to EV3 number 7\n", "5a" * 33]
 
 
+@pytest.fixture
+def brick(brick, card):
+    """A brick that has the checkout's release: only the token is new to it."""
+    brick.take_releases(card[0])
+    return brick
+
+
 def theirs(brick):
     return brick.home / ".config" / "kickctl" / "token"
 
