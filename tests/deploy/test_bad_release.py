@@ -111,12 +111,12 @@ def test_arguments_of_a_deploy_that_never_changed_over_are_of_no_use_to_the_next
     assert (deployed.kickctl / "arguments").read_text(encoding="utf-8") == arguments
 
 
-def test_arguments_are_never_a_command_for_the_bricks_shell(deployed, checkout):
+def test_arguments_are_never_a_command_for_the_bricks_shell(running, checkout):
     arguments = """--it's "$(touch here)" `touch there`; touch everywhere"""
     status, output = checkout.deploy(KICK_ROBOT_ARGS=arguments)
     assert status == 1
     assert f"instead of '{arguments}'" in output
-    assert [path for path in deployed.home.rglob("*") if path.name.endswith("here")] == []
+    assert [path for path in running.home.rglob("*") if path.name.endswith("here")] == []
 
 
 def test_a_release_that_the_bricks_python_cannot_read_is_never_started(deployed, checkout):

@@ -61,18 +61,18 @@ def test_a_deploy_is_refused_and_leaves_the_brick_alone(deployed, checkout, how)
         assert (deployed.release(), deployed.pid(), deployed.releases()) == before
 
 
-def test_the_program_starts_with_the_brick_all_the_same(deployed, checkout, how):
+def test_the_program_starts_with_the_brick_all_the_same(running, checkout, how):
     """As systemd starts it at boot: with its number and its log in memory."""
-    deployed.stop_program()
-    reopen = close_card(deployed, how)
-    memory = deployed.folder / "brick" / "run"
+    running.stop_program()
+    reopen = close_card(running, how)
+    memory = running.folder / "brick" / "run"
     environment = {
         **os.environ,
-        "HOME": str(deployed.home),
+        "HOME": str(running.home),
         "KICK_RUN": str(memory),
-        "PATH": f"{deployed.bin}:{os.environ['PATH']}",
+        "PATH": f"{running.bin}:{os.environ['PATH']}",
     }
-    script = deployed.kickctl / "current" / "robot" / "service" / "brick.sh"
+    script = running.kickctl / "current" / "robot" / "service" / "brick.sh"
     with subprocess.Popen(["/bin/sh", script, "run", "--idle"], env=environment) as process:
         wait_until(lambda: [path for path in memory.rglob("robot.log") if "READY" in read(path)])
         (log,) = memory.rglob("robot.log")
@@ -87,8 +87,8 @@ def test_the_program_starts_with_the_brick_all_the_same(deployed, checkout, how)
         status, output = checkout.deploy()
         assert status == 0, output
         assert process.wait(20) == 0
-    assert deployed.runs() == deployed.release()
-    assert f"the last lines of {deployed.kickctl}/robot.log:" in checkout.deploy("--logs")[1]
+    assert running.runs() == running.release()
+    assert f"the last lines of {running.kickctl}/robot.log:" in checkout.deploy("--logs")[1]
 
 
 def read(path):

@@ -102,14 +102,14 @@ def test_a_program_that_does_not_listen_to_sigterm_is_killed(brick, checkout):
     assert brick.runs() == brick.release()
 
 
-def test_a_process_that_only_has_the_old_number_is_left_alone(deployed, checkout):
-    deployed.stop_program()
+def test_a_process_that_only_has_the_old_number_is_left_alone(running, checkout):
+    running.stop_program()
     with subprocess.Popen(["sleep", "1000"]) as stranger:
-        write(deployed.kickctl / "robot.pid", f"{stranger.pid}\n")
+        write(running.kickctl / "robot.pid", f"{stranger.pid}\n")
         assert checkout.deploy()[0] == 0
         assert stranger.poll() is None
         stranger.kill()
-    assert deployed.runs() == deployed.release()
+    assert running.runs() == running.release()
 
 
 def test_a_program_that_has_yet_to_write_its_number_is_waited_for(stocked, checkout):
