@@ -22,7 +22,8 @@ pytestmark = needs_sshd
 # Most commands only have to be noted.
 SYSTEMCTL = f"""\
 echo "$*" >>"$KICK_ETC/systemd/systemctl.log"
-case $1 in start | stop) exec {sys.executable} -S {Path(__file__).parent / "systemd.py"} $1 ;; esac"""
+case $1 in start | stop) ;; *) exit ;; esac
+exec {sys.executable} -S {Path(__file__).parent / "systemd.py"} $1"""
 
 
 def with_systemd(brick):
