@@ -13,7 +13,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from host.errors import NotDone
 from host.experiments.robot.motor_traits import Traits, constants_of, traits
@@ -209,7 +209,7 @@ def identify(
     inverse = np.linalg.pinv(fit.jac.T @ fit.jac)
     spare = len(numbers) - len(_FITTED)
     variance = inverse @ (scores.T @ scores) @ inverse * len(numbers) / spare
-    half = student.ppf((1 + CONFIDENCE) / 2, spare) * np.sqrt(np.diag(variance))
+    half = stdtrit(spare, (1 + CONFIDENCE) / 2) * np.sqrt(np.diag(variance))
     low = np.maximum(fit.x - half, _LOWEST).tolist()
     high = np.minimum(fit.x + half, _HIGHEST).tolist()
     intervals = dict(zip(_FITTED, zip(low, high, strict=True), strict=True))

@@ -115,14 +115,14 @@ def stay(times_s: Array, ended: NDArray[np.bool_]) -> Stay:
     Returns:
         The mean with its interval.
     """
-    from scipy.stats import chi2
+    from scipy.special import gammaincinv
 
     count, total = int(ended.sum()), float(times_s.sum())
     rest = (1.0 - CONFIDENCE) / 2
-    low = 2 * total / float(chi2.ppf(1.0 - rest, 2 * count + 2))
+    low = total / float(gammaincinv(count + 1, 1.0 - rest))
     if not count:
         return Stay(0, None, low, None)
-    return Stay(count, total / count, low, 2 * total / float(chi2.ppf(rest, 2 * count)))
+    return Stay(count, total / count, low, total / float(gammaincinv(count, rest)))
 
 
 class Arrhenius(NamedTuple):
