@@ -22,6 +22,7 @@ from robot.record import NAMES, Record
 
 # MCAP has times of 64 bits, in ns.
 _LATEST_S = 2**63 / 1e9
+_NUMBERS = frozenset((int, float, bool))
 _DAMAGED = "the log's file was damaged here"
 _GIVE_OURS = "give a log that kickctl recorded; 'kickctl log list' shows those in ./logs"
 
@@ -308,6 +309,6 @@ def _record(message: dict[str, Any]) -> Record:
     for name, words in NAMED.items():
         message[name] = words.index(message[name])
     values = [message[name] for name in NAMES]
-    if not all(isinstance(value, (int, float)) for value in values):
+    if not _NUMBERS.issuperset(map(type, values)):
         raise ValueError("a value that is not a number")
     return Record(*values)

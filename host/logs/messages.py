@@ -14,6 +14,8 @@ from robot.record import CHANNELS, KICK_NAMES, NAMES, STATES, Record
 TICKS, EVENTS = "/ticks", "/events"
 # Channels whose numbers messages give as words.
 NAMED = {"state": STATES, "kick": KICK_NAMES}
+# json.dumps would make an encoder for each message.
+_to_json = json.JSONEncoder(allow_nan=False, separators=(",", ":")).encode
 
 
 class Message(NamedTuple):
@@ -69,8 +71,7 @@ class Messages:
         return messages
 
     def _message(self, topic: str, message: dict[str, Any], tick: int) -> Message:
-        data = json.dumps(message, allow_nan=False, separators=(",", ":")).encode()
-        return Message(topic, self._now_ns, tick, data)
+        return Message(topic, self._now_ns, tick, _to_json(message).encode())
 
 
 def nanoseconds(seconds: float) -> int:
