@@ -13,25 +13,12 @@ import pytest
 from host.errors import NotDone
 from host.runs.contract import Part
 from host.runs.processes import compute_in_processes
+from tests.unit.runs.cells import calls, counting
 
 
 @pytest.fixture(autouse=True)
 def _two_cores(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {0, 1})
-
-
-def calls(cell, setting, begun):
-    """What the cell, a function, makes of the setting."""
-    yield Part([cell(setting)])
-
-
-def counting(cell, setting, begun):
-    """A cell counts up to itself, a number a part."""
-    number = begun.state + 1 if begun else 1
-    while number < cell:
-        yield Part([number], number, number / cell)
-        number += 1
-    yield Part([number])
 
 
 def test_cells_side_by_side_come_to_the_same_as_one_by_one():
