@@ -32,12 +32,14 @@ def succeed(*command, cwd, **environment):
     return done.stdout
 
 
-def build_wheel(source, target):
-    """Build a wheel of a folder with sources, without a network."""
-    options = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir")
-    succeed(sys.executable, "-m", "pip", "wheel", *options, target, source, cwd=target)
-    (wheel,) = target.glob("*.whl")
-    return wheel
+def build(what, source, target):
+    """Build 'sdist' or 'wheel' of a folder with sources: the file."""
+    script = (
+        "import setuptools.build_meta as b, sys; getattr(b, 'build_' + sys.argv[1])(sys.argv[2])"
+    )
+    succeed(sys.executable, "-c", script, what, target, cwd=source)
+    (file,) = target.iterdir()
+    return file
 
 
 @pytest.fixture(scope="session")
@@ -57,18 +59,18 @@ def source(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def wheel(source, tmp_path_factory):
-    """The wheel that is built from the checkout."""
-    return build_wheel(source, tmp_path_factory.mktemp("wheel"))
+    """The wheel that pip builds from the checkout, without a network."""
+    target = tmp_path_factory.mktemp("wheel")
+    options = ("--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir")
+    succeed(sys.executable, "-m", "pip", "wheel", *options, target, source, cwd=target)
+    (wheel,) = target.iterdir()
+    return wheel
 
 
 @pytest.fixture(scope="session")
 def sdist(source, tmp_path_factory):
     """The source distribution."""
-    target = tmp_path_factory.mktemp("sdist")
-    build = "import setuptools.build_meta as b, sys; b.build_sdist(sys.argv[1])"
-    succeed(sys.executable, "-c", build, target, cwd=source)
-    (archive,) = target.glob("*.tar.gz")
-    return archive
+    return build("sdist", source, tmp_path_factory.mktemp("sdist"))
 
 
 @pytest.fixture(scope="session")
@@ -77,7 +79,7 @@ def wheel_of_sdist(sdist, tmp_path_factory):
     folder = tmp_path_factory.mktemp("unpacked")
     succeed("tar", "-xzf", sdist, cwd=folder)
     (unpacked,) = folder.iterdir()
-    return build_wheel(unpacked, tmp_path_factory.mktemp("wheel-of-sdist"))
+    return build("wheel", unpacked, tmp_path_factory.mktemp("wheel-of-sdist"))
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.xdist_group("package")
 PACKAGES = [path.parent.name for path in ROOT.glob("*/py.typed")]
 # What lies in the folders of the packages and belongs into the wheel.
 WANTED = (
-    "**/*.py",
+    *(f"{package}/**/*.py" for package in PACKAGES),
     "host/*.md",
     "robot/*.md",
     "robot/service/*",
