@@ -27,14 +27,19 @@ with connect({name!r}, name={driver!r}) as robot:
 class Laptop:
     """A user's folder with names and tokens of robots, and kickctl there.
 
-    `more` is what the user's environment has besides.
+    Figures can be drawn if it `draws`, which takes a second each. `more` is what the user's
+    environment has besides.
     """
 
-    def __init__(self, folder, **more):
+    def __init__(self, folder, *, draws=True, **more):
         self.folder = folder
+        self.draws = draws
         self._more = more
         self.config = folder / "config" / "kickctl"
         folder.mkdir(exist_ok=True)
+        self._no_matplotlib = folder / "no matplotlib"
+        self._no_matplotlib.mkdir()
+        (self._no_matplotlib / "matplotlib.py").write_text("raise ImportError\n")
 
     def knows(self, name, address, token=None):
         """Write a robot into the file of robots."""
@@ -45,9 +50,10 @@ class Laptop:
 
     def environment(self, **more):
         kept = {key: value for key, value in os.environ.items() if not key.startswith("KICK_")}
-        root = Path(__file__).resolve().parents[1]
-        config = str(self.folder / "config")
-        own = {"XDG_CONFIG_HOME": config, "PYTHONPATH": str(root)}
+        path = str(Path(__file__).resolve().parents[1])
+        if not self.draws:
+            path = f"{self._no_matplotlib}:{path}"
+        own = {"XDG_CONFIG_HOME": str(self.folder / "config"), "PYTHONPATH": path}
         return {**kept, **own, **self._more, **more}
 
     def run(self, *arguments, **more):

@@ -18,43 +18,55 @@ from tests.laptop import Laptop
 NAMES = ("anna", "bert", "carl")
 
 
-@pytest.fixture
-def robots(tmp_path):
-    """Three running robots: {name: address}. Their tokens are the files NAME/token.
+@pytest.fixture(scope="module")
+def fleet(tmp_path_factory):
+    """Three running robots: {name: (address, the file of its token)}.
 
     They bear with drivers that a busy machine keeps silent.
     """
     with ExitStack() as stack:
         found = {}
         for name in NAMES:
-            (tmp_path / name).mkdir()
-            robot = desk_robot(tmp_path / name)
-            found[name] = stack.enter_context(robot)[0]
+            folder = tmp_path_factory.mktemp(name)
+            address, _ = stack.enter_context(desk_robot(folder))
+            found[name] = address, folder / "token"
         yield found
 
 
 @pytest.fixture
-def teacher(tmp_path, robots):
+def robots(fleet):
+    """The same robots as they were when they began: {name: address}."""
+    for address, token in fleet.values():
+        with connect(address, token=token) as robot:
+            # Who held it in the test before may have been killed just now.
+            robot.wait(20.0, until=lambda robot=robot: robot.status()["controller"] is None)
+            robot.stop()
+            robot.start()
+    return {name: address for name, (address, _) in fleet.items()}
+
+
+@pytest.fixture
+def teacher(tmp_path, robots, fleet):
     """A laptop that knows all three, with their tokens."""
-    laptop = Laptop(tmp_path / "teacher")
+    laptop = Laptop(tmp_path / "teacher", draws=False)
     for name, address in robots.items():
-        laptop.knows(name, address, tmp_path / name / "token")
+        laptop.knows(name, address, fleet[name][1])
     return laptop
 
 
 @pytest.fixture
-def pupil(tmp_path, robots):
+def pupil(tmp_path, robots, fleet):
     """A laptop that knows all three, with the token of anna where a token usually is."""
-    laptop = Laptop(tmp_path / "pupil")
+    laptop = Laptop(tmp_path / "pupil", draws=False)
     for name, address in robots.items():
         laptop.knows(name, address)
     token = laptop.config / "token"
-    token.write_text((tmp_path / "anna" / "token").read_text(encoding="ascii"), encoding="ascii")
+    token.write_text(fleet["anna"][1].read_text(encoding="ascii"), encoding="ascii")
     token.chmod(0o600)
     return laptop
 
 
-def test_a_teacher_looks_at_all_and_kicks_each_and_all(teacher, robots):
+def test_a_teacher_looks_at_all_and_kicks_each_and_all(teacher, robots, fleet):
     status, found = teacher.each("--brick", "all", "status")
     assert status == 0
     assert {name: one["state"] for name, one in found.items()} == dict.fromkeys(NAMES, "running")
@@ -64,10 +76,12 @@ def test_a_teacher_looks_at_all_and_kicks_each_and_all(teacher, robots):
     assert status == 0, err
     assert json.loads(out)["brick"] == robots["bert"]
 
+    teacher.draws = True
     status, found = teacher.each("--brick", "anna,carl", "kick", "--mode", "phase")
     assert status == 0
     assert {name: one["reversed"] for name, one in found.items()} == {"anna": True, "carl": True}
-    assert len({one["log"] for one in found.values()}) == 2
+    for kind in ("log", "figure"):
+        assert len({one[kind] for one in found.values()} - {None}) == 2
 
     status, out, err = teacher.run("--brick", "all", "record", "0.2")
     assert status == 0, err
@@ -75,7 +89,7 @@ def test_a_teacher_looks_at_all_and_kicks_each_and_all(teacher, robots):
     assert sorted(line.partition(":")[0] for line in lines) == sorted(NAMES)
     assert all("0 records missing" in line for line in lines)
 
-    token = str(teacher.folder.parent / "bert" / "token")
+    token = str(fleet["bert"][1])
     # An address leads to the robot's own token, too.
     assert teacher.run("--brick", robots["bert"], "start", KICK_TOKEN=token + "none")[0] == 1
     assert teacher.run("start", KICK_BRICK="bert")[0] == 1  # it runs already
@@ -103,9 +117,9 @@ def test_a_pupil_with_another_robots_token_looks_and_stops_but_moves_nothing(pup
     assert [one["state"] for one in found.values()] == ["running", "stopped", "running"]
 
 
-def test_a_teacher_takes_over_from_a_pupil_and_then_stops_all(teacher, robots, tmp_path):
+def test_a_teacher_takes_over_from_a_pupil_and_then_stops_all(teacher, robots, fleet, tmp_path):
     laptop = Laptop(tmp_path / "laptop")
-    laptop.knows("bert", robots["bert"], tmp_path / "bert" / "token")
+    laptop.knows("bert", robots["bert"], fleet["bert"][1])
     kick = ("--name", "teacher@lab-1", "--brick", "bert", "kick", "--mode", "phase")
     with laptop.driving("bert", "pupil@lab-3") as pupil:
         status, out, err = teacher.run(*kick)
@@ -192,12 +206,12 @@ def test_an_interrupt_reaches_every_robots_process(teacher):
     assert [one["error"]["status"] for one in found.values()] == [130] * 3
 
 
-def test_names_in_a_program(teacher, robots, monkeypatch):
+def test_names_in_a_program(teacher, robots, fleet, monkeypatch):
     monkeypatch.setenv("XDG_CONFIG_HOME", str(teacher.folder / "config"))
     with connect("anna") as robot:
         assert robot.link.uri == robots["anna"]
         assert robot.kick("phase") > 0
-    elsewhere = teacher.folder.parent / "bert" / "token"
+    elsewhere = fleet["bert"][1]
     with (
         connect("anna", token=str(elsewhere)) as robot,
         pytest.raises(RefusedByRobot, match="the token of another robot"),
