@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 from tests.package.conftest import ROOT
+from tests.small_figures import small_figures
 
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.md"), key=lambda path: path.stem)
 # What a reader has who has kickctl, beside Python's own modules.
@@ -19,8 +20,11 @@ every_notebook = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: pat
 
 def cells(path, kind):
     """The texts of a notebook's cells of a kind, 'code' or 'markdown'."""
-    # It takes a second, which those who test something else need not wait for.
-    from myst_nb.core.read import read_myst_markdown_notebook
+    # It takes a while, which those who test something else need not wait for.
+    with pytest.MonkeyPatch.context() as patch:
+        # Most of it would be the grammar of addresses, which jsonschema can do without.
+        patch.setitem(sys.modules, "rfc3987_syntax", None)
+        from myst_nb.core.read import read_myst_markdown_notebook
 
     notebook = read_myst_markdown_notebook(path.read_text(encoding="utf-8"))
     return [cell.source for cell in notebook.cells if cell.cell_type == kind]
@@ -36,9 +40,14 @@ def pictures():
 
 @pytest.fixture
 def _as_for_one_reader(monkeypatch):
-    """What a notebook sets is forgotten, and a train needs no process of its own."""
+    """What a notebook sets is forgotten, and a train needs no process of its own.
+
+    Nor does anybody look at the figures beside a run's tables, which may fail in any way.
+    """
     monkeypatch.setenv("KICK_MOTORS", "")
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
+    with small_figures():
+        yield
 
 
 @pytest.mark.usefixtures("_as_for_one_reader")

@@ -4,6 +4,7 @@ import numpy as np
 
 from host.perform.run import perform
 from host.runs.results import Results
+from tests.small_figures import small_figures
 
 
 def test_tables_have_numbers_words_and_what_is_unknown():
@@ -20,7 +21,8 @@ def test_tables_have_numbers_words_and_what_is_unknown():
 
 
 def test_a_run_returns_its_tables_beside_its_files(tmp_path):
-    found = perform("hopf", out=tmp_path)
+    with small_figures():
+        found = perform("hopf", out=tmp_path)
     assert sorted(path.name for path in tmp_path.glob("theory/*/*.csv")) == [
         "columns.csv",
         "hopf-line.csv",
