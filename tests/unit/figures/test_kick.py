@@ -6,6 +6,7 @@ Every curve, every kick where it acted, gaps as gaps, in letters one can read.
 import struct
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from matplotlib.text import Text
 from host.figures.robot.kick import Span, draw, spans
 from host.logs.log import Log
 from tests.fakes import Rig
+from tests.small_figures import small_figures
 
 ROOT = Path(__file__).resolve().parents[3]
 PAPER = {
@@ -29,12 +31,12 @@ PAPER = {
 
 @pytest.fixture
 def drawn(monkeypatch, tmp_path):
-    """Draws, and returns the figure that was saved."""
+    """Draws, and returns the figure that was saved: small, if it is not the layout that counts."""
 
-    def draw_and_keep(log, window=None):
+    def draw_and_keep(log, window=None, *, small=True):
         figures = []
         save = Figure.savefig
-        with monkeypatch.context() as patch:
+        with monkeypatch.context() as patch, small_figures() if small else nullcontext():
             patch.setattr(
                 Figure,
                 "savefig",
@@ -145,7 +147,7 @@ def test_names_of_kicks_close_to_each_other_do_not_overlap(drawn):
         rig.kick("membrane", wheel="right")
         rig.run(3)
     rig.run(20)
-    figure = drawn(rig.log())
+    figure = drawn(rig.log(), small=False)
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
     assert len(boxes) == 4
     assert not any(
@@ -178,7 +180,7 @@ def test_only_the_latest_run_of_a_restarted_robot_is_drawn(drawn):
 
 
 def test_the_figure_fits_a_projector(drawn, tmp_path):
-    figure = drawn(kicked(), (-1.0, 1.5))
+    figure = drawn(kicked(), (-1.0, 1.5), small=False)
     png = (tmp_path / "kick.png").read_bytes()
     assert png.startswith(b"\x89PNG\r\n\x1a\n")
     width, height = struct.unpack(">II", png[16:24])

@@ -11,6 +11,7 @@ from host.errors import WrongUse
 from host.figures.caption import Caption, in_words, of_run
 from host.figures.panels import keep_panel
 from host.figures.style import SIZE, save, styled
+from host.perform.drawings import FORMATS
 from host.runs.registry import Entry, Option
 from robot import __version__
 
@@ -32,14 +33,23 @@ def pictures():
     return figure
 
 
-@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_the_same_drawing_is_the_same_file_and_says_what_it_shows(tmp_path, ending):
-    first, second = (
-        save(pictures(), tmp_path / f"{name}.{ending}", CAPTION).read_bytes() for name in "ab"
-    )
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory):
+    """A folder with the same drawing, drawn twice, in files of all formats: a.png and b.png."""
+    folder = tmp_path_factory.mktemp("saved")
+    for name in "ab":
+        figure = pictures()
+        for ending in FORMATS:
+            save(figure, folder / f"{name}.{ending}", CAPTION)
+    return folder
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+def test_the_same_drawing_is_the_same_file_and_says_what_it_shows(saved, ending):
+    first, second = ((saved / f"{name}.{ending}").read_bytes() for name in "ab")
     assert first == second
     if ending == "png":
-        with Image.open(tmp_path / "a.png") as image:
+        with Image.open(saved / "a.png") as image:
             assert image.size == (1920, 1080)
             assert image.info["Title"] == CAPTION.command
             assert image.info["Description"] == CAPTION.parameters
