@@ -50,6 +50,7 @@ def test_the_robots_program_and_the_robot_on_the_desk_say_what_they_take(run):
 
 def test_results_are_kept_and_a_second_run_resumes(run, tmp_path):
     command = ("kickctl", "experiment", "timeline", "--trials", "1", "--seed", "3", "--json")
+    command += ("--format", "svg")
     first = json.loads(run(*command))
     logs = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.mcap")}
     assert logs
