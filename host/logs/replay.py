@@ -9,6 +9,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from struct import pack
 from typing import Any
 
@@ -28,6 +29,9 @@ from robot.wheel import Wheel
 
 # Another machine's libm may round sin, cos, exp and tanh differently in the last bit.
 OTHER_MACHINE_TOLERANCE = 1e-12
+# What a replay computes anew of each wheel.
+_COMPUTED = ("x1", "x2", "force", "torque", "duty_pct")
+_RECORDED = {side: attrgetter(*(f"{side}_{name}" for name in _COMPUTED)) for side in WHEELS}
 
 
 @dataclass(frozen=True)
@@ -158,25 +162,21 @@ class Controller:
     def differences(self, record: Record) -> Iterator[Mismatch]:
         """Yield every channel of a record that is not what `step` computed, in every bit."""
         for wheel in self.wheels:
+            recorded = _RECORDED[wheel.side](record)
             # From the recorded torque: rounding to whole percents may turn a difference in the last
             # bit into one of 1.
-            torque = getattr(record, wheel.side + "_torque")
+            *_, torque, _ = recorded
             duty = (
                 limit_duty(self.params.duty_scale * torque, self.params.max_duty_pct)
                 if record.state == RUNNING
                 else 0
             )
-            replayed = (
-                ("x1", wheel.x1),
-                ("x2", wheel.x2),
-                ("force", wheel.force),
-                ("torque", wheel.torque),
-                ("duty_pct", duty),
-            )
-            for name, value in replayed:
-                recorded = getattr(record, f"{wheel.side}_{name}")
-                if pack("d", recorded) != pack("d", value):
-                    yield Mismatch(record.tick, f"{wheel.side}_{name}", recorded, value)
+            replayed = wheel.x1, wheel.x2, wheel.force, wheel.torque, duty
+            if pack("5d", *recorded) == pack("5d", *replayed):
+                continue
+            for name, was, value in zip(_COMPUTED, recorded, replayed, strict=True):
+                if pack("d", was) != pack("d", value):
+                    yield Mismatch(record.tick, f"{wheel.side}_{name}", was, value)
 
 
 def other_sources(info: dict[str, Any]) -> list[str]:
