@@ -9,6 +9,7 @@ phi = 0 this reduced map has three multipliers.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import pi
 from typing import NamedTuple
 
@@ -112,15 +113,7 @@ class Shooting:
             raise NotDone(
                 f"the search for a cycle came to where {stiff}", "begin nearer to a cycle"
             ) from stiff
-        states = np.hstack([np.array([[x1], [x2], [0.0], [omega]]), np.eye(4), np.zeros((4, 1))])
-        found: Array = run(
-            varied(Wheel._fields.index(self.along), law_of(wheel)),
-            states,
-            tuple(wheel),
-            seconds,
-            count,
-        )
-        return found
+        return _path(self.along, wheel, (x1, x2, 0.0, omega), seconds, count)
 
     def least_omega(self, point: Point) -> float:
         """The least angular velocity of a cycle, rad/s. Raises NotDone as `path` does."""
@@ -194,6 +187,18 @@ class Shooting:
             -(2.0 / wheel.tau + wheel.f / wheel.I) * unknowns[3]
         )
         return float(abs(np.linalg.det(self.map_derivative(unknowns)) - exact))
+
+
+# What is asked of a cycle, its residual, its multipliers and whether it bifurcates, is asked of the
+# same path.
+@lru_cache(maxsize=2)
+def _path(along: str, wheel: Wheel, state: tuple[float, ...], seconds: float, count: int) -> Array:
+    """The states in the course of `count` steps, and their derivatives, as of `Shooting.path`."""
+    states = np.hstack([np.array(state)[:, None], np.eye(4), np.zeros((4, 1))])
+    own_rates = varied(Wheel._fields.index(along), law_of(wheel))
+    found = run(own_rates, states, tuple(wheel), seconds, count)
+    found.flags.writeable = False
+    return found
 
 
 def settle_in_rotation(wheel: Wheel, state: Array) -> tuple[Array, float]:
