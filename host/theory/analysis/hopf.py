@@ -10,6 +10,7 @@ bifurcation is found by numbers.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import cos, inf, isfinite, log, pi, sin, sqrt
 from typing import Any, NamedTuple
 
@@ -171,6 +172,8 @@ def _crossing(wheel: Wheel) -> tuple[float, float, float]:
     return k, at, omega
 
 
+# Where k is searched, each wheel that is tried has the same bifurcation.
+@lru_cache(maxsize=1)
 def _lyapunov_coefficient(wheel: Wheel, omega: float, phi: float) -> float:
     """l1 at a bifurcation. Raises WrongUse where rounding leaves nothing of it."""
     try:
