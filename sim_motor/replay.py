@@ -82,4 +82,6 @@ def _replay(
             if tick < len(times):
                 angles[row, tick] = state[ANGLE]
                 turn, next_duty = substep_from(times[tick] + latency_s), duties[row, tick]
-        states[row] = state
+        # To check the shape of a whole row takes the compiler as long as all else.
+        for index in range(len(state)):
+            states[row, index] = state[index]
