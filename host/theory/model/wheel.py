@@ -146,14 +146,14 @@ class Wheel(NamedTuple):
     def checked(self) -> Wheel:
         """The same wheel. Raises WrongUse if no wheel can have these constants."""
         above_0 = ("tau", "I", "bounded")
-        for name, value in self._asdict().items():
-            wanted = "a finite number, " + ("above 0" if name in above_0 else "0 or more")
-            if name == "bounded":
-                wanted += ", or leave it out for no bound"
-            if not isinstance(value, Real) or isinstance(value, bool):
-                raise wrong(name, value, wanted)
-            finite = isfinite(value) or (name == "bounded" and value == inf)
+        for name, value in zip(self._fields, self, strict=True):
+            # To ask for Real alone takes as long as all else.
+            number = isinstance(value, (float, Real)) and not isinstance(value, bool)
+            finite = number and (isfinite(value) or (name == "bounded" and value == inf))
             if not finite or value < 0.0 or (value == 0.0 and name in above_0):
+                wanted = "a finite number, " + ("above 0" if name in above_0 else "0 or more")
+                if name == "bounded":
+                    wanted += ", or leave it out for no bound"
                 raise wrong(name, value, wanted)
         if self.rods not in (1, 2):
             raise WrongUse(f"a wheel cannot have {self.rods:g} rods", "give 1 or 2")
