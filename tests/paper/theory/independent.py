@@ -53,13 +53,15 @@ def jacobian(y, wheel):
     )
 
 
-def follow(y, wheel, seconds, events=None, rtol=1e-12):
-    """A wheel's course, as scipy solves it."""
+def follow(y, wheel, seconds, events=None, t_eval=None, rtol=1e-12):
+    """A wheel's course, as scipy solves it; or that of several, whose y is (4, wheels) in a row."""
+    one = len(y) == 4
     return solve_ivp(
-        lambda _, y: rates(y, wheel),
+        lambda _, y: rates(y, wheel) if one else rates(y.reshape(4, -1), wheel).ravel(),
         (0.0, seconds),
         y,
         "DOP853",
+        t_eval=t_eval,
         events=events,
         rtol=rtol,
         atol=1e-13,

@@ -14,7 +14,7 @@ from host.theory.analysis.hopf import bautin_tau_s
 from host.theory.analysis.sure_kicks import sure_ranges
 from host.theory.engine.kicked import Continuous
 from host.theory.model.turning import constant_velocity
-from host.theory.model.wheel import Wheel
+from host.theory.model.wheel import OMEGA, PHI, Wheel
 from host.theory.studies import branch
 from host.theory.studies.registry import TABLE
 from robot.kicks import POSITION
@@ -135,17 +135,18 @@ def test_branches_end_at_the_merging_itself(slow):
     assert ends["up"]["k"] == pytest.approx(6.0, rel=1e-12)
 
 
-def reverses(state, length_s, wheel):
-    """Whether a wheel with inverted positions for some seconds rolls backward in the end."""
+def reverse(states, length_s, wheel):
+    """Which wheels with inverted positions for some seconds roll backward in the end, (wheels,)."""
 
     def kicked(_, y):
-        seen = np.array([np.cos(y[2]), np.sin(y[2])])
-        rate = independent.rates(y, wheel)
-        rate[:2] = (-seen - y[:2]) / wheel.tau
-        return rate
+        phi = y.reshape(states.shape)[PHI]
+        rate = independent.rates(y.reshape(states.shape), wheel)
+        rate[:2] -= 2 * np.array([np.cos(phi), np.sin(phi)]) / wheel.tau
+        return rate.ravel()
 
-    after = solve_ivp(kicked, (0.0, length_s), state, "DOP853", rtol=1e-10, atol=1e-11).y[:, -1]
-    return independent.follow(after, wheel, 4.0, rtol=1e-8).y[3, -1] < 0.0
+    after = solve_ivp(kicked, (0.0, length_s), states.ravel(), "DOP853", rtol=1e-10, atol=1e-11)
+    last = independent.follow(after.y[:, -1], wheel, 4.0, rtol=1e-8).y[:, -1]
+    return last.reshape(states.shape)[OMEGA] < 0.0
 
 
 def test_the_shortest_sure_kick_is_at_the_edge_that_scipy_finds():
@@ -157,14 +158,6 @@ def test_the_shortest_sure_kick_is_at_the_edge_that_scipy_finds():
     begin = independent.turning(wheel)
     state, quarter_s = independent.rotation(wheel, begin)
     later_s = np.linspace(0.0, quarter_s, 60, endpoint=False)
-    states = [independent.follow(state, wheel, s).y[:, -1] if s else state for s in later_s]
-    assert all(reverses(one, shortest_s + 1e-5, wheel) for one in states)
-    least_s = []
-    for one in states:
-        if not reverses(one, 0.135, wheel):
-            low, high = 0.135, 0.145
-            while high - low > 1e-7:
-                middle = (low + high) / 2
-                low, high = (low, middle) if reverses(one, middle, wheel) else (middle, high)
-            least_s.append(high)
-    assert max(least_s) == pytest.approx(shortest_s, abs=3e-5)
+    states = independent.follow(state, wheel, quarter_s, t_eval=later_s).y
+    assert reverse(states, shortest_s + 1e-5, wheel).all()
+    assert not reverse(states, shortest_s - 3e-5, wheel).all()
