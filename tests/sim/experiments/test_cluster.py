@@ -20,6 +20,15 @@ from host.runs.contract import Setting
 KICKS = 36 * 30
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _copies():
+    """Workers begin as copies of a process that has loaded Dask."""
+    import dask
+
+    with dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"}):
+        yield
+
+
 @pytest.fixture(scope="module")
 def cluster():
     """Two processes of one thread each."""
@@ -47,7 +56,8 @@ def test_a_cluster_gives_the_same_bits(cluster, tmp_path, monkeypatch):
     assert there["numbers"]["kicks"] > 0.9 * KICKS
 
 
-def test_a_study_of_the_model_has_the_same_numbers_from_a_cluster(cluster, tmp_path):
+def test_a_study_of_the_model_has_the_same_numbers_from_a_cluster(cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr("host.figures.theory.hopf.draw", lambda rows, findings: Figure())
     there = perform("hopf", out=tmp_path / "there", scheduler=cluster.scheduler_address)
     here = perform("hopf", out=tmp_path / "here")
     assert there["numbers"] == here["numbers"]
