@@ -1,33 +1,31 @@
 """The film of a wheel's rods, and where its numbers come from."""
 
 import json
-import os
-import subprocess
-import sys
+from contextlib import redirect_stdout
+from io import StringIO
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from host.cli import main
 from host.errors import NotDone
 from host.figures.robot import rods as figure
 from host.films.rod_course import WINDOW_S, course
 from host.logs.log import Log
 from robot.controller import motor_torque, rod_force, tangential_force
-from tests.lint.sources import ROOT
 
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
-    """The log of `kickctl rods`, run as a person would, and its film."""
+    """The log of `kickctl rods`, and its film."""
     folder = tmp_path_factory.mktemp("rods")
-    environment = {**os.environ, "KICK_TOKEN": str(folder / "token"), "PYTHONPATH": str(ROOT)}
-    environment.pop("KICK_BRICK", None)
-    command = [sys.executable, "-m", "host", "rods", "--out", "rods.gif", "--seed", "1", "--json"]
-    done = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, check=True
-    )
-    result = json.loads(done.stdout)
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(StringIO()) as answer:
+        patch.chdir(folder)
+        patch.setenv("KICK_TOKEN", str(folder / "token"))
+        patch.delenv("KICK_BRICK", raising=False)
+        assert main(["rods", "--out", "rods.gif", "--seed", "1", "--json"]) == 0
+    result = json.loads(answer.getvalue())
     assert result["reversed"]
     return Log.load(folder / result["log"]), folder / result["film"]
 
