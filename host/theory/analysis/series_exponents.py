@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 # A neighbour is false if the next coordinate takes it this many times farther away. A dimension
 # with less than FALSE_SHARE of false neighbours is enough.
 FALSE_RATIO, FALSE_SHARE, MOST_DIMENSIONS = 15.0, 0.01, 10
+# How many neighbours are looked at first.
+_FEW = 8
 # Rates are fitted between these times (s): before, neighbours turn into the fastest direction;
 # after, they are as far apart as any two moments.
 FIT_S = (0.5, 1.5)
@@ -76,11 +78,20 @@ def _neighbours(states: Array, apart: int) -> tuple[NDArray[np.int64], NDArray[n
     A neighbour is more than `apart` samples earlier or later, and does not coincide. Returns the
     indices of the states, the indices of their neighbours and the distances, (pairs,) each.
     """
-    distances, indices = cKDTree(states).query(states, k=min(2 * apart + 2, len(states)))
-    fit = (np.abs(indices - np.arange(len(states))[:, None]) > apart) & (distances > 0)
-    rows = np.flatnonzero(fit.any(axis=1))
-    nearest = fit[rows].argmax(axis=1)
-    return rows, indices[rows, nearest].astype(np.int64), distances[rows, nearest]
+    tree, most = cKDTree(states), min(2 * apart + 2, len(states))
+    others, nearest = np.zeros(len(states), np.int64), np.full(len(states), np.inf)
+    missing, count = np.arange(len(states)), 0
+    # For most states one of the first few does.
+    while count < most and len(missing):
+        count = min(4 * count or _FEW, most)
+        distances, indices = tree.query(states[missing], k=count)
+        fit = (np.abs(indices - missing[:, None]) > apart) & (distances > 0)
+        found = fit.any(axis=1)
+        rows, first = missing[found], fit[found].argmax(axis=1)
+        others[rows], nearest[rows] = indices[found, first], distances[found, first]
+        missing = missing[~found]
+    rows = np.flatnonzero(np.isfinite(nearest))
+    return rows, others[rows], nearest[rows]
 
 
 def embedding(values: Array, apart: int) -> Embedding:

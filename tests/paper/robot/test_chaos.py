@@ -26,6 +26,7 @@ from host.experiments.robot.switching import (
 from host.figures.robot.chaos import draw
 from host.logs.log import Log
 from host.runs.contract import Setting
+from host.theory.analysis import series_exponents
 from host.theory.analysis.series_exponents import from_series, from_twins, of_noise
 from robot.controller import motor_torque
 from robot.params import Params
@@ -84,6 +85,18 @@ def test_a_noisy_rhythm_has_no_greater_exponent_than_noise_makes():
 )
 def test_no_exponent_is_made_up_where_there_is_nothing_to_estimate(values):
     assert from_series(values, 0.03, 2.0) is None
+
+
+def test_a_neighbour_is_the_nearest_state_of_another_passage():
+    """Most of a slow walk's nearest states belong to the same passage."""
+    states = np.random.default_rng(0).standard_normal((400, 2)).cumsum(axis=0)
+    number = np.arange(len(states))
+    away = np.linalg.norm(states[:, None] - states, axis=2)
+    away[abs(number[:, None] - number) <= 40] = np.inf
+    rows, others, distances = series_exponents._neighbours(states, 40)
+    assert len(rows) == 400
+    assert np.array_equal(others, away.argmin(axis=1))
+    assert distances == pytest.approx(away.min(axis=1))
 
 
 def test_twins_that_double_in_a_second_part_at_ln_2():
