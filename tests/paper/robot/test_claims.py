@@ -3,6 +3,7 @@
 Each trial goes through the robot's whole loop in virtual time.
 """
 
+from functools import cache
 from math import pi
 
 import pytest
@@ -16,10 +17,11 @@ TRIALS = 50
 OPPOSITE = {"forward": "backward", "backward": "forward"}
 
 
+@cache
 def trial(seed, **kick):
     """Start a robot, let it settle, kick both wheels and watch them.
 
-    Returns [(heading before, heading after)] of the left and the right wheel.
+    Returns ((heading before, heading after), the same) of the left and the right wheel.
     """
     brick = SimBrick(seed)
     loop = Loop(brick.motors, brick.battery, brick.clock, seed)
@@ -37,7 +39,7 @@ def trial(seed, **kick):
     before = [heading_of(angles[side]) for side in WHEELS]
     loop.kick({"id": "trial", **kick})
     run(kick.get("ticks", 1) + 100)
-    return [(old, heading_of(angles[side])) for old, side in zip(before, WHEELS, strict=True)]
+    return tuple((old, heading_of(angles[side])) for old, side in zip(before, WHEELS, strict=True))
 
 
 def reversals(**kick):
@@ -53,7 +55,7 @@ def test_r8_membrane_inversion_always_reverses():
 
 @pytest.mark.parametrize("mode", ["position", "phase"])
 def test_r9_r10_quenched_kicks_are_reliable_for_3_to_5_ticks_and_fail_for_1(mode):
-    assert max(reversals(mode=mode, ticks=ticks) for ticks in (3, 4, 5)) >= 0.95 * TRIALS
+    assert any(reversals(mode=mode, ticks=ticks) >= 0.95 * TRIALS for ticks in (4, 3, 5))
     assert reversals(mode=mode, ticks=1) <= 0.1 * TRIALS
 
 
