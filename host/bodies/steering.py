@@ -189,7 +189,6 @@ def plan(effects: Array, start: Any, last: int, goal: Array) -> int:
     # One entry for each plan so far: its pose, its last choice, its cost and its first choice.
     x, y, course = (np.array([value]) for value in start)
     before, cost, first = np.array([last]), np.array([np.inf]), np.array([NO_KICK])
-    looks = np.arange(effects.shape[2])
     for number in range(AHEAD):
         # Every plan so far goes on in each way.
         choice = np.tile(CHOICES, len(x))
@@ -197,10 +196,11 @@ def plan(effects: Array, start: Any, last: int, goal: Array) -> int:
             np.repeat(values, len(CHOICES)) for values in (x, y, course, before, cost, first)
         )
         first = choice if number == 0 else first
-        ahead, left, turned = np.moveaxis(effects[before, choice], -1, 0)
-        cos, sin = np.cos(course)[:, None], np.sin(course)[:, None]
-        xs, ys = x[:, None] + cos * ahead - sin * left, y[:, None] + sin * ahead + cos * left
-        away = np.hypot(xs - goal[0], ys - goal[1]) + SOONER_M * (KICK_S * number + LOOK_S * looks)
-        cost = np.minimum(cost, away.min(axis=1))
-        x, y, course, before = xs[:, -1], ys[:, -1], course + turned[:, -1], choice
+        cos, sin = np.cos(course), np.sin(course)
+        for look in range(effects.shape[2]):
+            ahead, left, turned = effects[:, :, look].T[:, choice, before]
+            xs, ys = x + cos * ahead - sin * left, y + sin * ahead + cos * left
+            late_m = SOONER_M * (KICK_S * number + LOOK_S * look)
+            cost = np.minimum(cost, np.hypot(xs - goal[0], ys - goal[1]) + late_m)
+        x, y, course, before = xs, ys, course + turned, choice
     return int(first[np.argmin(cost)])
