@@ -67,11 +67,12 @@ class Film:
     ) -> None:
         self._fps = fps
         self._start_s: float | None = None
-        self._camera = Camera(model, cars, size, follow=1 / (fps * FOLLOW_S))
+        # A camera takes long to open: whether the film can be written is known at once.
+        self._movie = Movie(path, size, fps, new=new)
         try:
-            self._movie = Movie(path, size, fps, new=new)
+            self._camera = Camera(model, cars, size, follow=1 / (fps * FOLLOW_S))
         except BaseException:
-            self._camera.close()
+            self._movie.__exit__(None, None, None)
             raise
 
     def __enter__(self) -> Self:
