@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import ode, solve_ivp
 from scipy.optimize import fsolve
 
 
@@ -15,10 +15,9 @@ def rates(y, wheel):
     Of one state, or of many at once.
     """
     # With one of numpy's numbers each operation takes ten times as long as with Python's.
-    of_many = isinstance(y[0], np.ndarray)
-    mathematics = np if of_many else math
-    x1, x2, phi, omega = y if of_many else map(float, y)
-    a, tau, k, inertia, f, _, most, rods, _ = map(float, wheel)
+    x1, x2, phi, omega = y.tolist() if isinstance(y, np.ndarray) and y.ndim == 1 else y
+    mathematics = np if isinstance(x1, np.ndarray) else math
+    a, tau, k, inertia, f, _, most, rods, _ = wheel
     first, second = (2.0 / (1.0 + mathematics.exp(-a * x)) - 1.0 for x in (x1, x2))
     sine, cosine = mathematics.sin(phi), mathematics.cos(phi)
     force = k * first * sine - k * (second if rods == 2 else sine) * cosine
@@ -54,10 +53,9 @@ def jacobian(y, wheel):
 
 
 def follow(y, wheel, seconds, events=None, t_eval=None, rtol=1e-12):
-    """A wheel's course, as scipy solves it; or that of several, whose y is (4, wheels) in a row."""
-    one = len(y) == 4
+    """A wheel's course, as scipy solves it."""
     return solve_ivp(
-        lambda _, y: rates(y, wheel) if one else rates(y.reshape(4, -1), wheel).ravel(),
+        lambda _, y: rates(y, wheel),
         (0.0, seconds),
         y,
         "DOP853",
@@ -66,6 +64,24 @@ def follow(y, wheel, seconds, events=None, t_eval=None, rtol=1e-12):
         rtol=rtol,
         atol=1e-13,
     )
+
+
+def last(y, wheel, seconds, rtol=1e-12):
+    """Where a wheel's course ends."""
+    return end_of(lambda y: rates(y, wheel), y, seconds, rtol, 1e-13)
+
+
+def end_of(field, y, seconds, rtol, atol):
+    """Where a state ends whose rates are a function of it alone.
+
+    By the same method as `follow`, which scipy has in compiled code, too.
+    """
+    solver = ode(lambda _, y: field(y)).set_integrator(
+        "dop853", rtol=rtol, atol=atol, nsteps=1_000_000
+    )
+    found = solver.set_initial_value(y).integrate(seconds)
+    assert solver.successful()
+    return found
 
 
 def quarter_turn(y, wheel):
@@ -107,12 +123,12 @@ UNDO_QUARTER[:2, :2] = [[0.0, 1.0], [-1.0, 0.0]]
 def multipliers(y, seconds, wheel, back=UNDO_QUARTER):
     """The multipliers of a quarter turn from y, or of what `back` undoes, the greatest first."""
 
-    def both(_, z):
+    def both(z):
         driven = jacobian(z[:4], wheel) @ z[4:].reshape(4, 4)
         return np.concatenate([rates(z[:4], wheel), driven.ravel()])
 
     begin = np.concatenate([y, np.eye(4).ravel()])
-    end = solve_ivp(both, (0.0, seconds), begin, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+    end = end_of(both, begin, seconds, 1e-11, 1e-12)
     found = np.linalg.eigvals(back @ end[4:].reshape(4, 4))
     found = np.delete(found, np.argmin(abs(found - 1.0)))
     return found[np.argsort(-abs(found))]
@@ -122,13 +138,13 @@ def growth_of_area(y, wheel, seconds, rng):
     """The rate, 1/s, at which the area between two tangent vectors grows, after 10 s."""
     vectors, total, begin = np.linalg.qr(rng.normal(size=(4, 2)))[0], 0.0, 10
 
-    def both(_, z):
+    def both(z):
         driven = jacobian(z[:4], wheel) @ z[4:].reshape(4, 2)
         return np.concatenate([rates(z[:4], wheel), driven.ravel()])
 
     for second in range(begin + round(seconds)):
         z = np.concatenate([y, vectors.ravel()])
-        end = solve_ivp(both, (0.0, 1.0), z, "DOP853", rtol=1e-7, atol=1e-9).y[:, -1]
+        end = end_of(both, z, 1.0, 1e-7, 1e-9)
         y, (vectors, upper) = end[:4], np.linalg.qr(end[4:].reshape(4, 2))
         if second >= begin:
             total += np.log(abs(np.diag(upper))).sum()

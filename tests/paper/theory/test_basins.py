@@ -256,9 +256,7 @@ def test_where_chaos_and_rolling_coexist_no_chaotic_wheel_is_taken_for_a_regular
     names = settle_and_classify(model, model.states_of(states), wheel)[0]
     assert names.tolist() == [FORWARD if isinstance(model, Continuous) else OTHER] + [OTHER] * 60
     start = anywhere[:, 0]
-    last, other = (
-        independent.follow(y, wheel, 80.0, rtol=1e-8).y[:, -1] for y in (start, start + 1e-6)
-    )
+    last, other = (independent.last(y, wheel, 80.0, rtol=1e-8) for y in (start, start + 1e-6))
     assert np.abs(last - other).max() > 1.0
 
 

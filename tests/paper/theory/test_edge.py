@@ -47,7 +47,7 @@ def path(least):
 @pytest.fixture(scope="module")
 def rolled():
     """A wheel of another program that rolls forward: its course over a quarter turn, at phi = 0."""
-    state = independent.follow([0.0, 0.0, 0.0, 10.0], WHEEL, 12.0, rtol=1e-10).y[:, -1]
+    state = independent.last([0.0, 0.0, 0.0, 10.0], WHEEL, 12.0, rtol=1e-10)
     turns = independent.follow(state, WHEEL, 0.5, lambda _, y: sin(2 * y[2]), rtol=1e-11)
     crossed = next(y for y in turns.y_events[0] if round(y[2] / (pi / 2) % 4, 6) % 4 == 0)
     crossed[PHI] = 0.0
@@ -62,7 +62,7 @@ def pushed(rolled, phase_deg, direction_deg, amplitude):
     state = turned.y_events[0][0]
     state[0] += amplitude * cos(radians(direction_deg))
     state[1] += amplitude * sin(radians(direction_deg))
-    return independent.follow(state, WHEEL, 3.5, rtol=1e-9).y[3, -1] < 0.0
+    return independent.last(state, WHEEL, 3.5, rtol=1e-9)[3] < 0.0
 
 
 def phase_deg_of(least, cycle):

@@ -76,7 +76,7 @@ def test_scipy_has_the_same_cycle_and_a_multiplier_of_modulus_1(
     wheel = PAPER._replace(k=row["x"], tau=row["y"])
     y = np.array([row["x1"], row["x2"], 0.0, row["omega"]])
     seconds = row["period"] / power
-    end = independent.follow(y, wheel, seconds).y[:, -1]
+    end = independent.last(y, wheel, seconds)
     end[2] -= np.pi / 2 * (power == 4)
     assert back @ end == pytest.approx(y, abs=1e-7)
     leading = independent.multipliers(y, seconds, wheel, back)[0]
@@ -160,7 +160,7 @@ def test_wheels_come_to_a_cycle_of_six_crossings_that_the_mirror_closes():
     assert {family.name for family, _ in found} == {"6 crossings, -3 quarter turns, mirrored"}
     for family, (x1, x2, omega, seconds, k) in found:
         start = np.array([x1, x2, 0.0, omega])
-        end = independent.follow(start, PAPER._replace(tau=1.5, k=k), seconds).y[:, -1]
+        end = independent.last(start, PAPER._replace(tau=1.5, k=k), seconds)
         assert family.back @ (end - [0.0, 0.0, family.turn, 0.0]) == pytest.approx(start, abs=1e-4)
 
 
@@ -180,7 +180,7 @@ def test_scipy_has_the_cycle_of_ten_crossings_and_a_multiplier_minus_1(window_li
     for k, row in found:
         wheel = PAPER._replace(k=k, tau=y)
         start = np.array([row["x1"], row["x2"], 0.0, row["omega"]])
-        end = independent.follow(start, wheel, row["period"]).y[:, -1]
+        end = independent.last(start, wheel, row["period"])
         end[2] -= row["quarters"] * np.pi / 2
         assert row["quarters"] % 4 == 0
         assert end == pytest.approx(start, abs=1e-7)

@@ -21,7 +21,7 @@ from host.theory.studies import phase_diagram
 from host.theory.studies.registry import TABLE
 from kickctl.theory import PhaseDiagram
 from tests.lint.sources import ROOT
-from tests.paper.theory.independent import follow
+from tests.paper.theory.independent import last
 from tests.paper.theory.table import rows_of
 
 OPTIONS = complete_options(
@@ -139,8 +139,8 @@ def test_a_wheel_is_chaotic_where_scipy_sees_close_wheels_part(wheel, phase):
     assert found.omega_std > 0.6 * abs(found.omega_mean)
     assert phases(found, wheel.columns(1)) == [phase]
     start = found.states[:, 0]
-    last, other = (follow(y, wheel, 20.0, rtol=1e-9).y[:, -1] for y in (start, start + 1e-7))
-    assert (np.abs(last - other).max() > 1.0) == (phase == "C")
+    one, other = (last(y, wheel, 20.0, rtol=1e-9) for y in (start, start + 1e-7))
+    assert (np.abs(one - other).max() > 1.0) == (phase == "C")
 
 
 @pytest.mark.parametrize("tau", [0.25, 0.4])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from host.perform.run import perform
@@ -138,15 +137,16 @@ def test_branches_end_at_the_merging_itself(slow):
 def reverse(states, length_s, wheel):
     """Which wheels with inverted positions for some seconds roll backward in the end, (wheels,)."""
 
-    def kicked(_, y):
-        phi = y.reshape(states.shape)[PHI]
-        rate = independent.rates(y.reshape(states.shape), wheel)
+    def free(y):
+        return independent.rates(y.reshape(states.shape), wheel).ravel()
+
+    def kicked(y):
+        rate, phi = free(y).reshape(states.shape), y.reshape(states.shape)[PHI]
         rate[:2] -= 2 * np.array([np.cos(phi), np.sin(phi)]) / wheel.tau
         return rate.ravel()
 
-    after = solve_ivp(kicked, (0.0, length_s), states.ravel(), "DOP853", rtol=1e-10, atol=1e-11)
-    last = independent.follow(after.y[:, -1], wheel, 4.0, rtol=1e-8).y[:, -1]
-    return last.reshape(states.shape)[OMEGA] < 0.0
+    after = independent.end_of(kicked, states.ravel(), length_s, 1e-10, 1e-11)
+    return independent.end_of(free, after, 4.0, 1e-8, 1e-13).reshape(states.shape)[OMEGA] < 0.0
 
 
 def test_the_shortest_sure_kick_is_at_the_edge_that_scipy_finds():

@@ -42,7 +42,7 @@ def test_moments_are_those_of_scipys_events(surface):
 
 def test_a_wheel_that_turns_round_just_behind_the_section_crosses_it_twice_in_a_step():
     turns = np.array([1.0, 0.3, 1e-5, 0.0])  # the second rod pulls it back
-    before = independent.follow(turns, CHAOTIC, -0.004).y[:, -1]
+    before = independent.last(turns, CHAOTIC, -0.004)
     found = crossings(before[:, None], CHAOTIC.columns(1), 0.02, "phi", fineness=0.5)
     assert before[2] < 0.0
     first, second = found.times_s[0]
