@@ -180,20 +180,15 @@ def test_a_worker_that_is_lost_with_all_results_is_said_at_once(address, tmp_pat
             list(results)
 
 
-def read(path):
-    """The text of a file that may not be there yet."""
-    return path.read_text() if path.exists() else ""
-
-
-def test_a_scheduler_that_falls_silent_is_said(count, tmp_path, monkeypatch):
-    where = tmp_path / "scheduler.json"
+def test_a_scheduler_that_falls_silent_is_said(count, monkeypatch):
     command = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard"]
-    options = ["--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(where)]
-    with subprocess.Popen([*command, *options], stderr=subprocess.DEVNULL) as scheduler:
+    options = ["--host", "127.0.0.1", "--port", "0"]
+    with subprocess.Popen([*command, *options], stderr=subprocess.PIPE, text=True) as scheduler:
         try:
-            while not (found := re.search(r"tcp://[\d.:]+", read(where))):
-                assert scheduler.poll() is None
-            address = found.group()
+            words = (
+                re.search(r"Scheduler at: +(tcp://[\d.:]+)", line) for line in scheduler.stderr
+            )
+            address = next(filter(None, words)).group(1)
             with worker(address):
                 results = cluster.compute_on_cluster(address, count, CELLS, SETTING)
                 next(results)
