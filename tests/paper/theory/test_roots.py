@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from scipy.optimize import brentq, fsolve
 
 from host.perform.run import perform
@@ -85,7 +86,8 @@ def test_cycles_cease_to_be_born_stable_where_harmonic_balance_says():
 
 
 @pytest.mark.parametrize("tau", [0.25, 0.6])
-def test_the_study_names_the_same_root_whatever_its_grid(tau):
+def test_the_study_names_the_same_root_whatever_its_grid(tau, monkeypatch):
+    monkeypatch.setattr("host.figures.theory.hopf.draw", lambda rows, findings: Figure())
     (found,) = perform("hopf", out="here", tau=tau)["numbers"]["l1_changes_sign_at_tau"]
     assert found == pytest.approx(bautin_tau_s(Wheel(), 1.3, 1.5), abs=1e-9)
 
