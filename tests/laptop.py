@@ -5,7 +5,9 @@ import os
 import subprocess
 import sys
 from contextlib import contextmanager
-from pathlib import Path
+
+from tests.lint.sources import ROOT
+from tests.small_figures import without_figures
 
 # A program that drives a robot until somebody takes over, and then tries to go on.
 DRIVER = """
@@ -37,9 +39,6 @@ class Laptop:
         self._more = more
         self.config = folder / "config" / "kickctl"
         folder.mkdir(exist_ok=True)
-        self._no_matplotlib = folder / "no matplotlib"
-        self._no_matplotlib.mkdir()
-        (self._no_matplotlib / "matplotlib.py").write_text("raise ImportError\n")
 
     def knows(self, name, address, token=None):
         """Write a robot into the file of robots."""
@@ -50,9 +49,7 @@ class Laptop:
 
     def environment(self, **more):
         kept = {key: value for key, value in os.environ.items() if not key.startswith("KICK_")}
-        path = str(Path(__file__).resolve().parents[1])
-        if not self.draws:
-            path = f"{self._no_matplotlib}:{path}"
+        path = str(ROOT) if self.draws else without_figures(self.folder)
         own = {"XDG_CONFIG_HOME": str(self.folder / "config"), "PYTHONPATH": path}
         return {**kept, **own, **self._more, **more}
 

@@ -1,6 +1,7 @@
-"""Figures that are quick to draw, for tests whose subject they are not."""
+"""Figures that are quick to draw, or none, for tests whose subject they are not."""
 
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
@@ -14,3 +15,14 @@ def small_figures():
         patch.setitem(style.SIZE, "dpi", 40)
         patch.setitem(style.SIZE, "layout", None)
         yield
+
+
+def without_figures(folder):
+    """The PYTHONPATH of a kickctl that can draw nothing, for which a folder is needed.
+
+    To load matplotlib and to draw a figure takes four times as long as all else of a kick.
+    """
+    hidden = folder / "no-matplotlib"
+    hidden.mkdir(exist_ok=True)
+    (hidden / "matplotlib.py").write_text("raise ImportError('not installed')\n", encoding="utf-8")
+    return f"{hidden}:{Path(__file__).parents[1]}"

@@ -20,6 +20,8 @@ from pathlib import Path
 import ev3dev2
 import pytest
 
+from tests.small_figures import without_figures
+
 ROOT = Path(__file__).resolve().parents[2]
 SSHD = shutil.which("sshd", path="/usr/sbin:/usr/local/sbin:" + os.environ["PATH"])
 PRIVILEGE_SEPARATION = Path("/run/sshd")
@@ -344,15 +346,6 @@ class Checkout:
             check=False,
         )
         return done.returncode, done.stdout, done.stderr
-
-
-def without_figures(folder):
-    """The PYTHONPATH of a kickctl without matplotlib.
-
-    To load that and to draw a figure takes four times as long as all else of a kick.
-    """
-    write(folder / "figureless" / "matplotlib.py", "raise ImportError('not installed')\n")
-    return f"{folder / 'figureless'}:{ROOT}"
 
 
 def charged(folder):

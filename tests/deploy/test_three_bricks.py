@@ -6,7 +6,7 @@ from contextlib import ExitStack
 import pytest
 
 from tests.cli.test_desk import desk_robot
-from tests.deploy.brick import Brick, needs_sshd, without_figures
+from tests.deploy.brick import Brick, needs_sshd
 from tests.laptop import Laptop
 
 NAMES = ("anna", "bert", "carl")
@@ -36,7 +36,7 @@ def bricks(tmp_path):
 def laptop_in(folder, name):
     """A laptop whose ssh reaches the bricks."""
     options = f"-F {folder / 'ssh_config'}"
-    return Laptop(folder / name, KICK_SSH_OPTIONS=options, PYTHONPATH=without_figures(folder))
+    return Laptop(folder / name, draws=False, KICK_SSH_OPTIONS=options)
 
 
 @pytest.fixture
