@@ -5,17 +5,30 @@ import subprocess
 import sys
 
 import pytest
+from matplotlib.figure import Figure
 
 from host.cli import main
 from tests.lint.sources import ROOT
 from tests.small_figures import small_figures
 
+DRAW = Figure.draw
+
 
 @pytest.fixture
-def figures():
-    """Figures are small: a module whose subject they are has a `figures` too."""
+def figures(monkeypatch):
+    """Figures are small and empty: a module whose subject they are has a `figures` too.
+
+    A verb answers whether or not its figure can be drawn, so most tests would not notice.
+    """
     with small_figures():
+        monkeypatch.setattr(Figure, "draw", lambda figure, renderer: None)
         yield
+
+
+@pytest.fixture
+def drawn(figures, monkeypatch):
+    """Figures are not empty: for tests that fail where nothing can be drawn."""
+    monkeypatch.setattr(Figure, "draw", DRAW)
 
 
 @pytest.fixture

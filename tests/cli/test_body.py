@@ -21,6 +21,7 @@ def test_a_folder_that_cannot_be_created_is_refused(kickctl, tmp_path):
     assert "--out" in err
 
 
+@pytest.mark.usefixtures("drawn")
 def test_a_car_is_summarized_in_json_and_kept_in_files(kickctl, tmp_path):
     kick = "t=0.5,mode=phase,wheel=left,seconds=0.2,shift=pi/2"
     status, out, _ = kickctl(*CAR, "--json", "--out", str(tmp_path), "--kick", kick)

@@ -71,6 +71,7 @@ def with_nonsense(log):
     return path
 
 
+@pytest.mark.usefixtures("drawn")
 @pytest.mark.parametrize("reader", READERS)
 @pytest.mark.parametrize("damage", [cut, with_nonsense])
 def test_whoever_reads_a_damaged_log_says_what_is_missing(kickctl, log, damage, reader):
@@ -130,6 +131,7 @@ def test_recover_goes_on_behind_a_damaged_place_and_says_how_much_is_lost(kickct
     assert f"kickctl log recover {path.name} also reads what is whole behind" in behind[2]
 
 
+@pytest.mark.usefixtures("drawn")
 @pytest.mark.parametrize("reader", READERS)
 def test_whoever_stops_at_a_damaged_place_says_the_loss_in_numbers(kickctl, log, reader):
     path, (action, *more) = with_a_damaged_place(log), READERS[reader]

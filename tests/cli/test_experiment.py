@@ -141,6 +141,7 @@ def size(folder):
     return sum(path.stat().st_size for path in folder.glob("*/cells.jsonl"))
 
 
+@pytest.mark.usefixtures("drawn")
 def test_reliability_ends_with_its_claims_and_files(kickctl):
     status, out, err = kickctl("experiment", "reliability", "--trials", "25", "--json")
     summary = json.loads(out)
@@ -359,6 +360,7 @@ def test_after_an_experiment_the_robot_stands_still(toy, desk, tmp_path):
         assert robot.status()["state"] == "stopped"
 
 
+@pytest.mark.usefixtures("drawn")
 def test_reproduce_writes_one_page_with_table_and_figures(kickctl):
     status, out, _ = kickctl("reproduce", "--only", "r8,R10", "--json")
     claims, at_preset = (json.loads(out)[name] for name in ("claims", "at_preset"))

@@ -70,6 +70,7 @@ def test_no_verb_replaces_a_log(kickctl, log, writer, force):
     assert everything() == before
 
 
+@pytest.mark.usefixtures("drawn")
 @pytest.mark.parametrize("writer", WRITERS, ids=" ".join)
 def test_a_file_is_replaced_only_by_force(kickctl, log, writer):
     line, out = command(writer, log, "mine")

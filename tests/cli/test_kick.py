@@ -44,6 +44,7 @@ def test_the_json_is_one_object_that_says_what_happened(kickctl):
     assert "simulated" in err
 
 
+@pytest.mark.usefixtures("drawn")
 def test_log_and_figure_are_what_the_answer_names(kickctl):
     result = json.loads(
         kickctl("kick", "--mode", "phase", "--ticks", "4", "--json", "--seed", "5")[1]

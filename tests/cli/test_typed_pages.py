@@ -14,8 +14,10 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 
 from robot.program import own_address
+from tests.cli.conftest import DRAW
 from tests.cli.test_desk import desk_robot
 from tests.lint.sources import ROOT
 from tests.package.test_commands_of_pages import TYPED, lines
@@ -40,6 +42,8 @@ LONG = (
 NEEDS_A_TERMINAL = ("kickctl --brick tcp://127.0.0.1:5425 watch",)
 # They go on until somebody types ^C.
 LASTING = ("lab", "foxglove")
+# They fail where nothing can be drawn.
+PICTURES = ("plot", "film", "--film", "rods")
 FAILS = {"kickctl kick --mode phase --ticks 1 --seed 6": 1}
 # What a page takes for granted.
 BEFORE = {
@@ -121,6 +125,8 @@ def typed(kickctl, robots, tmp_path, monkeypatch):
         else:
             words = [ADDRESSES.sub("anna", word) for word in words]
         with monkeypatch.context() as patch:
+            if {*PICTURES} & {*words}:
+                patch.setattr(Figure, "draw", DRAW)
             if lasts(words):
                 words += ["--port", "0"]
                 patch.setattr(sys, "stdout", Reader(sys.stdout))
