@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import pytest
 from matplotlib.figure import Figure
@@ -14,14 +15,21 @@ from tests.small_figures import small_figures
 DRAW = Figure.draw
 
 
-@pytest.fixture
-def figures(monkeypatch):
-    """Figures are small and empty: a module whose subject they are has a `figures` too.
+@contextmanager
+def empty_figures():
+    """Figures are small and empty within the context.
 
     A verb answers whether or not its figure can be drawn, so most tests would not notice.
     """
-    with small_figures():
-        monkeypatch.setattr(Figure, "draw", lambda figure, renderer: None)
+    with small_figures(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "draw", lambda figure, renderer: None)
+        yield
+
+
+@pytest.fixture
+def figures():
+    """Figures are small and empty: a module whose subject they are has a `figures` too."""
+    with empty_figures():
         yield
 
 

@@ -1,32 +1,41 @@
 """docs/lesson.md: what it says of a robot in a process of its own, typed as it is written.
 
-The port must be free and is another one, and `python` is this one.
+The port must be free and is another one, and kickctl runs in this process.
 """
 
-import os
+import io
 import re
-import subprocess
-import sys
-from pathlib import Path
+import shlex
+from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
 
+from host.cli import main
 from host.client.robot import connect
 from host.logs.log import Log
 from robot.kicks import WHEELS
+from tests.cli.conftest import empty_figures
 from tests.cli.test_desk import desk_robot
 from tests.cli.test_lesson import DESK, commands, shown
 
 START, *STEP_4 = commands(DESK[0])
 REAL = commands(DESK[1])
-PATIENCE_S = 100.0
-# Eighteen programs begin one after the other, beside twenty seconds of recording.
-pytestmark = pytest.mark.timeout(400)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("lesson")
+
+
+def answer(line):
+    """What a command prints."""
+    program, *words = shlex.split(line, comments=True)
+    assert program == "kickctl", line
+    with io.StringIO() as printed:
+        with redirect_stdout(printed), redirect_stderr(printed):
+            status = main(words)
+        assert status == 0, line + printed.getvalue()
+        return printed.getvalue()
 
 
 @pytest.fixture(scope="module")
@@ -36,31 +45,17 @@ def answers(folder):
     assert (python, dash_m, program, port) == ("python", "-m", "sim_motor", "--port")
     assert STEP_4[0] == f"export KICK_BRICK=tcp://127.0.0.1:{number}"
     assert STEP_4[-1] == "unset KICK_BRICK"
-    with desk_robot(folder, *arguments) as (uri, _):
+    with (
+        desk_robot(folder, *arguments) as (uri, _),
+        empty_figures(),
+        pytest.MonkeyPatch.context() as patch,
+    ):
         # A person goes to the other terminal; by then the neurons have settled.
         with connect(uri, observe=True) as robot:
             robot.wait(3.0)
-        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-        environment = {
-            **os.environ,
-            "PATH": path,
-            "KICK_BRICK": uri,
-            "KICK_TOKEN": str(folder / "token"),
-        }
-
-        def answer(line):
-            done = subprocess.run(
-                ["sh", "-c", line],
-                env=environment,
-                cwd=folder,
-                capture_output=True,
-                text=True,
-                timeout=PATIENCE_S,
-                check=False,
-            )
-            assert done.returncode == 0, line + done.stdout + done.stderr
-            return done.stdout + done.stderr
-
+        patch.chdir(folder)
+        patch.setenv("KICK_BRICK", uri)
+        patch.setenv("KICK_TOKEN", str(folder / "token"))
         return {
             title: [(line, answer(line)) for line in lines]
             for title, lines in zip(DESK, (STEP_4[1:-1], ["kickctl start", *REAL]), strict=True)
