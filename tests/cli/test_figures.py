@@ -10,7 +10,9 @@ import matplotlib as mpl
 import pytest
 from matplotlib.figure import Figure
 
+from host.client.robot import connect
 from host.figures.robot import kick as kick_figure
+from host.kicking.outcome import kick_and_watch, wait_settled
 from host.logs.log import Log
 from host.logs.mcap_files import McapTap
 from tests.lint.sources import ROOT
@@ -34,16 +36,17 @@ FOREIGN = {
 }
 
 
-@pytest.fixture
-def figures():
-    """They are as users see them."""
+@pytest.fixture(scope="module")
+def log():
+    """The log of a kick."""
+    with connect("sim://", 1) as robot, robot.recording() as log:
+        wait_settled(robot)
+        kick_and_watch(robot, log, "phase")
+    return log
 
 
 @pytest.mark.parametrize("ending", ["png", "svg"])
-def test_figures_are_the_same_whatever_matplotlibrc_says(kickctl, ending):
-    log = Log.load(
-        json.loads(kickctl("kick", "--mode", "phase", "--seed", "1", "--json")[1])["log"]
-    )
+def test_figures_are_the_same_whatever_matplotlibrc_says(log, ending):
     own = kick_figure.draw(log, Path(f"own.{ending}"), "A kick").read_bytes()
     with mpl.rc_context(FOREIGN):
         foreign = kick_figure.draw(log, Path(f"foreign.{ending}"), "A kick").read_bytes()
@@ -89,6 +92,7 @@ def test_an_interrupt_while_drawing_loses_no_answer(kickctl, monkeypatch):
     assert json.loads(out)["reversed"] is True
 
 
+@pytest.mark.usefixtures("drawn")
 def test_a_log_that_finds_no_more_room_loses_no_kick(kickctl, monkeypatch):
     monkeypatch.setattr(McapTap, "take_records", full)
     status, out, err = kickctl("kick", "--mode", "phase", "--seed", "1", "--json")
