@@ -1,6 +1,7 @@
 """`kickctl record`: ticks against those that were due, and why some are not there."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -98,3 +99,18 @@ def test_the_words_say_the_same(kickctl, late_robot):
     assert status == 0
     assert out.startswith("95 of 100 due ticks in logs/")
     assert out.endswith(": the robot missed 5 deadlines, 0 records missing\n")
+
+
+@pytest.mark.parametrize(
+    ("line", "ending"),
+    [
+        (("kick", "--mode", "membrane", "--wheel", "left"), "-sim-kick-membrane-1-tick-left.mcap"),
+        (("record", "0.1"), "-sim-record.mcap"),
+        (("log", "pull"), "-sim-pull.mcap"),
+        (("drive", "forward"), "-sim-drive-forward.mcap"),
+    ],
+)
+def test_a_logs_name_says_what_was_done(kickctl, line, ending):
+    name = Path(json.loads(kickctl(*line, "--seed", "1", "--json")[1])["log"]).name
+    assert name[15:] == ending
+    assert name[:8].isdecimal()
