@@ -120,29 +120,30 @@ def test_a_robot_does_not_listen_on_an_address_without_letters(tmp_path):
     assert "--host cannot be empty" in done.stderr
 
 
-def test_an_idle_robot_waits_for_start(tmp_path, outside):
+def test_an_idle_robot_waits_for_start(tmp_path, kickctl, monkeypatch):
     with desk_robot(tmp_path, "--idle") as (uri, _):
-        status, _, err = outside("kick", "--mode", "phase", KICK_BRICK=uri)
+        monkeypatch.setenv("KICK_BRICK", uri)
+        status, _, err = kickctl("kick", "--mode", "phase")
         assert status == 1
         assert "kickctl start" in err
-        assert outside("start", KICK_BRICK=uri)[0] == 0
-        status = outside("status", "--json", KICK_BRICK=uri)[1]
+        assert kickctl("start")[0] == 0
+        status = kickctl("status", "--json")[1]
         assert json.loads(status)["state"] == "running"
-        assert outside("stop", KICK_BRICK=uri)[0] == 0
-        assert json.loads(outside("status", "--json", KICK_BRICK=uri)[1])["state"] == "stopped"
+        assert kickctl("stop")[0] == 0
+        assert json.loads(kickctl("status", "--json")[1])["state"] == "stopped"
 
 
-def test_without_the_token_one_may_look_and_stop_but_not_move(tmp_path, outside):
+def test_without_the_token_one_may_look_and_stop_but_not_move(tmp_path, kickctl, monkeypatch):
     with desk_robot(tmp_path) as (uri, _):
-        status, _, err = outside(
-            "--brick", uri, "kick", "--mode", "membrane", KICK_TOKEN=str(tmp_path / "none")
-        )
+        monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "none"))
+        status, _, err = kickctl("--brick", uri, "kick", "--mode", "membrane")
         assert status == 4
         assert "token" in err
-        assert outside("--brick", uri, "status", KICK_TOKEN=str(tmp_path / "none"))[0] == 0
-        assert outside("--brick", uri, "start", "--token", str(tmp_path / "none"))[0] == 4
-        assert outside("--brick", uri, "stop", KICK_TOKEN=str(tmp_path / "none"))[0] == 0
-        assert json.loads(outside("--brick", uri, "status", "--json")[1])["state"] == "stopped"
+        assert kickctl("--brick", uri, "status")[0] == 0
+        assert kickctl("--brick", uri, "start", "--token", str(tmp_path / "none"))[0] == 4
+        assert kickctl("--brick", uri, "stop")[0] == 0
+        monkeypatch.setenv("KICK_TOKEN", str(tmp_path / "token"))
+        assert json.loads(kickctl("--brick", uri, "status", "--json")[1])["state"] == "stopped"
 
 
 def test_who_has_another_robots_token_may_look_and_stop_but_not_move(tmp_path, outside):
@@ -173,14 +174,14 @@ def test_one_controller_at_a_time(tmp_path, outside):
         assert outside("--brick", uri, "kick", "--mode", "membrane", "--now")[0] == 0
 
 
-def test_status_and_a_new_k_say_why_wheels_rest(tmp_path, outside):
+def test_status_and_a_new_k_say_why_wheels_rest(tmp_path, kickctl):
     with desk_robot(tmp_path, "--set", "k=0") as (uri, _):
-        status, out, err = outside("--brick", uri, "status")
+        status, out, err = kickctl("--brick", uri, "status")
         assert status == 0, err
         assert "the left wheel rests, with a torque of |M| = 0.00" in out
         assert "k = 0 is too small" in out
         assert re.search(r"^of \d+ ticks \d+ were missed", out, re.MULTILINE)
-        status, out, err = outside("--brick", uri, "params", "set", "k=0.3")
+        status, out, err = kickctl("--brick", uri, "params", "set", "k=0.3")
         assert (status, out) == (0, "k = 0.3\n")
         assert "k = 0.3 is too small" in err
 
