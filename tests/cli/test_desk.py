@@ -171,7 +171,7 @@ def test_one_controller_at_a_time(tmp_path, outside):
         assert status == 4
         assert "the robot has been driven by 'first' for " in err
         first.release()
-        assert outside("--brick", uri, "kick", "--mode", "membrane", "--now")[0] == 0
+        assert outside("--brick", uri, "params", "set", "k=7")[0] == 0
 
 
 def test_status_and_a_new_k_say_why_wheels_rest(tmp_path, kickctl):
