@@ -34,9 +34,12 @@ def figures():
 
 
 @pytest.fixture
-def drawn(figures, monkeypatch):
+def drawn(figures):
     """Figures are not empty: for tests that fail where nothing can be drawn."""
-    monkeypatch.setattr(Figure, "draw", DRAW)
+    # Undone before `figures`, which `monkeypatch` would not be.
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "draw", DRAW)
+        yield
 
 
 @pytest.fixture
