@@ -88,6 +88,17 @@ class Notebook:
         prompt = f".jp-Cell >> nth={number} >> .jp-InputPrompt"
         return self.page.locator(prompt).inner_text() == "[*]:"
 
+    def prints(self, number, words):
+        """Wait until a cell runs and has printed some words."""
+        self._until(
+            "([number, words]) => {"
+            " const part = (name) =>"
+            " document.querySelectorAll('.jp-Cell')[number].querySelector(name).innerText;"
+            " return part('.jp-InputPrompt') === '[*]:'"
+            " && part('.jp-OutputArea').includes(words); }",
+            arg=[number, words],
+        )
+
     def ended(self, number):
         """Wait until a cell has run."""
         self._until(

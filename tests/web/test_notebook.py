@@ -10,7 +10,7 @@ from tests.web.jupyter import Notebook, jupyter_lab
 CELLS = (
     'from kickctl import connect\nrobot = connect("tcp://127.0.0.1:{port}", observe=True)',
     "robot.show()",
-    "robot.wait(600)",
+    'print("waits")\nrobot.wait(600)',
     """\
 with connect("sim://?seed=1") as embedded:
     embedded.show()
@@ -64,6 +64,7 @@ def notebook(browser, jupyter):
 def test_stop_stops_the_robot_at_once_while_python_is_busy(notebook, robot):
     notebook.run(ROBOT)
     notebook.run(BUSY)
+    notebook.prints(BUSY, "waits")  # or the interrupt comes before the cell begins, and is lost
     before = notebook.until(ROBOT, "s.records > 3 && s.state === 'running'")
     after = notebook.until(ROBOT, f"s.shown_s > {before['shown_s']} + 0.2")
     assert after["wheels"]["left"]["phi_rad"] > before["wheels"]["left"]["phi_rad"]
@@ -81,6 +82,7 @@ def test_escape_stops_it_only_where_the_focus_is_in_the_widget(notebook, robot):
     notebook.need(ROBOT)
     # The widget was there before this cell has run.
     notebook.run(BUSY)
+    notebook.prints(BUSY, "waits")  # or the interrupt comes before the cell begins, and is lost
     notebook.until(ROBOT, "s.state === 'running' && s.stop === ''")
     notebook.page.locator(".jp-Cell >> nth=0 >> .cm-content").click()
     notebook.page.keyboard.press("Escape")
