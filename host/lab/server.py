@@ -26,6 +26,8 @@ from host.lab.worker import Worker
 LOOPBACK = "127.0.0.1"
 TICK_S = 0.1
 STOP_PATIENCE_S = 5.0
+# How late (s) an interrupt is seen in the worst case.
+LOOK_S = 0.5
 
 
 class Lab:
@@ -94,7 +96,9 @@ class Lab:
 
     def wait(self) -> None:
         """Wait until the server ends, which it does by itself only if it fails. Raises that."""
-        self._ended.wait()
+        # A signal that comes just before a thread falls asleep does not wake it.
+        while not self._ended.wait(LOOK_S):
+            pass
         if self._failure is not None:
             raise self._failure
 

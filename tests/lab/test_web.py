@@ -1,7 +1,9 @@
 """The web server over real sockets: who is let in, what is served, what hostile pages can do."""
 
+import signal
 import socket
 import struct
+import threading
 from contextlib import suppress
 
 import aiohttp
@@ -305,6 +307,14 @@ def test_a_port_that_is_taken_is_said_in_words(lab, station, folder):
     assert "--port" in error.value.hint
     with pytest.raises(WrongUse, match="cannot listen at"), Lab([], 0, "192.0.2.1", folder):
         pass
+
+
+def test_an_interrupt_that_wakes_no_thread_ends_the_lab(folder, monkeypatch):
+    """It comes just before the thread that waits falls asleep: here another thread gets it."""
+    monkeypatch.setattr("host.lab.server.LOOK_S", 0.01)
+    with Lab([], folder=folder) as lab, pytest.raises(KeyboardInterrupt):
+        threading.Timer(0.05, signal.raise_signal, [signal.SIGINT]).start()
+        lab.wait()
 
 
 def test_keys_are_new_for_each_lab(lab, folder):
