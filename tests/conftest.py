@@ -126,27 +126,17 @@ def pytest_collection():
     gc.set_threshold(NEW_OBJECTS)
 
 
+# They mostly wait. At the end they would do so with nothing beside them that computes.
+FIRST = "tests/deploy/"
+
+
 # Before `-m` chooses by the marks.
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
     for item in items:
         if item.nodeid.startswith(REAL_TIME):
             item.add_marker("realtime")
-    items[:] = beside_each_other(
-        [item for item in items if item.get_closest_marker("realtime")],
-        [item for item in items if not item.get_closest_marker("realtime")],
-    )
-
-
-def beside_each_other(waiting, computing):
-    """An order in which two of four processes begin with tests that mostly wait.
-
-    Each process begins with its quarter. All four would wait at times else, and at the end nothing
-    that computes would be left to go beside those that wait.
-    """
-    half = len(waiting) // 2
-    rest = (len(waiting) + len(computing)) // 2 - half
-    return waiting[:half] + computing[:rest] + waiting[half:] + computing[rest:]
 
 
 @pytest.fixture(scope="module")
