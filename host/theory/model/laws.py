@@ -57,8 +57,6 @@ def law_of(constants: Sequence[float] | Array) -> Law:
     Raises:
         WrongUse: Different wheels have different laws.
     """
-    if isinstance(constants, Wheel):
-        return Law(constants.rods == 1.0, constants.bounded < inf, int(constants.own))
     numbers = np.asarray(constants, dtype=np.float64).reshape(len(constants), -1)
     if not numbers.shape[1]:
         return PAPER
