@@ -7,17 +7,11 @@ import pytest
 
 from tests.deploy.brick import needs_sshd, write
 
-pytestmark = needs_sshd
+# The brick has the release: only the token is new to it.
+pytestmark = [needs_sshd, pytest.mark.usefixtures("stocked")]
 
 SECRET = "5a" * 32
 SPOILED = ["", "Welcome to EV3 number 7\n", "5a" * 33]
-
-
-@pytest.fixture
-def brick(brick, card):
-    """A brick that has the checkout's release: only the token is new to it."""
-    brick.take_releases(card[0])
-    return brick
 
 
 def theirs(brick):
