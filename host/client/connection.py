@@ -245,6 +245,8 @@ class Connection(LastingLink):
                 answer = self._talk.answer(number)
                 if answer is not None:
                     return answer
+                if not self.link.is_line:
+                    self._talk.raise_refusal()
                 if now > until:
                     raise NoLink(
                         f"the robot does not answer to '{what}'",

@@ -122,12 +122,16 @@ class Conversation:
         """
         message = self._answers.pop(number, None)
         if message is None:
-            self.raise_refusal()
             return None
         if "error" in message:
             raise from_robot(message["error"])
         result: dict[str, Any] = message["result"]
         return result
+
+    @property
+    def refused(self) -> str | None:
+        """Why the robot has ended the conversation, in its words; None if it has not."""
+        return None if self._refusal is None else printable(str(self._refusal.get("message")))
 
     def raise_refusal(self) -> None:
         """Raise what ended the conversation, if the robot has ended it."""
@@ -191,7 +195,8 @@ class Conversation:
             if number is None and outcome == "result":
                 self.stopped = answered(reply["result"])
             elif number is None:
-                self._refusal = reply["error"]
+                # Those that follow only say that there was no new hello.
+                self._refusal = self._refusal or reply["error"]
             elif self.hello:  # before it, answers to an earlier user of the line may come
                 self._hear_of_takeover(reply.get("result", {}))
                 self._answers[number] = reply

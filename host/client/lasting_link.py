@@ -35,7 +35,8 @@ class LastingLink:
     """One conversation with a robot, over a link that is found again when it breaks.
 
     A link is broken when it says so, and when it is silent although the robot has to answer or to
-    send records.
+    send records. A serial line also is when the robot ends the conversation over it, as one does
+    that has opened its end anew.
 
     Args:
         link: The way to the robot, not opened yet.
@@ -207,6 +208,8 @@ class LastingLink:
         try:
             self._send_what_is_due(self.link.now())
             came = self._read(timeout_s)
+            if self.link.is_line and self._talk.refused is not None:
+                raise LinkLost(self._talk.refused)
             if not came and self._silence.lasts(self.link.now()) > self.silence_s:
                 raise LinkLost(f"nothing has come over it for {self.silence_s:g} s")
         except LinkLost as error:

@@ -52,6 +52,88 @@ def test_who_records_dials_again_and_loses_no_tick(link, token):
             robot.kick("membrane")
 
 
+# A serial line stays open when the robot's end is opened anew, as by its program's next start
+
+
+@pytest.fixture
+def line(link, monkeypatch):
+    """The link as a serial line. `line.begin_anew()`: the robot opens its end again."""
+    monkeypatch.setattr(type(link), "is_line", True)
+
+    def begin_anew():
+        (peer,) = link.server._peers
+        peer.lasting = True
+        peer.session = Session(link.loop, link.token, link.server.boot)
+
+    link.begin_anew = begin_anew
+    return link
+
+
+@pytest.mark.parametrize("token", [True, False], ids=["who drives", "who only watches"])
+def test_who_records_over_a_line_says_hello_to_a_robot_that_has_begun_anew(line, token):
+    with Robot(line, line.token if token else None) as robot:
+        if token:
+            robot.set(link_loss="continue")
+        log, troubles = Log(), []
+        robot.on_trouble = troubles.append
+        robot.add_tap(log)
+        robot.wait(1.0)
+        line.begin_anew()
+        robot.wait(5.0)
+        robot.remove_tap(log)
+        whole(log, line)
+        assert len(troubles) == 1
+        assert ("there was no hello before it" if token else "nothing has come") in troubles[0]
+        assert robot.drives == token
+
+
+def test_a_command_to_a_robot_that_has_begun_anew_is_carried_out_once(line):
+    with Robot(line, line.token) as robot:
+        robot.kick("membrane")
+        robot.wait(1.0)
+        line.begin_anew()
+        robot.kick("membrane")
+        robot.wait(0.1)
+    assert [event["event"] for event in line.events()].count("kick") == 2
+
+
+def test_a_start_that_a_robot_that_has_begun_anew_refuses_is_not_sent_again(line):
+    with Robot(line, line.token) as robot:
+        robot.lease()
+        robot.stop()
+        line.begin_anew()
+        with pytest.raises(NoLink, match="somebody may have stopped the robot since"):
+            robot.start()
+        assert robot.status()["state"] == "stopped"
+
+
+def test_a_robot_that_ends_every_conversation_is_not_asked_for_ever(line, monkeypatch):
+    receive = Session.receive
+
+    def end(session, kind, payload):
+        if kind == wire.ASK:
+            return session.refuse("broken", "that was no message", "")
+        return receive(session, kind, payload)
+
+    with Robot(line, line.token) as robot:
+        line.begin_anew()
+        monkeypatch.setattr(Session, "receive", end)
+        troubles = []
+        robot.on_trouble = troubles.append
+        begin = line.now()
+        with pytest.raises(NoLink, match="does not answer to 'describe'"):
+            robot.request("describe", {"what": "channels"})
+        assert line.now() - begin < robot.answer_s + robot.reconnect_s + 1.0
+        assert "that was no message" in troubles[-1]
+
+
+def test_a_stop_needs_no_new_hello(line):
+    with Robot(line, line.token) as robot:
+        line.begin_anew()
+        assert robot.stop_at_once().state == "stopped"
+        assert robot.status()["state"] == "stopped"
+
+
 def test_the_lease_is_taken_again_and_a_held_run_resumes(link):
     with Robot(link, link.token) as robot:
         robot.set(link_loss="hold")
