@@ -74,19 +74,24 @@ def test_the_program_starts_with_the_brick_all_the_same(running, checkout, how):
     }
     script = running.kickctl / "current" / "robot" / "service" / "brick.sh"
     with subprocess.Popen(["/bin/sh", script, "run", "--idle"], env=environment) as process:
-        wait_until(lambda: [path for path in memory.rglob("robot.log") if "READY" in read(path)])
-        (log,) = memory.rglob("robot.log")
-        status, output = checkout.deploy("--status")
-        assert status == 0, output
-        assert f"runs as process {process.pid}, READY tcp://127.0.0.1:" in output
-        status, output = checkout.deploy("--logs")
-        assert status == 0, output
-        assert f"the log is in memory; the last lines of {log}:" in output
-        assert "READY" in output
-        reopen()
-        status, output = checkout.deploy()
-        assert status == 0, output
-        assert process.wait(20) == 0
+        try:
+            wait_until(
+                lambda: [path for path in memory.rglob("robot.log") if "READY" in read(path)]
+            )
+            (log,) = memory.rglob("robot.log")
+            status, output = checkout.deploy("--status")
+            assert status == 0, output
+            assert f"runs as process {process.pid}, READY tcp://127.0.0.1:" in output
+            status, output = checkout.deploy("--logs")
+            assert status == 0, output
+            assert f"the log is in memory; the last lines of {log}:" in output
+            assert "READY" in output
+            reopen()
+            status, output = checkout.deploy()
+            assert status == 0, output
+            assert process.wait(20) == 0
+        finally:
+            process.kill()
     assert running.runs() == running.release()
     assert f"the last lines of {running.kickctl}/robot.log:" in checkout.deploy("--logs")[1]
 

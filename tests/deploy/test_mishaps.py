@@ -105,10 +105,12 @@ def test_a_program_that_does_not_listen_to_sigterm_is_killed(brick, checkout):
 def test_a_process_that_only_has_the_old_number_is_left_alone(running, checkout):
     running.stop_program()
     with subprocess.Popen(["sleep", "1000"]) as stranger:
-        write(running.kickctl / "robot.pid", f"{stranger.pid}\n")
-        assert checkout.deploy()[0] == 0
-        assert stranger.poll() is None
-        stranger.kill()
+        try:
+            write(running.kickctl / "robot.pid", f"{stranger.pid}\n")
+            assert checkout.deploy()[0] == 0
+            assert stranger.poll() is None
+        finally:
+            stranger.kill()
     assert running.runs() == running.release()
 
 

@@ -343,13 +343,15 @@ def test_words_that_nobody_takes_do_not_keep_the_watchdog_from_its_work(tree, wh
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=error
     ) as process:
-        watchdog = int(process.stdout.readline())
-        time.sleep(0.3)
-        process.send_signal(signal.SIGSTOP)
-        assert eventually(lambda: stopped(tree))
-        os.kill(watchdog, 0)
-        run(tree)
-        process.kill()
+        try:
+            watchdog = int(process.stdout.readline())
+            time.sleep(0.3)
+            process.send_signal(signal.SIGSTOP)
+            assert eventually(lambda: stopped(tree))
+            os.kill(watchdog, 0)
+            run(tree)
+        finally:
+            process.kill()
         assert eventually(lambda: stopped(tree))
         process.wait()
         assert eventually(lambda: not alive(watchdog))

@@ -77,8 +77,10 @@ def test_processes_end_when_the_first_one_is_killed(tmp_path):
         "    list(processes.compute_in_processes(work, [1, 2], None))\n"
     )
     with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE) as first:
-        assert first.stdout.readline() == b"works\n"
-        first.kill()
+        try:
+            assert first.stdout.readline() == b"works\n"
+        finally:
+            first.kill()
         first.stdout.read()
 
 
