@@ -18,7 +18,7 @@ from aiohttp import WSMsgType, web
 from host.errors import KickctlError
 from host.lab.outgoing import outgoing
 from host.lab.page_end import Page
-from host.lab.page_files import PAGE_FOLDER
+from host.lab.page_files import FIRST, PAGE_FOLDER, one_module
 from host.lab.replays import Replays
 from host.lab.requests import MAX_BYTES
 from host.lab.session import Session
@@ -97,8 +97,11 @@ class Site:
         if not (kind and place and place.is_relative_to(self._folder) and place.is_file()):
             raise web.HTTPNotFound(text="there is no such page\n")
         text = kind.startswith("text/") or kind.endswith("json")
+        first = path in FIRST and self._folder == PAGE_FOLDER.resolve()
         return web.Response(
-            body=place.read_bytes(), content_type=kind, charset="utf-8" if text else None
+            body=one_module(path).encode() if first else place.read_bytes(),
+            content_type=kind,
+            charset="utf-8" if text else None,
         )
 
     async def _log(self, request: web.Request) -> web.StreamResponse:
