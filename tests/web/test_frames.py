@@ -26,23 +26,27 @@ OLD = """
         };
     }
 """
-# How many of some frames had something drawn.
+# How many of some frames had something drawn, and how many messages came in them.
 DRAWN = """
     async (frames) => {
-        const drawn = () => lab.state().drawing.frames;
-        const before = drawn();
+        const now = () => [lab.state().drawing.frames, window.heard];
+        const before = now();
         for (let n = 0; n < frames; n += 1) await new Promise(requestAnimationFrame);
-        return drawn() - before;
+        return now().map((count, n) => count - before[n]);
     }
 """
 
 # What the lab says makes a page draw anew, too: a page that hears nothing shows what it draws by
 # itself.
 DEAF = """
+    window.heard = 0;
     const { set } = Object.getOwnPropertyDescriptor(WebSocket.prototype, "onmessage");
     Object.defineProperty(WebSocket.prototype, "onmessage", {
         set(take) {
-            set.call(this, (event) => window.deaf || take(event));
+            set.call(this, (event) => {
+                window.heard += 1;
+                window.deaf?.includes(typeof event.data) || take(event);
+            });
         },
     });
 """
@@ -62,7 +66,7 @@ def page(visit, station):
     station.basins = Halves()
     visitor = visit(script=DEAF)
     visitor.until("r.basins")
-    visitor.page.evaluate("window.deaf = true")
+    visitor.page.evaluate("window.deaf = 'string, object'")
     return visitor.page
 
 
@@ -85,11 +89,27 @@ def test_a_robot_that_does_not_answer_is_drawn_grey(visit, station):
 
 
 def test_little_is_drawn_while_a_robot_stands_and_all_as_it_moves(visit, station):
-    visitor = visit()
+    visitor = visit(script=DEAF)
     visitor.page.evaluate(DRAWN, 10)
     # What the lab says now and then, as that the robot is still there, may be seen.
-    assert visitor.page.evaluate(DRAWN, 40) < 20
+    drawn, heard = visitor.page.evaluate(DRAWN, 40)
+    assert drawn <= heard + 1
     drawn = visitor.state()["drawing"]["frames"]
     station.step(0.1)
     visitor.until(f"s.drawing.frames > {drawn} && s.drawing.shown_s > r.record.t_s - 0.05")
     assert visitor.page.evaluate(OLD)["old"] == []
+
+
+def test_what_records_alone_tell_is_drawn_as_they_end(visit, station):
+    visitor = visit(script=DEAF)
+    page = visitor.page
+    page.locator("#k-plane").scroll_into_view_if_needed()
+    page.evaluate(DRAWN, 10)
+    page.evaluate("window.deaf = 'string'")
+    assert page.evaluate("lab.state().k_trace[0].means.left") is None
+    station.step(3.0)
+    visitor.until("s.k_trace[0].means.left")
+    page.evaluate(DRAWN, 10)
+    found = page.evaluate(OLD)
+    assert "k-plane" in found["all"]
+    assert found["old"] == []

@@ -17,6 +17,8 @@ export class Lab {
         this.store = new Store();
         /** Whether something has changed since the panels were last updated. */
         this.changed = true;
+        /** Whether records have come since then. */
+        this.fresh = false;
         /** @type {((message: object) => void)[]} Hear each message after the store. */
         this.listeners = [];
         source.onmessage = (message) => this.#take(message);
@@ -96,7 +98,8 @@ export class Lab {
         this.store.take(message);
         if (message.type === "reply") this.#settle(message);
         if (message.type === "link" && !message.up) this.#abandon();
-        if (message.type !== "records") this.changed = true;
+        if (message.type === "records") this.fresh = true;
+        else this.changed = true;
         for (const listener of this.listeners) listener(message);
     }
 

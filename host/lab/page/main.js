@@ -73,6 +73,7 @@ function update() {
     const now = performance.now();
     // What counts the time since something happened is renewed now and then, too.
     const due = lab.changed || now - told >= 250;
+    const news = lab.changed || (due && lab.fresh);
     if (due) {
         told = now;
         tell();
@@ -85,12 +86,12 @@ function update() {
         sound.update(views);
     }
     if (due) labelWheels(views);
-    return due || moved.includes(true);
+    return news || moved.includes(true);
 }
 
 function tell() {
     const { robot, link } = lab.store;
-    lab.changed = false;
+    lab.changed = lab.fresh = false;
     for (const panel of panels) panel();
     beside.update();
     for (const hand of hands) hand.update();
