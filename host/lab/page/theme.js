@@ -92,6 +92,7 @@ const PROJECTED = 1 / 40;
  * @property {number[]} dash of a dashed line, for setLineDash
  * @property {function} start see `start`
  * @property {function} write see `write`
+ * @property {function} run see `run`
  * @property {function} measure see `measure`
  * @property {function} rule see `rule`
  * @property {function} arrowHead see `arrowHead`
@@ -131,7 +132,7 @@ export function theme({ dark, scale, height }, projector = false) {
     const line = text / 8;
     const dash = [3 * line, 2 * line];
     const [least, legible] = projector ? [1, text] : [0, 0];
-    const tools = { start, write, measure, rule, arrowHead, ticks, number };
+    const tools = { start, write, run, measure, rule, arrowHead, ticks, number };
     return { colours, grey, scale, text, legible, least, line, dash, ...tools };
 }
 
@@ -182,10 +183,9 @@ function start(canvas, stale) {
  * @param {number} y its middle, CSS pixels
  * @param {Object} how colour; align: left, center or right; size: 1 is the theme's; bold; symbol:
  *     italics for a quantity; halo: the colour of a rim around the letters
- * @returns {number} its width, CSS pixels
  */
 function write(ctx, text, x, y, how) {
-    const width = this.measure(ctx, text, how);
+    ctx.font = font(this, how);
     ctx.textAlign = how.align ?? "left";
     ctx.textBaseline = "middle";
     if (how.halo) {
@@ -195,22 +195,24 @@ function write(ctx, text, x, y, how) {
     }
     ctx.fillStyle = how.colour;
     ctx.fillText(text, x, y);
-    return width;
 }
 
-/**
- * How wide a text is.
- *
- * @param {CanvasRenderingContext2D} ctx where
- * @param {string} text what
- * @param {Object} how as in `write`
- * @returns {number} its width, CSS pixels
- */
-function measure(ctx, text, { size = 1, bold = false, symbol = false }) {
-    const height = Math.max(size, this.least) * this.text * (symbol ? 1.12 : 1);
-    const style = (symbol ? "italic " : "") + (bold ? "bold " : "");
-    ctx.font = `${style}${height}px ${symbol ? SYMBOLS : FAMILY}`;
+/** Write a text as `write` does. Returns its width, CSS pixels; to know that takes longer. */
+function run(ctx, text, x, y, how) {
+    this.write(ctx, text, x, y, how);
     return ctx.measureText(text).width;
+}
+
+/** How wide a text is that `write` writes so, CSS pixels. */
+function measure(ctx, text, how) {
+    ctx.font = font(this, how);
+    return ctx.measureText(text).width;
+}
+
+function font(theme, { size = 1, bold = false, symbol = false }) {
+    const height = Math.max(size, theme.least) * theme.text * (symbol ? 1.12 : 1);
+    const style = (symbol ? "italic " : "") + (bold ? "bold " : "");
+    return `${style}${height}px ${symbol ? SYMBOLS : FAMILY}`;
 }
 
 /**

@@ -84,7 +84,7 @@ function axes({ ctx, colours, theme, left, wide }, plane) {
     ctx.lineWidth = 0.6 * theme.line;
     ctx.strokeRect(left, top, wide, tall);
     const name = { colour: colours.ink, symbol: true, bold: true };
-    const long = theme.write(ctx, symbol, 0.3 * text, top - text, name);
+    const long = theme.run(ctx, symbol, 0.3 * text, top - text, name);
     theme.write(ctx, unit, long + 0.7 * text, top - text, { colour: colours.faint, size: 0.85 });
 }
 
@@ -143,6 +143,6 @@ function key(pen, labels, y) {
         mark(pen, { x, y, up: raised }, filled);
         const how = { colour: colours.faint, size: 0.85 };
         x += 0.7 * text;
-        x += theme.write(ctx, labels[name] ?? "", x, y, how) + 1.1 * text;
+        x += theme.run(ctx, labels[name] ?? "", x, y, how) + 1.1 * text;
     }
 }

@@ -150,10 +150,10 @@ function quantity({ ctx, colours, theme }, axis, x, y, align) {
     const measure = { colour: colours.faint, align, size: 0.85 };
     const gap = 0.4 * theme.text;
     if (align === "left") {
-        x += theme.write(ctx, symbol, x, y, name) + gap;
+        x += theme.run(ctx, symbol, x, y, name) + gap;
         theme.write(ctx, unit, x, y, measure);
     } else {
-        if (unit) x -= theme.write(ctx, unit, x, y, measure) + gap;
+        if (unit) x -= theme.run(ctx, unit, x, y, measure) + gap;
         theme.write(ctx, symbol, x, y, name);
     }
 }

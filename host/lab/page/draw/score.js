@@ -52,7 +52,7 @@ function legend({ ctx, colours, theme }, state, y) {
     for (const kind of KINDS) {
         fill(ctx, colours, kind, x, y - 0.4 * text, 0.8 * text, 0.8 * text, theme.line);
         x += 1.1 * text;
-        x += theme.write(ctx, state.labels?.[kind] ?? "", x, y, { colour: colours.ink }) + text;
+        x += theme.run(ctx, state.labels?.[kind] ?? "", x, y, { colour: colours.ink }) + text;
     }
 }
 

@@ -156,7 +156,7 @@ function legend({ ctx, colours, theme, left, right }, row, state, y) {
     const words = state.labels ?? {};
     const text = theme.text;
     const strong = { colour: colours.ink, symbol: true, bold: true };
-    const behind = left + theme.write(ctx, row.symbol, left, y, strong) + 0.4 * text;
+    const behind = left + theme.run(ctx, row.symbol, left, y, strong) + 0.4 * text;
     theme.write(ctx, row.unit ?? "", behind, y, { colour: colours.faint, size: 0.9 });
     let x = right;
     for (let n = row.lines.length - 1; n >= 0 && row.lines.length > 1; n--) {
@@ -164,8 +164,8 @@ function legend({ ctx, colours, theme, left, right }, row, state, y) {
         const last = row.lines[n + 1]?.right !== line.right;
         const side = line.right ? words.right : words.left;
         const how = { colour: colours.faint, size: 0.9, align: "right" };
-        if (last && side) x -= theme.write(ctx, side, x, y, how) + 0.4 * text;
-        if (line.name) x -= theme.write(ctx, line.name, x, y, how) + 0.3 * text;
+        if (last && side) x -= theme.run(ctx, side, x, y, how) + 0.4 * text;
+        if (line.name) x -= theme.run(ctx, line.name, x, y, how) + 0.3 * text;
         theme.rule(ctx, x - 1.6 * text, x, y, colours[line.colour], line.right);
         x -= 1.6 * text + 0.8 * text;
     }
