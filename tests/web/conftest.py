@@ -13,6 +13,7 @@ from host.lab.server import Lab
 from host.lab.station import CONTINUE
 from host.lab.stepped_station import SteppedStation
 from tests.web.visitor import DRAWN, Visitor
+from tests.web.window import Window
 
 CHROMIUM = shutil.which("chromium")
 # The same engine without windows and tabs: a page opens in it for a third of the work.
@@ -48,6 +49,19 @@ def browser(chromium):
     asyncio._set_running_loop(None)
 
 
+@pytest.fixture(scope="module")
+def window(browser):
+    """A function that gives the window of a test's first visitor, of its second, and so on."""
+    windows = []
+
+    def window(number):
+        if number == len(windows):
+            windows.append(Window(browser))
+        return windows[number]
+
+    return window
+
+
 @pytest.fixture
 def station():
     """The robot of the lab: embedded, and its time passes only by `station.step`."""
@@ -78,12 +92,12 @@ def begin_again(lab, station):
 
 
 @pytest.fixture
-def visit(browser, lab):
+def visit(window, lab):
     """A function that opens the lab's page, and waits until it knows the robot."""
     visitors = []
 
     def visit(url=None, **context):
-        visitor = Visitor(browser, url or lab.drive_url, **context)
+        visitor = Visitor(window(len(visitors)), url or lab.drive_url, **context)
         visitors.append(visitor)
         visitor.until(DRAWN)
         return visitor

@@ -5,6 +5,7 @@ from playwright.sync_api import Error
 
 from host.lab.station import STOP
 from host.lab.stepped_station import SteppedStation
+from tests.web.visitor import DRAWN, Visitor
 
 
 @pytest.fixture
@@ -68,8 +69,9 @@ def test_a_driver_may_leave(visit):
 
 
 @pytest.mark.parametrize("way", ["closed", "crashed"])
-def test_the_robot_stops_if_its_drivers_page_is_gone(visit, lab, station, way):
-    driver, other = visit(), visit(lab.view_url)
+def test_the_robot_stops_if_its_drivers_page_is_gone(browser, visit, lab, station, way):
+    driver, other = Visitor(browser, lab.drive_url), visit(lab.view_url)
+    driver.until(DRAWN)
     take_baton(driver)
     other.until("s.baton.driver !== null && r.state === 'running'")
     if way == "closed":
@@ -79,3 +81,5 @@ def test_the_robot_stops_if_its_drivers_page_is_gone(visit, lab, station, way):
             driver.page.goto("chrome://crash", timeout=2000)
     other.until("s.baton.driver === null && r.state === 'stopped'")
     other.reads("#baton", "silent")
+    assert driver.complaints == []
+    driver.context.close()

@@ -20,7 +20,7 @@ SEEN = ".card canvas, .card .stop:not([hidden]), #stop, #kick-phase"
 
 
 @pytest.fixture
-def show(browser):
+def show(window):
     """A function that opens a page on a lab with some robots."""
     with ExitStack() as stack:
         visitors = []
@@ -30,7 +30,7 @@ def show(browser):
                 stack.callback(station.close)
                 station.step(3.0)
             lab = stack.enter_context(Lab(stations, port=0))
-            visitor = Visitor(browser, lab.drive_url, script, **context)
+            visitor = Visitor(window(len(visitors)), lab.drive_url, script, **context)
             stack.callback(visitor.context.close)
             visitors.append(visitor)
             visitor.until(ready)
