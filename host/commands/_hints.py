@@ -15,7 +15,8 @@ _COMMAND = re.compile(
     r"|drive(?: (?:forward|backward|spin-left|spin-right|stopped|chaos|wall-turner))?"
     r"|experiment [-\w]+|kick(?: --mode \w+)?|record(?: [0-9]+)?|log pull"
     r"|demo|plan|start|stop|clear|status|identify|watch|lab|foxglove|doctor|rods|reproduce"
-    r")\b(?![^`'\"\n,;]*--help)"  # which needs no robot
+    # --help needs no robot, and words that another process has said may name theirs already.
+    r")\b(?![^`'\"\n,;]*--(?:help|brick|token)\b)"
 )
 _named: list[str] = []
 

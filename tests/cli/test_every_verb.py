@@ -271,6 +271,8 @@ def test_a_fault_is_an_error_of_the_status(kickctl, monkeypatch):
         ("kickctl discover, kickctl log list", "kickctl discover, kickctl log list"),
         ("see kickctl params --help", "see kickctl params --help"),
         ("kickctl started", "kickctl started"),
+        ("`kickctl stop --brick anna`", "`kickctl stop --brick anna`"),
+        ("kickctl params set k=8 --brick anna", "kickctl params set k=8 --brick anna"),
     ],
 )
 def test_hints_name_the_robot_that_was_named(text, typed):

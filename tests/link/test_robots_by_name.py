@@ -160,6 +160,10 @@ def test_stop_without_a_name_stops_every_robot_and_says_which_it_did_not_reach(
     assert "refuses the connection" in found["gone"]["error"]["message"]
     status, found = teacher.each("--brick", ",".join(NAMES), "status")
     assert {one["state"] for one in found.values()} == {"stopped"}
+    # A hint is a command that works: it names that robot, and no other.
+    _, _, err = teacher.run("--brick", "anna,bert", "kick", "--mode", "phase")
+    for name in ("anna", "bert"):
+        assert f"start it first: kickctl start --brick {name}\n" in err
 
     assert teacher.run("robots", "remove", "gone")[0] == 0
     status, out, _ = teacher.run("stop")
