@@ -3,10 +3,20 @@
 The brick (robot/ev3.py) and the simulator (sim_motor/brick.py) implement them.
 """
 
+import sys
 import time
 
 # A program that wakes so late was held up, such as by a swapping machine.
 HELD_UP_S = 0.1
+
+
+def is_number(value):
+    """Whether what an engineer's own motor or battery has returned is a finite number."""
+    return (
+        isinstance(value, (int, float))
+        and not isinstance(value, bool)
+        and abs(value) <= sys.float_info.max
+    )
 
 
 class MotorFault(Exception):

@@ -7,10 +7,9 @@ robot.motors.Motor, and if there is one a robot.motors.Battery. docs/own-motors.
 import importlib
 import os
 import traceback
-from math import isfinite
 
 from robot.kicks import WHEELS
-from robot.motors import Battery, Motor, MotorFault
+from robot.motors import Battery, Motor, MotorFault, is_number
 
 _MOTOR_NEEDS = ("angle_rad", "write_duty", "stop")
 
@@ -52,6 +51,7 @@ def load(text):
         )
     if battery is not None:
         _require("the battery of {}".format(text), battery, Battery, ("voltage_v",))
+        _read_once(battery)
     faults = []
     for side, motor in zip(WHEELS, motors):
         try:
@@ -144,7 +144,7 @@ def _try_out(side, motor):
         _call("{} of the {} motor".format(name, side), getattr(motor, name), *arguments)
     what = "angle_rad of the {} motor".format(side)
     angle = _call(what, motor.angle_rad)
-    if isinstance(angle, bool) or not isinstance(angle, (int, float)) or not isfinite(angle):
+    if not is_number(angle):
         raise NoMotors(
             "{} returned {!r}: let it return the angle in rad, as a float".format(what, angle)
         )
@@ -160,6 +160,27 @@ def _try_out(side, motor):
                 side, motor.emergency_stop
             )
         )
+
+
+def _read_once(battery):
+    """Read a battery, and its limits. Raises NoMotors."""
+    try:
+        volts = _call("voltage_v of the battery", battery.voltage_v)
+    except MotorFault as fault:
+        raise NoMotors("voltage_v of the battery failed: {}".format(fault)) from None
+    if volts is not None and not is_number(volts):
+        raise NoMotors(
+            "voltage_v of the battery returned {!r}: let it return the voltage in V, as a float, or"
+            " None if it cannot be read".format(volts)
+        )
+    for name in ("warn_v", "stop_v"):
+        limit = getattr(battery, name)
+        if not is_number(limit):
+            raise NoMotors(
+                "{} of the battery is {!r}: make it a voltage in V, or leave it out".format(
+                    name, limit
+                )
+            )
 
 
 def _call(what, function, *arguments):

@@ -1,5 +1,7 @@
 """The battery: its voltage, a warning, when it is empty, and how duty cycles make up for it."""
 
+from robot.motors import is_number
+
 # At this voltage duty cycles need no correction: brickd's 'full' of the lithium pack.
 NOMINAL_V = 7.5
 # Share of a new reading in the mean: under load the voltage sags by some tenths of a volt for a
@@ -29,6 +31,9 @@ class Power(object):
     def read(self):
         """Take a reading."""
         volts = None if self._battery is None else self._battery.voltage_v()
+        # No host takes what is no number, and the mean would never be one again.
+        if not is_number(volts):
+            volts = None
         self.latest_v = volts
         if volts is not None:
             self.mean_v = (
@@ -64,4 +69,6 @@ class Power(object):
         Returns:
             0.5 to 2, rounded to whole percents.
         """
-        return 1.0 if self.mean_v is None else round(max(0.5, min(2.0, NOMINAL_V / self.mean_v)), 2)
+        if self.mean_v is None:
+            return 1.0
+        return round(NOMINAL_V / max(0.5 * NOMINAL_V, min(2.0 * NOMINAL_V, self.mean_v)), 2)

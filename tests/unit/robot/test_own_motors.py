@@ -168,6 +168,30 @@ def test_a_motor_that_cannot_do_what_it_must_is_refused(module, body, result, wo
         own_motors.load(module(GOOD + text) + ":wrong")
 
 
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("voltage_v = lambda self: '7.2'", "returned '7.2': let it return the voltage in V"),
+        ("voltage_v = lambda self: nan", "voltage_v of the battery returned nan"),
+        ("voltage_v = lambda self: 1 / 0", r"voltage_v .* failed: ZeroDivisionError: .*line \d"),
+        ("def voltage_v(self): raise MotorFault('no bus')", "voltage_v .* failed: no bus"),
+        ("warn_v = '6'", "warn_v of the battery is '6': make it a voltage"),
+        ("stop_v = None", "stop_v of the battery is None"),
+    ],
+)
+def test_a_battery_that_cannot_be_watched_is_refused(module, body, words):
+    text = "\nclass A(Cell):\n    " + body + "\n\ndef wrong():\n    return Toy(), Toy(), A()\n"
+    with pytest.raises(NoMotors, match=words):
+        own_motors.load(module(GOOD + text) + ":wrong")
+
+
+def test_a_battery_that_cannot_be_read_now_is_no_reason_not_to_start(module):
+    text = "\nclass A(Cell):\n    voltage_v = lambda self: None\n"
+    text += "\ndef motors():\n    return Toy(), Toy(), A()\n"
+    _, battery, faults = own_motors.load(module(GOOD + text) + ":motors")
+    assert (battery.voltage_v(), faults) == (None, [])
+
+
 def test_the_watchdog_stops_each_motor_that_it_can_and_names_those_that_fail(module):
     text = (
         GOOD

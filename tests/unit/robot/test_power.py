@@ -1,5 +1,7 @@
 """The battery in the loop: a warning, the end, and duties that make up for a low voltage."""
 
+import math
+
 import pytest
 
 from robot.loop import BATTERY_TICKS
@@ -32,6 +34,23 @@ def test_one_low_reading_is_no_low_battery():
     assert power.exhaustion()
 
 
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, "7.2", True, 10**400])
+def test_a_reading_that_is_no_number_counts_as_none(wrong):
+    cells = Cells(7.0)
+    rig = Rig(battery=cells)
+    rig.loop.start()
+    cells.volts = wrong
+    rig.run(BATTERY_TICKS + 1)
+    assert rig.loop.battery_v is None
+    assert STATES[rig.last.state] == "running"
+    cells.volts = 7.0
+    rig.run(BATTERY_TICKS)
+    assert rig.loop.battery_v == 7.0
+    cells.volts = 5.9
+    rig.run(3 * BATTERY_TICKS)
+    assert STATES[rig.last.state] == "stopped"
+
+
 def test_a_low_battery_is_told_once_until_it_has_been_charged():
     cells = Cells(6.4)
     power = Power(cells)
@@ -55,7 +74,7 @@ def test_a_low_battery_is_told_once_until_it_has_been_charged():
 
 
 @pytest.mark.parametrize(
-    ("volts", "scale"), [(7.5, 1.0), (6.25, 1.2), (8.2, 0.91), (1.0, 2.0), (90.0, 0.5)]
+    ("volts", "scale"), [(7.5, 1.0), (6.25, 1.2), (8.2, 0.91), (1.0, 2.0), (0.0, 2.0), (90.0, 0.5)]
 )
 def test_the_scale_makes_up_for_the_voltage_within_bounds(volts, scale):
     assert Power(Cells(volts)).duty_scale() == scale
