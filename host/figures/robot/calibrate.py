@@ -24,6 +24,7 @@ from sim_motor.constants import Constants, load
 PANELS = ("speeds-1", "speeds-2", "errors-1", "errors-2")
 _STRETCHES = 4
 _SIZES = (6.0, 3.0)  # of marks, so that both wheels show where they agree
+_MOST_DECIMALS = 3
 _REACH = 2  # a speed is measured from this many ticks before to as many after
 _LABELS = {
     "speed_per_v": ("no-load speed for each volt", "rad/s/V", 1.0),
@@ -146,5 +147,6 @@ def _value(numbers: Numbers, side: str, name: str, factor: float) -> str:
     value = numbers["traits"][side][name] * factor
     low, high = (bound * factor for bound in numbers["intervals"][side][name])
     widest = max(own[name][1] - own[name][0] for own in numbers["intervals"].values()) * factor
-    decimals = max(0, 1 - floor(log10(widest)))
+    # An interval at the bound of what is possible, as for a motor without latency, has no width.
+    decimals = max(0, 1 - floor(log10(widest))) if widest > 0.0 else _MOST_DECIMALS
     return f"{value:.{decimals}f}  ({low:.{decimals}f} to {high:.{decimals}f})"

@@ -4,12 +4,14 @@ What is found is true, as sharp as is said, and enough to simulate the robot.
 """
 
 import tomllib
+from copy import deepcopy
 from dataclasses import replace
 from math import degrees, pi, sin
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.table import Cell
 
 from host.client.robot import Robot, connect
 from host.errors import NotDone, WrongUse
@@ -207,7 +209,14 @@ def test_the_same_seed_gives_the_same_rows_and_the_figure_is_drawn_from_them(odd
     assert {row["motor"] for row in again} == {"odd"}
     own = {"date": "", "motor": ""}
     assert [{**row, **own} for row in again] == [{**row, **own} for row in rows]
-    assert draw(rows, findings).get_size_inches()[0] * 160 == 1920
+    # A motor without latency: the intervals of both wheels lie at the bound, and have no width.
+    sharp = deepcopy(findings)
+    for side in WHEELS:
+        sharp.numbers["intervals"][side]["delay_ms"] = (1.25, 1.25)
+    figure = draw(rows, sharp)
+    assert figure.get_size_inches()[0] * 160 == 1920
+    cells = [cell.get_text().get_text() for cell in figure.findobj(Cell)]
+    assert any("(1.250 to 1.250)" in text for text in cells)
 
 
 def test_too_few_stretches_are_not_made_into_intervals(odd):
