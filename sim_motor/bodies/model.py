@@ -22,6 +22,8 @@ SIDES = ("left", "right")
 # A wall against which a robot of the program of 2019 bounces about as in LPZRobots: time constant
 # (s) and damping ratio.
 BOUNCY = (0.02, 0.3)
+# As in world.xml: more than that of cars, so that walls bounce.
+_WALL_PRIORITY = 2
 _BOXES, _OCTAGON_M = 16, 5.0
 # The radius (m) and colour of the bars that show the joints of a train.
 _BAR_M, _BAR_RGBA = 0.006, (0.35, 0.35, 0.4, 1.0)
@@ -84,7 +86,11 @@ def _assemble(
     path = Path(scene) if scene.endswith(".xml") else HERE / "scenes" / f"{scene}.xml"
     if not path.is_file():
         raise ValueError(f"there is no file {path}")
-    spec = mujoco.MjSpec.from_file(str(path))
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        why = " ".join(str(error).split())
+        raise ValueError(f"{path} cannot be read as a scene of MuJoCo: {why}") from None
     if any(body.name.endswith("car") for body in spec.bodies):
         raise ValueError(
             f"{path} has cars in it already: open it in a viewer, or give a scene without"
@@ -95,6 +101,9 @@ def _assemble(
     for car in range(cars):
         own, prefix = _car(preset, alone=cars == 1), car_name(car)
         own.option.timestep = timestep
+        # Own scenes keep their gravity; tyres slide as the preset says only as the car is computed.
+        own.option.gravity = spec.option.gravity
+        spec.option.integrator, spec.option.cone = own.option.integrator, own.option.cone
         spec.attach(own, prefix=prefix, frame=frame)
         body = spec.body(prefix + "car")
         if car:
@@ -229,6 +238,7 @@ def _shape(
             raise ValueError(f"the scene '{scene}' has no walls; {' and '.join(WALLED)} have")
         for wall in walls:
             wall.solref[:2] = BOUNCY
+            wall.priority = max(wall.priority, _WALL_PRIORITY)
     if scene == "octagon":
         _strew(spec, rng)
     elif scene == "hills":

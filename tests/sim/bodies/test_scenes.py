@@ -65,3 +65,31 @@ def test_boxes_and_hills_come_from_the_seed():
             (model.body_pos.tobytes(), model.hfield_data.tobytes()) for model in (one, same, other)
         ]
         assert fields[0] == fields[1] != fields[2]
+
+
+def test_a_car_rolls_in_a_scene_of_ones_own_as_on_our_floor(tmp_path):
+    scene = tmp_path / "mine.xml"
+    floor = "<mujoco>{}<worldbody><geom type='plane' size='9 9 1'/></worldbody></mujoco>"
+    scene.write_text(floor.format("<option gravity='0 0 -9.8'/>"))
+    bodies = [build_body(BodyRequest(scene=name)) for name in ("flat", str(scene))]
+    for body in bodies:
+        body.run(0.5)
+    there = [column(body, "_x_m")[-1] for body in bodies]
+    assert there[1] == there[0] > 0.05
+
+    scene.write_text(floor.format("<option gravity='0 0 -1.62'/>"))
+    assert build_scene(BodyRequest(scene=str(scene))).compile().opt.gravity[2] == -1.62
+    scene.write_text(floor.format("<bad>"))
+    with pytest.raises(WrongUse, match="cannot be read as a scene of MuJoCo: XML"):
+        build_scene(BodyRequest(scene=str(scene)))
+
+
+def test_walls_of_ones_own_bounce_too(tmp_path):
+    scene = tmp_path / "mine.xml"
+    scene.write_text(
+        "<mujoco><worldbody><geom name='wall' type='plane' size='9 9 1'/></worldbody></mujoco>"
+    )
+    model = build_scene(BodyRequest(scene=str(scene), bouncy=True)).compile()
+    wall = model.geom("wall")
+    assert tuple(wall.solref) == BOUNCY
+    assert wall.priority > model.geom("car0_left_wheel").priority
