@@ -178,6 +178,13 @@ def test_a_lost_robot_is_spoken_of_in_the_past_and_its_notice_goes_when_it_is_ba
     page.check("#kick-all")
     visitor.reads(".resting", "bert is lost: no word from it for 3")
     page.wait_for_selector("#kick-phase:enabled")
+    # What is the same for all is said once, also if one of them is lost.
+    with pytest.MonkeyPatch.context() as patch:
+        for station in (*pair, third):
+            patch.setattr(station, "stop", lambda: None)
+        page.keyboard.press("Escape")
+        visitor.until("Object.values(s.stop).join() === 'unconfirmed,unconfirmed,unconfirmed'")
+    assert page.locator("#stop-words").inner_text().count("NOT confirmed") == 1
     anna.stop()
     visitor.reads(".resting", "No robot runs. anna does not run. Press its Start. bert is lost")
     bert.clock = clock

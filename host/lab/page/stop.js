@@ -75,13 +75,12 @@ export class Stop {
     /** Say what is known. */
     update() {
         const progress = Object.entries(this.progress());
-        const all = progress.length === this.lab.store.robots.length;
-        const same = new Set(progress.map(([, stage]) => stage)).size === 1;
-        const lines = progress.map(([name, stage]) => {
-            const words = this.words(name, stage);
-            const ofAll = all && same && !this.lab.store.byName(name).lost;
-            return ofAll || stage === "refused" ? words : `${name}: ${words}`;
-        });
+        const words = progress.map(([name, stage]) => this.words(name, stage));
+        const all = words.length === this.lab.store.robots.length;
+        const same = all && new Set(words).size === 1;
+        const lines = progress.map(([name, stage], at) =>
+            same || stage === "refused" ? words[at] : `${name}: ${words[at]}`,
+        );
         if (!lines.length && this.#vain) lines.push(this.words(null, "refused"));
         else if (!lines.length && this.#owed.size) lines.push(texts.stop.waiting);
         setText(this.line, [...new Set(lines)].join(" "));
