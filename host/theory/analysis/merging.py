@@ -36,6 +36,9 @@ _PATIENCE, _CHUNK = 60.0, 2.0
 # In units of the k of the Hopf bifurcation: below _RESTS no wheel passes; mergings of least k are
 # searched in _SEARCHED. They lie at 0.9 to 1.5, with steep neurons (a = 100) at 11.
 _RESTS, _SEARCHED = 0.3, (0.5, 20.0)
+# A wheel that leaves the saddle slower than this share of the rate at which all else settles creeps
+# along a line of rests, without momentum, and ends in the next one.
+_CREEPS = 0.03
 # Values of the constant that are tried.
 GRID = 160
 
@@ -133,7 +136,21 @@ def passes(wheel: Wheel, near: float = NEAR, fineness: float = FINENESS) -> bool
 
     Raises WrongUse as `course` and `hopf` do.
     """
-    return wheel.k > _RESTS * hopf(wheel).k and course(wheel, near, fineness)[0]
+    return (
+        wheel.k > _RESTS * hopf(wheel).k and not _creeps(wheel) and course(wheel, near, fineness)[0]
+    )
+
+
+def _creeps(wheel: Wheel) -> bool:
+    """Whether a wheel leaves the saddle too slowly to pass the next one. It takes no integration.
+
+    That would take very many steps, as with a gain of 0.15 and k = 8.
+    """
+    left = saddle(wheel)
+    if left is None:
+        return False
+    growth, settling = left.eigenvalues[:2].real
+    return bool(growth < -_CREEPS * settling)
 
 
 def mergings(

@@ -111,6 +111,14 @@ def test_along_friction_wheels_roll_below_the_merging_and_it_is_the_same_one(k_m
     assert not found.passes_above
 
 
+def test_a_wheel_that_creeps_from_the_saddle_does_not_pass_and_takes_no_integration():
+    slow = PAPER._replace(k=8.0, a=0.155)
+    assert not passes(slow)
+    with pytest.raises(WrongUse, match="steps"):
+        course(slow)
+    assert passes(slow._replace(a=0.6))
+
+
 def test_the_saddle_quantity_changes_its_sign_between_the_time_constants_without_and_with_folds():
     tau_s = neutral_tau_s(PAPER, 0.4, 0.43)
     assert abs(merging(PAPER._replace(tau=tau_s)).saddle_quantity) < 1e-8
