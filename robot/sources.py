@@ -74,7 +74,8 @@ def _state():
 def _sources(folder):
     """(name, path) of every source file below a folder, in order.
 
-    The name begins with the folder's own.
+    The name begins with the folder's own. Hidden files are no sources, for nothing can import them:
+    an editor's lock, which may lead nowhere, or an older copy of a source.
     """
     folder = os.path.abspath(folder)
     above = len(os.path.join(os.path.dirname(folder), ""))
@@ -86,4 +87,5 @@ def _sources(folder):
         for name in names
         if name.endswith(KINDS)
     ]
-    return sorted((path[above:].replace(os.sep, "/"), path) for path in paths)
+    named = sorted((path[above:].replace(os.sep, "/"), path) for path in paths)
+    return [(name, path) for name, path in named if "/." not in name]

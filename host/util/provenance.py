@@ -77,7 +77,9 @@ def sources() -> str:
     computing = sorted(
         path
         for path in host.iterdir()
-        if path.name not in SHOWS_ONLY and (path.is_dir() or path.suffix == ".py")
+        if path.name not in SHOWS_ONLY
+        and not path.name.startswith(".")
+        and (path.is_dir() or path.suffix == ".py")
     )
     return str(fingerprint(*map(str, (robot, motors, *computing))))
 

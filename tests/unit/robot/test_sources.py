@@ -45,6 +45,14 @@ def test_what_is_no_source_does_not_change_it(room):
     assert fingerprint(str(room)) == before
 
 
+def test_hidden_files_are_no_sources(room):
+    before = fingerprint(str(room))
+    (room / ".#a.py").symlink_to("anna@machine.1234")  # Emacs's lock of a changed file
+    (room / ".ipynb_checkpoints").mkdir()
+    (room / ".ipynb_checkpoints" / "a-checkpoint.py").write_text("x = 0\n")
+    assert fingerprint(str(room)) == before
+
+
 def test_content_does_not_pass_from_one_file_to_the_next(room):
     (room / "a.py").write_text("12")
     (room / "b.py").write_text("3")

@@ -53,6 +53,7 @@ def test_a_copy_elsewhere_has_the_same(copy):
         ("host/figures/style.py", False),
         ("host/films/movie.py", False),
         ("host/lab/server.py", False),
+        ("host/.ipynb_checkpoints/errors-checkpoint.py", False),
         ("robot/README.md", False),
     ],
 )
