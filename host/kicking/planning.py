@@ -27,7 +27,7 @@ from host.kicking.kick_map import (
     shift_of,
     tally,
 )
-from host.util.provenance import sources
+from host.util.provenance import sources, unchanged
 from host.util.whole_files import write_text
 from robot.params import Params
 from robot.user_folders import cache_folder
@@ -222,7 +222,8 @@ def reversal(
         way = "forward" if before > 0 else "backward"
         say(f"computing which kicks reverse a wheel that rolls {way}: some seconds, only once")
         plan = _compute_plan(before, motor, *chosen)
-        _keep({**_kept(), key: plan and asdict(plan)})
+        if unchanged():
+            _keep({**_kept(), key: plan and asdict(plan)})
         return plan
     return kept[key] and Plan(
         **{**kept[key], "window_rad": kept[key]["window_rad"] and tuple(kept[key]["window_rad"])}

@@ -20,7 +20,6 @@ from host.lab.session import Session
 from host.lab.station import CONTINUE, HARMLESS, Answer, busy, stopped_meanwhile
 from host.lab.stepped_station import SteppedStation
 from host.link.direct import DirectLink
-from host.util.provenance import sources
 from sim_motor.brick import SimBrick
 from sim_motor.hand import Grip
 
@@ -43,7 +42,6 @@ class BrowserStation(SteppedStation):
         link = DirectLink(f"sim://?seed={seed}", brick)
         super().__init__(Robot(link, link.token), "simulated", CONTINUE)
         self._grip = Grip(brick)
-        sources()  # reads all files, once: a stop would wait for it at the first primitive
         self._performs: tuple[Slices[dict[str, Any]], Answer] | None = None
 
     def hand(self, wheel: str, angle_rad: float | None) -> None:

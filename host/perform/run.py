@@ -27,7 +27,7 @@ from host.runs.runner import do_cells, finish, open_study, simulate
 from host.runs.sweep import axes, in_all, points
 from host.util.arguments import need_function, need_path, need_seed, need_text
 from host.util.extras import need
-from host.util.provenance import commit, sources
+from host.util.provenance import commit, require_unchanged, sources
 from robot import __version__
 
 RESULTS = Path("results")
@@ -92,6 +92,7 @@ def perform(
         KickctlError: The run ended early. The cells that are complete are kept.
     """
     found = find(need_text("name", name, "the name of an experiment or study"))
+    require_unchanged()
     seed, out = need_seed(seed), Path(need_path("out", out))
     token = None if token is None else need_path("token", token)
     if scheduler is not None:

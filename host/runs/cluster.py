@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from host.errors import NoLink, NotDone, WrongUse, quotable
 from host.runs.contract import Cell, Row, Setting
 from host.util.installation import install_command
-from host.util.provenance import sources
+from host.util.provenance import sources, unchanged
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -135,7 +135,8 @@ def _names(
 
 def computing() -> dict[str, str]:
     """What decides about numbers, and its version here; empty for a package that is not here."""
-    return {"the sources": sources(), **{name: _version(name) for name in ("numpy", "mujoco")}}
+    own = sources() if unchanged() else "some that have changed since it began"
+    return {"the sources": own, **{name: _version(name) for name in ("numpy", "mujoco")}}
 
 
 def _version(package: str) -> str:

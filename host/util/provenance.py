@@ -12,7 +12,7 @@ from typing import Any
 import host as host_package
 import robot as robot_package
 import sim_motor
-from host.errors import printable
+from host.errors import NotDone, printable
 from robot import __version__
 from robot.sources import fingerprint
 
@@ -64,12 +64,10 @@ def origin(
 SHOWS_ONLY = ("__main__.py", "cli.py", "commands", "figures", "films", "lab")
 
 
-@cache
-def sources() -> str:
-    """The fingerprint of all sources that can change a result, 16 hexadecimal digits.
+def _fingerprint() -> str:
+    """The fingerprint of all sources that can change a result, as they are now.
 
-    These are robot/, sim_motor/, and host/ without SHOWS_ONLY. A kept result, plan or map belongs
-    to the sources that computed it, and is never taken for that of others.
+    These are robot/, sim_motor/, and host/ without SHOWS_ONLY.
     """
     host, robot, motors = (
         Path(package.__path__[0]).resolve() for package in (host_package, robot_package, sim_motor)
@@ -82,6 +80,37 @@ def sources() -> str:
         and (path.is_dir() or path.suffix == ".py")
     )
     return str(fingerprint(*map(str, (robot, motors, *computing))))
+
+
+# When this module is imported, the program has just begun: later, somebody may change a source.
+_LOADED = _fingerprint()
+
+
+def sources() -> str:
+    """The fingerprint of the sources that this program has loaded, 16 hexadecimal digits.
+
+    A kept result, plan or map belongs to the sources that computed it, and is never taken for that
+    of others.
+    """
+    return _LOADED
+
+
+def unchanged() -> bool:
+    """Whether the sources still are what this program has loaded.
+
+    If not, it computes with the old code, and with the new code of what it had not loaded.
+    """
+    return _fingerprint() == _LOADED
+
+
+def require_unchanged() -> None:
+    """Raise NotDone if a source has changed since this program began."""
+    if not unchanged():
+        raise NotDone(
+            f"the sources in {Path(host_package.__path__[0]).resolve().parent} have changed since"
+            " this program began, so it would compute with old and new ones",
+            "run the same command again; in a notebook, restart the kernel first",
+        )
 
 
 @cache

@@ -106,6 +106,8 @@ def test_a_package_of_another_version_is_named(monkeypatch):
     assert cluster.compare(ours) == ""
     assert cluster.compare({**ours, "mujoco": ""}) == ""
     assert cluster.compare({**ours, "numpy": "1.0"}) == f"numpy {ours['numpy']} instead of 1.0"
+    monkeypatch.setattr("host.util.provenance.fingerprint", lambda *_: "of changed sources")
+    assert "have changed" in cluster.compare(ours)
 
 
 def test_the_motor_is_that_of_this_computer(address, count, tmp_path, monkeypatch):

@@ -189,6 +189,16 @@ def test_a_plan_of_other_sources_is_not_taken(monkeypatch):
     assert reversal(1, DEFAULTS) == first
 
 
+def test_no_plan_is_kept_after_a_source_has_changed(monkeypatch):
+    """As in a lab that has run for days: it may have been computed by the changed code."""
+    plans = iter([Plan(PHASE, 4), Plan(PHASE, 5)])
+    monkeypatch.setattr(planning, "_compute_plan", lambda *_: next(plans))
+    with monkeypatch.context() as changed:
+        changed.setattr("host.util.provenance.fingerprint", lambda *_: "of changed sources")
+        reversal(1, DEFAULTS)
+    assert reversal(1, DEFAULTS) == Plan(PHASE, 5)
+
+
 def test_only_the_newest_plans_are_kept(monkeypatch):
     monkeypatch.setattr(planning, "_KEPT", 2)
     asked = []

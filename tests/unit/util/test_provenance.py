@@ -22,10 +22,10 @@ def copy(tmp_path_factory):
     return folder
 
 
-def sources_of(folder):
+def sources_of(folder, meanwhile="pass"):
     """The fingerprint that a process has which imports the packages in this folder."""
     environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    script = "from host.util.provenance import sources; print(sources())"
+    script = f"from host.util.provenance import sources; {meanwhile}; print(sources())"
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True
     )
@@ -67,6 +67,13 @@ def test_what_computes_counts_and_what_only_shows_does_not(copy, file, counts):
         assert (sources_of(copy) != sources()) is counts
     finally:
         path.unlink() if before is None else path.write_bytes(before)
+
+
+def test_sources_that_change_later_are_not_those_of_what_was_loaded(copy):
+    path = copy / "robot" / "kicks.py"
+    before = path.read_bytes()
+    assert sources_of(copy, f"open({str(path)!r}, 'a').write('# changed')") == sources()
+    path.write_bytes(before)
 
 
 def test_what_does_not_count_exists_or_is_planned():
