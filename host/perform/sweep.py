@@ -12,6 +12,7 @@ from functools import partial
 from host.client.robot import Robot
 from host.errors import KickctlError, NotDone, RobotFault, WrongUse
 from host.logs.log import Log
+from host.logs.mcap_files import LogError
 from host.perform.catalogue import find
 from host.runs.answers import Answer
 from host.runs.columns import Column, Kind, columns_of
@@ -162,6 +163,8 @@ def forgiving(work: Work, failures: tuple[type[Exception], ...] = FAILURES) -> W
             return [{}], []  # its row has the cell's reason
         try:
             return work(cell)
+        except LogError:
+            raise  # its log cannot be written here and now, which says nothing about the point
         except failures as error:
             return [{_FAILED: _reason(error)}], []
 

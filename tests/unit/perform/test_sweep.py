@@ -9,6 +9,7 @@ import pytest
 
 from host.errors import WrongUse
 from host.figures import sweep as figure
+from host.logs.mcap_files import LogError
 from host.perform.catalogue import find
 from host.perform.run import perform
 from host.perform.sweep import Sweep
@@ -73,6 +74,21 @@ def test_a_sweep_on_a_simulated_robot_has_the_numbers_of_single_runs(tmp_path):
     assert [row["value"] for row in own] == [answer["value"] for answer in alone]
     assert [row["tick"] for row in own] == [0.03] * len(alone)
     assert (failed["tick"], failed["quantity"]) == (0.09, None)
+
+
+def test_a_log_that_cannot_be_written_ends_a_sweep_and_fails_no_point(tmp_path, monkeypatch):
+    """As in a folder that was moved meanwhile, or on a disk without room for one more file."""
+
+    def refused(path, info):
+        raise LogError(f"{path} cannot be written: No space left on device", "choose another")
+
+    with monkeypatch.context() as full:
+        full.setattr("host.perform.robots.McapTap", refused)
+        with pytest.raises(LogError) as error:
+            perform("timeline", trials=1, tick=[0.03, 0.09], out=tmp_path)
+    assert "0 of 2 cells complete" in error.value.__notes__[-1]
+    swept = perform("timeline", trials=1, tick=[0.03, 0.09], out=tmp_path)
+    assert [row["tick"] for row in swept["numbers"]["rows"] if row["failed"]] == [0.09]
 
 
 def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
