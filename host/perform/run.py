@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from host.errors import WrongUse
+from host.errors import NotDone, WrongUse
 from host.experiments.efforts import EFFORTS, in_words
 from host.link.addresses import SIM, make_link, sim_options
 from host.link.names import chosen, own_token
@@ -20,15 +20,16 @@ from host.perform.drawings import USUAL, drawing, files
 from host.perform.sweep import FAILURES, Sweep, forgiving
 from host.runs.cluster import require_scheduler
 from host.runs.columns import kinds_of
-from host.runs.contract import Setting
+from host.runs.contract import Cell, Setting
 from host.runs.registry import complete_options
 from host.runs.results import Results
-from host.runs.runner import do_cells, finish, open_study, simulate
+from host.runs.runner import Outcome, Work, do_cells, finish, open_study, simulate
 from host.runs.sweep import axes, in_all, points
 from host.util.arguments import need_function, need_path, need_seed, need_text
 from host.util.extras import need
 from host.util.provenance import commit, require_unchanged, sources
 from robot import __version__
+from sim_motor.constants import load
 
 RESULTS = Path("results")
 DEFAULT_SEED = 1
@@ -151,7 +152,8 @@ def perform(
             with robots(
                 experiment, robot, setting, token, study.folder / "logs", say, take_over=take_over
             ) as work:
-                do_cells(name, cells, study, work if sweep is None else forgiving(work, failures))
+                attempt = work if sweep is None else forgiving(work, failures)
+                do_cells(name, cells, study, _with_motor_of(setting, attempt))
         rows = study.rows(cells)
         # The commit says where results come from. It is no part of their key: it also changes with
         # files that compute nothing.
@@ -162,6 +164,27 @@ def perform(
             return finish(name, rows, findings, draw, study, about, kinds)
         table = sweep.table(rows, setting)
         return finish("sweep", table, sweep.report(table, setting), draw, study, about, sweep.kinds)
+
+
+def _with_motor_of(setting: Setting, work: Work) -> Work:
+    """The same work, but only while the user's own motor is that of the setting.
+
+    Each simulated robot looks it up by its name, and its file may be written meanwhile.
+    """
+
+    def attempt(cell: Cell) -> Outcome:
+        try:
+            same = load(setting.motor) == setting.constants
+        except ValueError:
+            same = False
+        if not same:
+            raise NotDone(
+                f"the motor '{setting.motor}' has changed since this run began",
+                "run the same command again: with the changed motor it is a run of its own",
+            )
+        return work(cell)
+
+    return attempt
 
 
 def _require_cluster(scheduler: str, *, batch: bool) -> None:
