@@ -6,12 +6,14 @@ import importlib
 
 from host.errors import NotDone, WrongUse
 from host.util.installation import install_command
+from host.util.interrupts import uninterrupted
 
 
 def need(module: str, extra: str) -> None:
     """Raise WrongUse if a library of an extra is not installed."""
     try:
-        importlib.import_module(module)
+        with uninterrupted():  # a ^C would look as if the library could not be loaded, or be lost
+            importlib.import_module(module)
     except ModuleNotFoundError as error:
         raise WrongUse(
             f"this needs {module}, which is not installed",
