@@ -136,7 +136,7 @@ def _names(
 def computing() -> dict[str, str]:
     """What decides about numbers, and its version here; empty for a package that is not here."""
     own = sources() if unchanged() else "some that have changed since it began"
-    return {"the sources": own, **{name: _version(name) for name in ("numpy", "mujoco")}}
+    return {"the sources": own, **{name: _version(name) for name in ("numpy", "mujoco-core")}}
 
 
 def _version(package: str) -> str:

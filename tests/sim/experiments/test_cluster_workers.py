@@ -104,8 +104,9 @@ def test_a_worker_of_other_sources_computes_nothing(address, count, tmp_path):
 def test_a_package_of_another_version_is_named(monkeypatch):
     ours = cluster.computing()
     assert cluster.compare(ours) == ""
-    assert cluster.compare({**ours, "mujoco": ""}) == ""
-    assert cluster.compare({**ours, "numpy": "1.0"}) == f"numpy {ours['numpy']} instead of 1.0"
+    assert cluster.compare({**ours, "mujoco-core": ""}) == ""
+    for name in ("numpy", "mujoco-core"):
+        assert cluster.compare({**ours, name: "1.0"}) == f"{name} {ours[name]} instead of 1.0"
     monkeypatch.setattr("host.util.provenance.fingerprint", lambda *_: "of changed sources")
     assert "have changed" in cluster.compare(ours)
 
