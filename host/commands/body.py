@@ -169,6 +169,8 @@ def run(options: argparse.Namespace) -> int:
         )
     settings = {
         **request._asdict(),
+        # By value: your own scene of this name may be another one tomorrow.
+        "model": digest({"xml": scene.to_xml()}),
         "kicks": options.kick,
         "time_s": options.time,
         "sources": sources(),

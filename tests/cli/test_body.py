@@ -2,6 +2,7 @@
 
 import csv
 import json
+from importlib.resources import files
 
 import mujoco
 import numpy as np
@@ -52,6 +53,20 @@ def test_a_car_is_summarized_in_json_and_kept_in_files(kickctl, tmp_path):
     assert np.array([list(message.values()) for message in messages]).tobytes() == values.tobytes()
     assert (folder / "body.png").stat().st_size > 10000
     assert json.loads((folder / "summary.json").read_text())["mean_speed"] == summary["mean_speed"]
+
+
+def test_another_scene_under_the_same_name_does_not_replace_the_results_of_the_first(
+    kickctl, tmp_path
+):
+    scenes = files("sim_motor") / "bodies" / "scenes"
+    (tmp_path / "world.xml").write_text((scenes / "world.xml").read_text())
+    own = tmp_path / "own.xml"
+    folders = set()
+    for place in ("4.35", "2.35", "4.35"):
+        own.write_text((scenes / "walls.xml").read_text().replace("4.35", place))
+        car = (*CAR, "--time", "0.01", "--scene", str(own), "--json", "--out", str(tmp_path))
+        folders.add(json.loads(kickctl(*car)[1])["folder"])
+    assert len(folders) == 2
 
 
 def test_the_parameters_that_are_given_are_those_of_the_car(kickctl, tmp_path):
