@@ -7,13 +7,14 @@ import fcntl
 import hashlib
 import json
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from host.errors import WrongUse
 from host.runs.columns import Kind
 from host.runs.contract import Cell, Part, Row
-from host.util.whole_files import whole_file, write_text
+from host.util.whole_files import DRAFT, whole_file, write_text
 
 _CELLS = "cells.jsonl"
 
@@ -53,6 +54,9 @@ class Study:
             ) from error
         try:
             fcntl.flock(self._journal, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            for draft in folder.glob(f"{DRAFT}*"):  # of a run that was killed while it wrote
+                with suppress(OSError):
+                    draft.unlink()
             self.write("settings.json", json.dumps(settings, indent=1, allow_nan=False) + "\n")
             self._read()
         except BlockingIOError:

@@ -18,6 +18,8 @@ from pathlib import Path
 
 from host.errors import WrongUse
 
+# How the name of a draft begins.
+DRAFT = ".kickctl-"
 # What os.link says on file systems that have no hard links.
 _NO_LINKS = {errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.EMLINK}
 
@@ -62,7 +64,7 @@ def whole_file(path: str | Path, *, new: bool = False) -> Iterator[Path]:
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     require_free(path, replace=not new)
-    draft = target.with_name(f".kickctl-{secrets.token_hex(8)}{target.suffix[:40]}")
+    draft = target.with_name(f"{DRAFT}{secrets.token_hex(8)}{target.suffix[:40]}")
     try:
         with naming(path, draft):
             yield draft

@@ -8,6 +8,7 @@ import pytest
 from host.errors import WrongUse
 from host.runs.contract import Part
 from host.runs.folder import Study
+from host.util.whole_files import whole_file
 
 SETTINGS = {"experiment": "toy", "seed": 1, "options": {"trials": 3}}
 CELLS = [{"ticks": ticks, "mode": "phase"} for ticks in range(3)]
@@ -52,6 +53,16 @@ def test_what_was_kept_is_there_again_and_only_that(study):
         assert [cell in back for cell in CELLS] == [True, True, False]
         assert len(back) == 2
         assert back.spoiled() == ["a fault"]
+
+
+def test_drafts_of_a_run_that_was_killed_are_removed(study):
+    with pytest.raises(KeyboardInterrupt), whole_file(study.folder / "a.png") as draft:
+        draft.touch()
+        left = draft.rename(draft.with_name(draft.name + "2"))  # so that its end does not find it
+        raise KeyboardInterrupt
+    assert left.exists()
+    with again(study):
+        assert not left.exists()
 
 
 def test_a_line_that_was_cut_short_was_not_kept_and_harms_nothing(study):
