@@ -122,9 +122,16 @@ def commit() -> str:
     root = Path(__file__).resolve().parents[2]
     if not (root / ".git").exists():
         return ""
+    name = _git(root, "describe", "--always")
+    changed = _git(root, "status", "--porcelain", "--untracked-files=no")
+    return name + "+" * bool(name and changed)
+
+
+def _git(root: Path, *words: str) -> str:
+    """What git answers; empty if it fails. `describe --dirty` would lock the user's index."""
     try:
         done = subprocess.run(
-            ["git", "describe", "--always", "--dirty=+"],
+            ["git", "--no-optional-locks", *words],
             cwd=root,
             capture_output=True,
             text=True,

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from host.util import provenance
 from host.util.provenance import SHOWS_ONLY, sources
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -74,6 +75,26 @@ def test_sources_that_change_later_are_not_those_of_what_was_loaded(copy):
     before = path.read_bytes()
     assert sources_of(copy, f"open({str(path)!r}, 'a').write('# changed')") == sources()
     path.write_bytes(before)
+
+
+def test_the_commit_is_found_without_a_lock_on_the_users_index(tmp_path, monkeypatch):
+    """A killed kickctl would leave the lock, and git would refuse every commit."""
+
+    def git(*words):
+        subprocess.run(["git", "-C", tmp_path, *words], check=True, capture_output=True)
+
+    source = tmp_path / "source.py"
+    source.write_text("x = 1\n")
+    git("init")
+    git("add", "source.py")
+    git("-c", "user.name=anna", "-c", "user.email=anna@lab", "commit", "-m", "first")
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "host" / "util" / "provenance.py"))
+    os.utime(source, (1, 1))  # the index would have to be written to know that nothing has changed
+    index = (tmp_path / ".git" / "index").read_bytes()
+    clean = provenance.commit.__wrapped__()
+    source.write_text("x = 2\n")
+    assert provenance.commit.__wrapped__() == clean + "+" != "+"
+    assert (tmp_path / ".git" / "index").read_bytes() == index
 
 
 def test_what_does_not_count_exists_or_is_planned():
