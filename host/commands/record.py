@@ -125,7 +125,9 @@ def run(options: argparse.Namespace) -> int:
         interrupted = True
     except (KickctlError, OSError) as error:
         if tally.ticks:
-            error.add_note(f"what was recorded until then, {tally.ticks} ticks, is in {path}")
+            # A file that fails lacks what it had not written yet.
+            extent = f"{tally.ticks} ticks" if isinstance(error, KickctlError) else "to a second"
+            error.add_note(f"what was recorded until then, {extent}, is in {path}")
             mark_kept(error, path)
         raise
     _answer(options, path, tally, interrupted=interrupted)

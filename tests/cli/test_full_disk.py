@@ -9,11 +9,11 @@ import pytest
 
 @pytest.fixture
 def full_disk():
-    """No room for a byte: a limit on the size of files stands in for it."""
+    """No room for a byte, or for some: a limit on the size of files stands in for it."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
 
-    def run(kickctl, *arguments):
-        resource.setrlimit(resource.RLIMIT_FSIZE, (0, before[1]))
+    def run(kickctl, *arguments, room=0):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (room, before[1]))
         try:
             return kickctl(*arguments)
         finally:
@@ -35,6 +35,13 @@ def test_the_log_is_named_and_not_left_empty(kickctl, full_disk, line):
     assert "see `ulimit -f`" in err
     assert ("no kick was sent" in err) is (line.split()[0] in ("kick", "drive", "demo"))
     assert list(Path("logs").iterdir()) == []
+
+
+def test_no_ticks_are_promised_that_the_full_disk_did_not_take(kickctl, full_disk):
+    record = ("record", "9", "--out", "a.mcap", "--seed", "1")
+    status, _, err = full_disk(kickctl, *record, room=60_000)
+    assert (status, kickctl("log", "list", ".")[0]) == (1, 0)
+    assert "what was recorded until then, to a second, is in a.mcap" in err
 
 
 @pytest.mark.parametrize("link", [False, True])
