@@ -66,6 +66,11 @@ class Keeper:
             for file in self._files:
                 file.finish()
 
+    def drop(self) -> None:
+        """Write nothing: the files that were there stay as they are."""
+        for file in self._files:
+            file.drop()
+
     @property
     def failures(self) -> dict[str, OSError]:
         """Why files could not be written, by their names."""
@@ -149,8 +154,16 @@ class _File:
             work()
         except OSError as error:
             self.failure = error
-            with suppress(OSError):
-                if self._states is not None:
-                    self._states.finish()
-            with suppress(OSError):  # remove the draft; this also has the error name the file
-                self._draft.__exit__(OSError, error, error.__traceback__)
+            self._remove_draft(error)
+
+    def drop(self) -> None:
+        if self.failure is None:
+            self._remove_draft(OSError())
+
+    def _remove_draft(self, error: OSError) -> None:
+        """Remove the draft; this also has the error name the file."""
+        with suppress(OSError):
+            if self._states is not None:
+                self._states.finish()
+        with suppress(OSError):
+            self._draft.__exit__(OSError, error, error.__traceback__)

@@ -207,6 +207,13 @@ class Result(NamedTuple):
         """The settings and the summary as plain data."""
         return {**self.settings, **summary, "folder": str(self.folder)}
 
+    def kept_s(self) -> float:
+        """How much simulated time (s) an earlier run has kept in the folder; 0 for none."""
+        try:
+            return float(json.loads((self.folder / "summary.json").read_text())["time_s"])
+        except (OSError, ValueError, KeyError, TypeError):
+            return 0.0
+
     def finish(self, keeper: Keeper) -> tuple[Summary, dict[str, str]]:
         """Write what is left to write, as far as disk and matplotlib allow.
 
@@ -287,9 +294,13 @@ def _simulate(options: argparse.Namespace, result: Result) -> tuple[Summary, dic
 
             run_with_kicks(body, options.time, result.kicks, watch)
         except (KickctlError, KeyboardInterrupt) as error:
-            result.finish(keeper)
+            if (longer_s := result.kept_s()) > body.time_s:
+                keeper.drop()
+                say(f"{folder} keeps the {longer_s:g} s of an earlier run")
+            else:
+                result.finish(keeper)
+                say(f"the first {body.time_s:g} s are kept in {folder}")
             mark_kept(error, folder)
-            say(f"the first {body.time_s:g} s are kept in {folder}")
             raise
     return result.finish(keeper)
 

@@ -106,6 +106,21 @@ def test_what_was_simulated_before_it_became_unstable_is_kept(kickctl, tmp_path,
     assert np.isfinite(np.array(rows, dtype=float)).all()
 
 
+def test_a_run_that_is_interrupted_replaces_no_longer_one(kickctl, tmp_path, monkeypatch):
+    def interrupted(keeper):
+        raise KeyboardInterrupt
+
+    run = (*CAR, "--time", "0.1", "--out", str(tmp_path))
+    kickctl(*run)
+    (folder,) = tmp_path.glob("body-*")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    monkeypatch.setattr("host.bodies.keeping.Keeper.note", interrupted)
+    status, _, err = kickctl(*run)
+    assert status == 130
+    assert "keeps the 0.1 s of an earlier run" in err
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
 def test_help_names_all_scenes(kickctl):
     _, out, _ = kickctl("body", "--help")
     assert set(SCENES) <= set(out.replace(",", " ").split())
