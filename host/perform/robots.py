@@ -6,6 +6,7 @@ disturbs it.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -24,6 +25,7 @@ from host.runs.contract import Cell, Experiment, Row, Setting
 from host.runs.folder import digest
 from host.runs.runner import Outcome, Work
 from host.util.installation import deploy_command
+from host.util.whole_files import write_text
 from robot.sources import of_robot
 
 # How often a real robot tries a cell if a fault or a stop disturbs it, and the wait between tries.
@@ -46,13 +48,14 @@ def robots(
 
     Raises:
         NoLink: The robot cannot be reached.
-        NotDone: The robot runs other code than this host.
+        NotDone: The robot runs other code than this host, or another one began the run.
     """
     logs.mkdir(exist_ok=True)
     if sim_options(chosen.address) is None:
         with connect(chosen.name, token=token) as robot:
             robot.on_trouble = say
             _require_same_sources(robot)
+            _require_same_robot(robot, logs.parent / "robot.json")
             if take_over:
                 robot.take_over()
             require_control(robot)
@@ -90,6 +93,23 @@ def _require_same_sources(robot: Robot) -> None:
         raise NotDone(
             "the robot runs other sources than this host, so its results would not be this code's",
             f"bring this release to the robot: {deploy_command()}",
+        )
+
+
+def _require_same_robot(robot: Robot, kept: Path) -> None:
+    """Raise NotDone if another robot than this has begun the run: an address may pass to another.
+
+    Args:
+        robot: The robot.
+        kept: A file that says which robot began the run. It is written if it does not exist.
+    """
+    this = {name: robot.hello.get(name, "") for name in ("hardware_id", "motor")}
+    if not kept.exists():
+        write_text(kept, json.dumps(this) + "\n")
+    elif json.loads(kept.read_text(encoding="utf-8")) != this:
+        raise NotDone(
+            f"another robot began this run, or this one with other motors, as {kept} says",
+            "connect the robot from before, or begin a new run: name another folder with --out",
         )
 
 
