@@ -105,7 +105,7 @@ def _require_same_robot(robot: Robot, kept: Path) -> None:
     """
     this = {name: robot.hello.get(name, "") for name in ("hardware_id", "motor")}
     if not kept.exists():
-        write_text(kept, json.dumps(this) + "\n")
+        write_text(kept, json.dumps(this, allow_nan=False) + "\n")
     elif json.loads(kept.read_text(encoding="utf-8")) != this:
         raise NotDone(
             f"another robot began this run, or this one with other motors, as {kept} says",

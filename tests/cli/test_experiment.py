@@ -257,25 +257,6 @@ def test_a_robot_that_runs_other_code_is_refused_before_anything_moves(
     assert toy.done == []
 
 
-def test_a_run_that_one_robot_began_does_not_go_on_with_another(toy, desk, tmp_path, monkeypatch):
-    """As at ev3dev.local, the address of every new brick."""
-
-    def another(*arguments, **options):
-        robot = connect(*arguments, **options)
-        robot.hello["hardware_id"] = "0" * 32
-        return robot
-
-    connect = run.connect
-    toy.trouble = {2: [KeyboardInterrupt()]}
-    with pytest.raises(KeyboardInterrupt):
-        perform("toy", desk[0], out=tmp_path)
-    with monkeypatch.context() as exchanged, pytest.raises(NotDone, match="another robot"):
-        exchanged.setattr(run, "connect", another)
-        perform("toy", desk[0], out=tmp_path)
-    assert toy.done == [0, 1]
-    assert perform("toy", desk[0], out=tmp_path)["trials"] == COUNT
-
-
 def test_a_robot_that_does_not_say_its_sources_is_taken_as_it_is():
     run._require_same_sources(types.SimpleNamespace(hello={"software": "0.1.0"}))
 
