@@ -19,7 +19,7 @@ from robot.params import Params
 from robot.safety import limit_duty
 from sim_motor.arrays import Array, scalars, tables
 from sim_motor.clock import lateness_s
-from sim_motor.compiled import compiled, jit, over_cores, unlocked_jit
+from sim_motor.compiled import compiled, inner_jit, over_cores, unlocked_jit
 from sim_motor.compiled_motor import advance, encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE
@@ -231,7 +231,7 @@ def run(
     return result
 
 
-@jit
+@inner_jit
 def control(
     tick: int,
     phi: float,
@@ -269,20 +269,20 @@ def control(
     return x1, x2, force, torque, _limit_duty(duty_scale * torque, max_duty_pct)
 
 
-@jit
+@inner_jit
 def time_step(times: Array, tick: int, tick_s: float) -> float:
     """The time step of a tick, s, as the robot's loop measures it."""
     return _clamp_step(times[tick] - times[tick - 1], tick_s) if tick else tick_s
 
 
-@jit
+@inner_jit
 def _travel(phis: Array, tick: int) -> float:
     """How far (rad) a wheel went in the DIRECTION_TICKS ticks up to this one."""
     travel: float = phis[tick] - phis[tick - DIRECTION_TICKS]
     return travel
 
 
-@jit
+@inner_jit
 def signed(kick: KickNumbers, tick: int, phis: Array) -> KickNumbers:
     """The kick in its first tick, with the sign that reverses this wheel if it has none."""
     action, begin, ticks, pulse, smooth, value, waveform = kick
@@ -291,7 +291,7 @@ def signed(kick: KickNumbers, tick: int, phis: Array) -> KickNumbers:
     return action, begin, ticks, pulse, smooth, value, waveform
 
 
-@jit
+@inner_jit
 def _run_wheel(
     phis: Array,
     start: Array,

@@ -5,14 +5,18 @@ machine compiles it.
 """
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import cache
+from functools import cache, cached_property
+from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import types
+from numba.core.datamodel.models import OpaqueModel
+from numba.extending import register_model, typeof_impl
 
 from sim_motor import compiled_cache
 from sim_motor.function_digest import function_digest
@@ -30,6 +34,8 @@ def njit(function: F, **options: Any) -> F:
     function that is given compiled functions as arguments is compiled again in each process, as
     numba cannot recognise them there; it should take them from around it instead.
     """
+    # Nobody calls it from C, and the wrapper for that takes a fifth of the time.
+    options["no_cfunc_wrapper"] = True
     digest = function_digest(function, options)
     # Machine code from several processes is linked by name, so that a name must mean one code.
     function.__qualname__ += "_" + digest
@@ -44,20 +50,71 @@ def jit(function: F) -> F:
     return njit(function, error_model="numpy")
 
 
-def inlined_jit(function: F) -> F:
-    """As `jit`, and compile the function into those that call it."""
-    return njit(function, error_model="numpy", forceinline=True)
-
-
 def unlocked_jit(function: F) -> F:
     """As `jit`, for `over_cores`: while the function runs, so may others of the same process."""
     return njit(function, error_model="numpy", nogil=True)
 
 
+class _Inner:
+    """A compiled function for other compiled ones, without the wrapper for calls from Python.
+
+    That takes longer to compile than most functions. If Python calls it all the same, it is
+    compiled once more.
+    """
+
+    def __init__(self, dispatcher: Any, options: Mapping[str, Any]) -> None:
+        self.dispatcher, self._options = dispatcher, options
+        # By these one knows what is compiled (sim_motor.function_digest).
+        self.py_func, self.targetoptions = dispatcher.py_func, dispatcher.targetoptions
+
+    @cached_property
+    def _for_python(self) -> Callable[..., Any]:
+        own = self.py_func
+        parts = own.__globals__, own.__name__, own.__defaults__, own.__closure__
+        return njit(FunctionType(own.__code__, *parts), **self._options)
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._for_python(*arguments)
+
+
+class _InnerType(types.Dispatcher):
+    """What compiled code takes an `_Inner` for.
+
+    It takes literals as numbers: numba would compile the function once more for each.
+    """
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        return super().get_call_type(context, tuple(map(types.unliteral, args)), kws)
+
+
+register_model(_InnerType)(OpaqueModel)
+
+
+@typeof_impl.register(_Inner)
+def _type_of_inner(inner: _Inner, _context: Any) -> _InnerType:
+    return _InnerType(inner.dispatcher)
+
+
+def inner(function: F, **options: Any) -> F:
+    """As `njit`, for a function that compiled ones call."""
+    dispatcher = njit(function, no_cpython_wrapper=True, **options)
+    return function if dispatcher is function else cast(F, _Inner(dispatcher, options))
+
+
+def inner_jit(function: F) -> F:
+    """As `jit`, for a function that compiled ones call."""
+    return inner(function, error_model="numpy")
+
+
+def inlined_jit(function: F) -> F:
+    """As `inner_jit`, and compile the function into those that call it."""
+    return inner(function, error_model="numpy", forceinline=True)
+
+
 @cache
 def compiled(function: F) -> F:
-    """A plain Python function compiled with the functions it calls. Its source stays as it is."""
-    return with_mathematics(function, {}, njit)
+    """A plain Python function, and those that it calls, for compiled ones. Its source stays."""
+    return with_mathematics(function, {}, inner)
 
 
 @contextmanager

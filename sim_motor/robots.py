@@ -29,7 +29,7 @@ from sim_motor.batch import (
     signed,
     time_step,
 )
-from sim_motor.compiled import jit, over_cores, unlocked_jit
+from sim_motor.compiled import inner_jit, over_cores, unlocked_jit
 from sim_motor.compiled_motor import encoder, substep_at, substep_from
 from sim_motor.constants import SUBSTEP_S, Constants, load
 from sim_motor.motor import ANGLE, LAST_ANGLE
@@ -179,12 +179,12 @@ def run(
     return Course(times, records, places)
 
 
-@jit
+@inner_jit
 def _params_at(row: Array, tick_s: float) -> ParamNumbers:
     return row[0], row[1], row[2], int(row[3]), row[4], row[5], row[6], tick_s
 
 
-@jit
+@inner_jit
 def _run_robot(
     states: tuple[Array, Array],
     x: Array,

@@ -26,7 +26,7 @@ import numpy as np
 
 from sim_motor.arrays import Array, scalars, tables
 from sim_motor.axle import next_stretch, twist_speed
-from sim_motor.compiled import compiled, jit
+from sim_motor.compiled import compiled, inner_jit, jit
 from sim_motor.compiled_motor import advance_in_place
 from sim_motor.constants import GRAVITY, SUBSTEP_S, Constants, data
 from sim_motor.motor import WHEEL_SPEED
@@ -175,7 +175,7 @@ def alone(constants: Constants) -> Constants:
     return constants.with_wheel(data()["robot"]["wheel_inertia"][0])
 
 
-@jit
+@inner_jit
 def tyre_force(
     stretch: Array, slip: float, side_slip: float, most: float, tyre: TyreNumbers
 ) -> tuple[float, float]:
@@ -209,7 +209,7 @@ def tyre_force(
     return forward, sideways
 
 
-@jit
+@inner_jit
 def wall_force(beyond: float, speed: float, stiffness: float, damping: float) -> float:
     """How hard a wall pushes back, N.
 
@@ -222,7 +222,7 @@ def wall_force(beyond: float, speed: float, stiffness: float, damping: float) ->
     return max(0.0, stiffness * beyond + damping * speed) if beyond > 0.0 else 0.0
 
 
-@jit
+@inner_jit
 def wall_push(
     place: Array, ahead: float, aside: float, walls: WallNumbers
 ) -> tuple[float, float, float]:
@@ -251,7 +251,7 @@ def wall_push(
     return force_x, force_y, arm_x * force_y - arm_y * force_x
 
 
-@jit
+@inner_jit
 def move_body(
     place: Array,
     forward: tuple[float, float],
@@ -293,7 +293,7 @@ def move_body(
             place[index] += step_s * place[index + 3]
 
 
-@jit
+@inner_jit
 def advance(
     substeps: int,
     place: Array,

@@ -18,7 +18,7 @@ from host.theory.engine.flow import FINENESS
 from host.theory.engine.runge_kutta import STAGES, TABLEAU
 from host.theory.model.laws import Law, law_of, under
 from host.theory.model.wheel import OMEGA, PHI, Array, rates
-from sim_motor.compiled import jit, over_cores, unlocked_jit
+from sim_motor.compiled import inner_jit, over_cores, unlocked_jit
 
 # phi: a wheel comes to a multiple of a quarter turn. omega: it turns round.
 Surface = Literal["phi", "omega"]
@@ -160,7 +160,7 @@ def _following(law: Law) -> Any:
     """`_follow_some` compiled, with the equations of a law."""
 
     def finish(function: Any) -> Any:
-        return (unlocked_jit if function.__name__ == _follow_some.__name__ else jit)(function)
+        return (unlocked_jit if function.__name__ == _follow_some.__name__ else inner_jit)(function)
 
     return under(law, _follow_some, {}, finish)
 

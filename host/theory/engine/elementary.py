@@ -13,7 +13,7 @@ from typing import Any
 import numba.extending
 from numba.core import types
 
-from sim_motor.compiled import njit
+from sim_motor.compiled import inner, njit
 
 # Contracting a product and a sum to one instruction, or dividing by means of a reciprocal, changes
 # the last bit only.
@@ -54,8 +54,8 @@ def _float(context: Any, bits: Any) -> Any:
 
 
 def vectorised(function: Any) -> Any:
-    """Compile a function so that one instruction may do several wheels."""
-    return njit(function, **OPTIONS)
+    """Compile a function for compiled ones, so that one instruction may do several wheels."""
+    return inner(function, **OPTIONS)
 
 
 def unlocked(function: Any) -> Any:
@@ -65,7 +65,7 @@ def unlocked(function: Any) -> Any:
 
 def inlined(function: Any) -> Any:
     """As `vectorised`, and compile the function into those that call it."""
-    return njit(function, forceinline=True, **OPTIONS)
+    return inner(function, forceinline=True, **OPTIONS)
 
 
 @inlined

@@ -16,7 +16,7 @@ from host.theory.engine.runge_kutta import STAGES, TABLEAU
 from host.theory.model.laws import PAPER, Law, under
 from host.theory.model.symbolic import derivatives, derivatives_by_constant
 from host.theory.model.wheel import Array, Wheel, rates
-from sim_motor.compiled import compiled, jit
+from sim_motor.compiled import compiled, inner_jit, jit
 
 # Steps per unit of a wheel's rate (see host.theory.engine.ensemble); at this, the error of a period
 # is of the order of rounding.
@@ -105,7 +105,7 @@ def plain_under(law: Law) -> Any:
             states[0, 0], states[1, 0], states[2, 0], states[3, 0], *constants
         )
 
-    return jit(plain)
+    return inner_jit(plain)
 
 
 # The paper's.
@@ -138,4 +138,4 @@ def varied(followed: int, law: Law = PAPER) -> Any:
         out[2, 5] += direct[2]
         out[3, 5] += direct[3]
 
-    return jit(own_rates)
+    return inner_jit(own_rates)
