@@ -178,9 +178,7 @@ def run(
         or times.shape not in {(1, ticks), (wheels, ticks)}
     ):
         raise ValueError(f"start and times do not fit {wheels} wheels and {ticks} ticks")
-    volts = np.broadcast_to(
-        np.asarray(motors[0].battery_v if battery_v is None else battery_v, dtype=float), (wheels,)
-    )
+    volts = np.full(wheels, motors[0].battery_v if battery_v is None else battery_v, dtype=float)
     duties = np.zeros(wheels, dtype=np.int64) if start.duties is None else start.duties
     if not all(np.isfinite(part).all() for part in (start.states, start.potentials, times, volts)):
         raise ValueError("start, times and battery must be finite numbers")
@@ -212,13 +210,13 @@ def run(
     given = (
         start.states,
         start.potentials,
-        duties,
+        np.ascontiguousarray(duties),
         times,
         param_numbers(params),
         numbers,
         tables(motors),
         scalars(motors),
-        np.ascontiguousarray(volts),
+        volts,
         (latency_s, motors[0].encoder_counts, motors[0].dither),
         np.array([motor.dither_seed for motor in motors]),
         result.before,

@@ -137,4 +137,4 @@ def _checked(open_v: float) -> float:
             f"a battery of {open_v!r} V cannot drive the brick: give more than 0 and at most"
             f" {HIGHEST_BATTERY_V} V"
         )
-    return open_v
+    return float(open_v)

@@ -156,12 +156,12 @@ def numbers(scene: Scene) -> tuple[BodyNumbers, TyreNumbers, WallNumbers]:
     walls = (
         inf if scene.walls is None else scene.walls / 2,
         inf if scene.across is None else scene.across / 2,
-        robot["wall_stiffness"] if scene.stiffness is None else scene.stiffness,
+        float(robot["wall_stiffness"] if scene.stiffness is None else scene.stiffness),
         robot["wall_damping"],
     )
     tread = robot["tyre_stiffness"], robot["tyre_damping"]
-    axle = robot["axle_stiffness"] if scene.axle is None else scene.axle, robot["axle_damping"]
-    return body, tread + axle, walls
+    axle_stiffness = float(robot["axle_stiffness"] if scene.axle is None else scene.axle)
+    return body, (*tread, axle_stiffness, robot["axle_damping"]), walls
 
 
 @jit

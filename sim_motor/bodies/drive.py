@@ -61,12 +61,12 @@ def drive(
     finite = True
     x1, x2, gain, time_constant, spring, radius_m, value = floats
     begin, ticks, pulse, smooth = whole
-    no_waveform = value[:0]
+    no_waveform = floats[0, :0]
     for i in range(len(angles)):
         phi = qpos[angles[i]]
         a, tau_s, k = gain[i], time_constant[i], spring[i]
         actual_1, actual_2 = _actual_positions(phi)
-        kick = (QUENCH, begin[i], ticks[i], pulse[i], smooth[i], value[i], no_waveform)
+        kick = (QUENCH, begin[i], ticks[i], pulse[i], smooth[i] != 0, value[i], no_waveform)
         x1[i], x2[i], a, tau_s, k, beta, shift_rad = _apply_kick(
             kick, step, x1[i], x2[i], a, tau_s, k
         )

@@ -44,7 +44,9 @@ def run(own_rates: Any, states: Array, constants: Any, seconds: float, count: in
 
     own_rates: one of `plain_under` or `varied`.
     """
-    path: Array = _running(own_rates, states.shape[1])(states, constants, seconds, count)
+    # The same kinds of arguments from all callers: each other kind would be compiled once more.
+    own, numbers = np.array(states, order="C"), tuple(map(float, constants))
+    path: Array = _running(own_rates, own.shape[1])(own, numbers, seconds, count)
     return path
 
 
@@ -55,8 +57,8 @@ def _running(own_rates: Any, columns: int) -> Any:
     size = 4 * columns
 
     # Loops over numbers instead of slices: these take the compiler ten times as long.
-    def run(states: Array, constants: Any, seconds: float, count: int) -> Array:
-        step_s, at = seconds / count, states.copy()
+    def run(at: Array, constants: Any, seconds: float, count: int) -> Array:
+        step_s = seconds / count
         path, stages = np.empty((count + 1, 4, columns)), np.zeros((STAGES, 4, columns))
         # The same memory without rows.
         flat_path, flat_stages, flat_at = (

@@ -160,11 +160,12 @@ def escapes(
     """
     count = require_followed(parameters, seconds, fineness)
     step_s = seconds / count
-    found, times = np.array(states, dtype=np.float64), np.full(states.shape[1], float(seconds))
+    found, own = np.array(states, dtype=np.float64, order="C"), np.ascontiguousarray(parameters)
+    times = np.full(states.shape[1], float(seconds))
     ended = np.zeros(states.shape[1], dtype=np.bool_)
     patience = int(min(patience_s / step_s, count))
     wander = _wandering(law_of(parameters))
-    given = found, parameters, tuple(noise), seeds, step_s, count, way, patience, times, ended
+    given = found, own, tuple(noise), seeds, step_s, count, way, patience, times, ended
     over_cores(lambda core, cores: wander(*given, core, cores), len(times))
     return Escapes(times, ended, found)
 

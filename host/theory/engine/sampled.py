@@ -248,13 +248,13 @@ def _advanced(
             f" {clock.tick_s:g} s",
             "give a tau of more than half a tick; the robot asks for three ticks",
         )
-    law, last = law_of(parameters), np.array(states, dtype=np.float64)
+    law, last = law_of(parameters), np.array(states, dtype=np.float64, order="C")
     if law.own:
         raise WrongUse(
             "a wheel with functions of its own does not step by ticks", "follow it without ticks"
         )
     run, squares = _running(law), np.empty(last.shape[1])
-    given = last, parameters, tuple(seen), tuple(clock), ticks, squares
+    given = last, np.ascontiguousarray(parameters), tuple(seen), tuple(clock), ticks, squares
     over_cores(lambda core, cores: run(*given, core, cores), last.shape[1])
     return last, squares
 

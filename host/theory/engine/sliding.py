@@ -56,7 +56,7 @@ def _attempting(rates_of: Any) -> Any:
     ) -> tuple[Array, Any]:
         after = own.copy()
         constants[DRY, 0], constants[INERTIA, 0] = way * dry, inertia if way != 0.0 else _HELD
-        step(after, constants, seconds, 1)
+        step(after, constants, seconds, np.int64(1))  # a literal would be compiled once more
         if way != 0.0:
             return after, after[OMEGA, 0] * way < 0.0
         after[OMEGA, 0] = 0.0
