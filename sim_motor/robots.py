@@ -263,7 +263,7 @@ def _run_robot(
             record[side, tick, 1], record[side, tick, 2] = x[side, 0], x[side, 1]
             record[side, tick, 3], record[side, tick, 4] = force, torque
             record[side, tick, 5] = duty
-        places[tick] = place[:3]
+        places[tick, 0], places[tick, 1], places[tick, 2] = place[0], place[1], place[2]
         turn = substep_from(now + latency_s)
 
 

@@ -98,6 +98,7 @@ def stepping(rates_of: Any) -> Any:
                     else:
                         own, left, changes = at_change, left - high, changes + 1
                         own[OMEGA, 0] = 0.0
-            states[:, wheel] = own[:, 0]
+            for row in range(len(states)):
+                states[row, wheel] = own[row, 0]
 
     return unlocked(steps)
