@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import threading
 from contextlib import suppress
+from itertools import chain
 from queue import SimpleQueue
 from typing import Any
 
@@ -16,12 +17,14 @@ from host.commands._terminal import answer
 from host.errors import WrongUse
 from host.link.addresses import sim_options
 from host.link.names import ALL, chosen, every, is_several, link_to, named
-from host.link.robots_file import Known
+from host.link.robots_file import Known, read_sound
 
 HELP = (
     "stop the motors. It needs no token, and works with a robot of another version. Without"
     " --brick it stops every robot that has a name"
 )
+# In place of a name, which it cannot be: whatever robots a spoiled file does not tell.
+OTHERS = "robots.toml"
 _NAME_ONE = (
     "name the robot, as in kickctl --brick tcp://ev3dev.local stop, or press the back button on the"
     " brick"
@@ -40,29 +43,34 @@ def run(options: argparse.Namespace) -> int:
     """
     text = named(options.brick)
     if text in (None, ALL):
-        return _stop_all(options, _all_known())
+        return _stop_all(options, *_all_known())
     if is_several(text):
         # One that is unknown must not keep the others from being stopped.
-        names = [name.strip() for name in text.split(",")]
+        names, failure = [name.strip() for name in text.split(",")], None
         if ALL in names:
             with suppress(WrongUse):  # no robot has a name, which is said of 'all'
-                known = _all_known()
+                known, failure = _all_known()
                 names = [name for name in dict.fromkeys([*known, *names]) if name != ALL]
-        return _stop_all(options, names)
+        return _stop_all(options, names, failure)
     robot = chosen(text)
     stopped = _stop(robot, options.seed)
     answer(options, _result(robot, stopped), stopped.sentence())
     return 0
 
 
-def _all_known() -> list[str]:
+def _all_known() -> tuple[list[str], WrongUse | None]:
+    """The names of all robots; and why there may be more, if the file of robots is spoiled."""
     try:
-        return [robot.name for robot in every()]
+        return [robot.name for robot in every()], None
     except WrongUse as error:
-        raise WrongUse(
-            f"none has been stopped, since no robot is named here: {error.message}",
-            f"{_NAME_ONE}. {error.hint}",
-        ) from error
+        names = list(read_sound()[0])
+        extent = (
+            "there may be more robots" if names else "none has been stopped, since none is named"
+        )
+        failure = WrongUse(f"{extent}: {error.message}", f"{_NAME_ONE}. {error.hint}")
+        if not names:
+            raise failure from error
+        return names, failure
 
 
 def _stop(robot: Known, seed: int | None) -> Stopped:
@@ -78,8 +86,16 @@ def _stop(robot: Known, seed: int | None) -> Stopped:
     return stopped
 
 
-def _stop_all(options: argparse.Namespace, names: list[str]) -> int:
-    """Stop robots side by side: none waits for another one. Say of each what is known."""
+def _stop_all(
+    options: argparse.Namespace, names: list[str], failure: WrongUse | None = None
+) -> int:
+    """Stop robots side by side: none waits for another one. Say of each what is known.
+
+    Args:
+        options: Of the command.
+        names: The robots.
+        failure: What keeps others from being stopped.
+    """
     ends: SimpleQueue[tuple[str, tuple[Known, Stopped] | BaseException]] = SimpleQueue()
 
     def stop(name: str) -> None:
@@ -92,7 +108,8 @@ def _stop_all(options: argparse.Namespace, names: list[str]) -> int:
     for name in names:
         threading.Thread(target=stop, args=(name,), daemon=True).start()
     outcomes = (_outcome(*ends.get(), options.token) for _ in names)
-    return show_each(options, names, outcomes)
+    others = [] if failure is None else [failed(OTHERS, failure)]
+    return show_each(options, [*names, OTHERS], chain(outcomes, others))
 
 
 def _outcome(name: str, end: tuple[Known, Stopped] | BaseException, token: str | None) -> Outcome:

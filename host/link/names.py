@@ -123,8 +123,10 @@ def _find(text: str) -> Known:
     """The robot of a name or an address. Raises WrongUse."""
     if not robots_file.is_name(text):
         return Known(text, text)
-    robots = robots_file.read()
+    robots, spoiled = robots_file.read_sound()
     if text not in robots:
+        if spoiled is not None:
+            raise spoiled
         close = get_close_matches(text, [*robots, ALL], 1) if robots else []
         known = f"there are {', '.join(robots)}" if robots else "no robot has a name yet"
         raise WrongUse(

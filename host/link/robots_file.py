@@ -12,7 +12,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,6 +32,7 @@ _KEYS = ("address", "token", "hardware_id")
 # A line of a table, around its value.
 _LINE = r"(\s*{}\s*=\s*)(\"(?:[^\"\\]|\\.)*\"|'[^']*')"
 _HEADER = re.compile(r"\s*\[")
+_TABLE = re.compile(r"^(?=\s*\[)", re.MULTILINE)
 _NEW_FILE = (
     "# The robots that kickctl knows by name. `kickctl robots --help` says how to change it.\n"
 )
@@ -91,12 +92,22 @@ def read() -> dict[str, Known]:
         WrongUse: The file is spoiled.
     """
     path = file_path()
-    if path is None:
-        return {}
-    return {
-        name: _known(name, entry, entry.get("hardware_id"))
-        for name, entry in _parse(path, _text(path)).items()
-    }
+    entries = {} if path is None else _parse(path, _text(path))
+    return {name: _known(name, entry) for name, entry in entries.items()}
+
+
+def read_sound() -> tuple[dict[str, Known], WrongUse | None]:
+    """The robots whose own tables are in order, and what is wrong with the file, if anything is."""
+    try:
+        return read(), None
+    except WrongUse as error:
+        entries: dict[str, dict[str, str]] = {}
+        path = file_path()
+        with suppress(WrongUse):  # if it is no text at all
+            for table in _TABLE.split(_text(path) if path else ""):
+                with suppress(WrongUse):
+                    entries |= _parse(Path(), table)
+        return {name: _known(name, entry) for name, entry in entries.items()}, error
 
 
 def add(name: str, address: str, token: str | None = None, hardware_id: str | None = None) -> Known:
@@ -113,6 +124,7 @@ def add(name: str, address: str, token: str | None = None, hardware_id: str | No
     """
     need_name(name)
     entry = {"address": address} | ({} if token is None else {"token": token})
+    whole = entry | ({} if hardware_id is None else {"hardware_id": hardware_id})
 
     def change(text: str, robots: dict[str, dict[str, str]]) -> str:
         if name in robots and _without_id(robots[name]) == entry:
@@ -125,13 +137,13 @@ def add(name: str, address: str, token: str | None = None, hardware_id: str | No
                 f"there is a robot '{same}' already, at {robots[same]['address']}",
                 "choose another name, or type first: kickctl robots remove " + same,
             )
-        robots[name] = entry | ({} if hardware_id is None else {"hardware_id": hardware_id})
-        lines = [f"{key} = {_quoted(value)}" for key, value in robots[name].items()]
+        robots[name] = whole
+        lines = [f"{key} = {_quoted(value)}" for key, value in whole.items()]
         gap = "" if not text or text.endswith("\n\n") else "\n" if text.endswith("\n") else "\n\n"
         return "\n".join([f"{text or _NEW_FILE}{gap}[{name}]", *lines, ""])
 
     _change(change)
-    return _known(name, entry, hardware_id)
+    return _known(name, whole)
 
 
 def update(name: str, **values: str) -> None:
@@ -154,7 +166,7 @@ def update(name: str, **values: str) -> None:
 
 def _set(text: str, robots: dict[str, dict[str, str]], name: str, **values: str) -> str:
     """The file's text with other values in an entry, which is changed too."""
-    robots[name] = robots[name] | values
+    robots[name] |= values
     lines = (text if text.endswith("\n") else text + "\n").splitlines(keepends=True)
     for key, value in values.items():
         start, end = _section(lines, name)
@@ -309,7 +321,7 @@ def _alone(path: Path) -> Iterator[None]:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")  # Windows' editors begin with a mark
     except FileNotFoundError:
         return ""
     except UnicodeError as error:
@@ -377,7 +389,7 @@ def _section(lines: list[str], name: str) -> tuple[int, int]:
     return start, end
 
 
-def _known(name: str, entry: dict[str, str], hardware_id: str | None) -> Known:
+def _known(name: str, entry: dict[str, str]) -> Known:
     """A robot with the token file that its entry names, or that lies in the usual place."""
     if "token" in entry:
         # An absolute path stays as it is.
@@ -385,4 +397,4 @@ def _known(name: str, entry: dict[str, str], hardware_id: str | None) -> Known:
     else:
         own = _usual_token(name)
     token = None if own is None else str(own)
-    return Known(name, entry["address"], token, hardware_id)
+    return Known(name, entry["address"], token, entry.get("hardware_id"))

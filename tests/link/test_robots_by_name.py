@@ -182,6 +182,19 @@ def test_stop_without_a_name_stops_every_robot_and_says_which_it_did_not_reach(
     status, found = teacher.each("--brick", "all", "status")
     assert [one["state"] for one in found.values()] == ["running", "stopped", "stopped"]
 
+    # Nor does a file of robots in which one line is wrong.
+    wrong = Laptop(tmp_path / "wrong")
+    wrong.config.mkdir(parents=True)
+    text = (teacher.config / "robots.toml").read_text(encoding="utf-8")
+    (wrong.config / "robots.toml").write_text(
+        text + "[dora]\naddress = tcp://h\n", encoding="utf-8"
+    )
+    status, found = wrong.each("stop")
+    assert status == 2
+    assert [found[name]["state"] for name in NAMES] == ["stopped"] * 3
+    assert "there may be more robots: the file" in found["robots.toml"]["error"]["message"]
+    assert "[anna]" in text
+
     nobody = Laptop(tmp_path / "nobody")
     for more in ({}, {"KICK_BRICK": "all"}):
         status, out, err = nobody.run("stop", **more)

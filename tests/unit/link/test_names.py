@@ -21,6 +21,7 @@ from host.link.robots_file import (
     free_name,
     is_name,
     read,
+    read_sound,
     remove,
     rename,
     token_path,
@@ -157,10 +158,44 @@ def test_a_spoiled_file_is_named_with_its_line_and_nothing_changes(by_hand, text
     assert chosen("tcp://h") == Known("tcp://h", "tcp://h")
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "[bert]\naddress = tcp://b\n",
+        '[bert]\naddress = "tcp://b\n',
+        '[bert]\naddress = "tcp://b"\ntokn = "t"\n',
+        '[all]\naddress = "tcp://b"\n',
+        '["b c"]\naddress = "tcp://b"\n',
+        "[bert\n",
+    ],
+)
+def test_a_robot_whose_own_lines_are_right_is_reached_all_the_same(by_hand, wrong):
+    anna, carl = (f'[{name}]\naddress = "tcp://{name}"\n' for name in ("anna", "carl"))
+    for text in (anna + wrong + carl, wrong + anna + carl, anna + carl + "\n" + wrong):
+        by_hand.write_text(text, encoding="utf-8")
+        assert {name: chosen(name).address for name in ("anna", "carl")} == {
+            "anna": "tcp://anna",
+            "carl": "tcp://carl",
+        }
+        with pytest.raises(WrongUse, match=re.escape(str(by_hand))) as error:
+            chosen("bert")
+        with pytest.raises(WrongUse) as of_file:
+            read()
+        assert str(error.value) == str(of_file.value)
+        found, spoiled = read_sound()
+        assert (list(found), str(spoiled)) == (["anna", "carl"], str(of_file.value))
+
+
+def test_a_mark_at_the_beginning_as_of_windows_spoils_no_file(by_hand):
+    by_hand.write_text('[anna]\naddress = "tcp://h"\n', encoding="utf-8-sig")
+    assert list(read()) == ["anna"]
+
+
 def test_a_file_that_is_no_text(by_hand):
     by_hand.write_bytes(b"\xff")
     with pytest.raises(WrongUse, match="no text"):
         read()
+    assert read_sound()[0] == {}
 
 
 @pytest.mark.parametrize("text", ['anna = {address = "a"}\n', 'anna.address = "a"\n'])
