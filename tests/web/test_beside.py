@@ -184,6 +184,7 @@ def test_a_lost_robot_is_spoken_of_in_the_past_and_its_notice_goes_when_it_is_ba
             patch.setattr(station, "stop", lambda: None)
         page.keyboard.press("Escape")
         visitor.until("Object.values(s.stop).join() === 'unconfirmed,unconfirmed,unconfirmed'")
+    visitor.reads("#stop-words", "NOT confirmed")
     assert page.locator("#stop-words").inner_text().count("NOT confirmed") == 1
     anna.stop()
     visitor.reads(".resting", "No robot runs. anna does not run. Press its Start. bert is lost")
