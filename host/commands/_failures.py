@@ -59,6 +59,8 @@ def _failure(error: BaseException) -> KickctlError | None:
             failure = WrongUse(
                 f"there are letters that cannot be used here: {error}", "write it in plain letters"
             )
+        case Exception() if _comes_of_interrupt(error):
+            failure = Interrupted("interrupted")
         case ImportError():
             failure = NotDone(
                 f"a library is missing or cannot be loaded: {error}",
@@ -69,6 +71,13 @@ def _failure(error: BaseException) -> KickctlError | None:
         case _:
             return None
     return failure
+
+
+def _comes_of_interrupt(error: BaseException | None) -> bool:
+    """Whether a library has made another error of an interrupt, as some do as they are loaded."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
 
 
 def os_words(error: OSError) -> str:

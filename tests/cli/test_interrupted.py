@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from host.client.robot import Robot
 from host.commands import _terminal
+from host.errors import NoLink
 
 KICK = ("kick", "--mode", "phase", "--seed", "1", "--json")
 
@@ -198,3 +199,19 @@ def test_five_signals_at_once_are_one_interrupt(kickctl, monkeypatch, number):
     assert done == json.loads(out)["error"]["status"] == 130
     assert err.endswith("kickctl: interrupted\n")
     assert signal.getsignal(number) is before
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [(RuntimeError("of __set_name__"), 130), (ImportError("failed"), 130), (NoLink("lost"), 3)],
+)
+def test_an_interrupt_of_which_a_library_makes_an_error_is_one(kickctl, monkeypatch, error, status):
+    """As Python's dataclasses do while a module is loaded; our own errors say more."""
+
+    def fail(*_, **__):
+        raise error from KeyboardInterrupt()
+
+    monkeypatch.setattr(Robot, "kick", fail)
+    done, out, err = kickctl(*KICK)
+    assert done == json.loads(out)["error"]["status"] == status
+    assert ("interrupted" in err) == (status == 130)
