@@ -67,7 +67,7 @@ def _all_known() -> tuple[list[str], WrongUse | None]:
         extent = (
             "there may be more robots" if names else "none has been stopped, since none is named"
         )
-        failure = WrongUse(f"{extent}: {error.message}", f"{_NAME_ONE}. {error.hint}")
+        failure = WrongUse(f"{extent}: {error.message}", f"{_NAME_ONE}. Then {error.hint}")
         if not names:
             raise failure from error
         return names, failure

@@ -161,14 +161,17 @@ def name_at(address: str) -> str:
     """The name of the robot at an address; empty if none is known."""
     try:
         return "" if address.startswith(SIM) else next((one.name for one in _at(address)), "")
-    except WrongUse:  # a spoiled file of names keeps nobody from a robot whose address is known
+    except WrongUse:  # it is no address of a robot
         return ""
 
 
 def _at(address: str) -> Iterator[Known]:
-    """The robots with a name that are at the place of an address."""
+    """The robots with a name that are at the place of an address.
+
+    A wrong line in the file of robots keeps nobody from a robot that is named otherwise.
+    """
     place = place_of(address)
-    return (one for one in robots_file.read().values() if _is_at(place, one.address))
+    return (one for one in robots_file.read_sound()[0].values() if _is_at(place, one.address))
 
 
 class Saved(NamedTuple):
