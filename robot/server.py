@@ -192,7 +192,8 @@ class Server(object):
                 if peer is None:
                     continue
                 accepted = True
-            if (peer.reads or mask & _LOST) and not (
+            # A serial line of which nothing has come gives no bytes, as one that has come off does.
+            if (mask & _LOST or (peer.reads and mask & select.EPOLLIN)) and not (
                 peer.read(now) and self._answer_at_once(peer, now)
             ):
                 self._drop(peer)

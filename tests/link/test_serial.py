@@ -6,6 +6,7 @@ Pseudo-terminals with a cable between them that makes noise and comes off.
 import os
 import socket
 import threading
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 
@@ -17,6 +18,7 @@ from host.link.addresses import make_link
 from host.logs.log import Log
 from robot import wire
 from robot.record import STATES, unpack
+from robot.serial_line import SerialLine
 from robot.server import LINE_SILENCE_S, Server
 from robot.session import Session
 from tests.link.machines import STOP, Cable, Machine, noisy
@@ -142,6 +144,29 @@ def served(rig, server, seconds=0.03):
     for _ in range(20):
         server.serve(0.0)
     rig.clock.time += seconds
+
+
+def test_a_line_that_takes_more_again_stays_open(tmp_path):
+    """As after a pause, when many records wait. A real terminal: a pair of sockets does not err."""
+    rig = Rig()
+    rig.loop.start()
+    master, slave = os.openpty()
+    os.set_blocking(master, False)
+    server = Server(rig.loop, TOKEN)
+    server.attach(SerialLine(os.ttyname(slave), print).open)
+    server.serve(0.0)
+    (peer,) = server._peers
+    sent = 400_000
+    peer.out += b"." * sent
+    server._turns.call(peer)
+    while sent:
+        server.serve(0.0)
+        with suppress(BlockingIOError):
+            sent -= len(os.read(master, 4096))
+        assert server._peers == [peer]
+    server.close()
+    os.close(master)
+    os.close(slave)
 
 
 def test_a_silent_line_stays_open(line):
