@@ -127,4 +127,6 @@ def hear(link: Link, talk: Conversation, arrived: Callable[[], bool], patience_s
                 " whether the motors turn, and stop them by `kickctl stop`",
             )
         talk.feed(link.receive(LOOK_S))
+        if link.is_line and not talk.hello:  # what was on its way when the robot began anew
+            talk.overlook_broken()
         talk.raise_refusal()

@@ -133,6 +133,11 @@ class Conversation:
         """Why the robot has ended the conversation, in its words; None if it has not."""
         return None if self._refusal is None else printable(str(self._refusal.get("message")))
 
+    def overlook_broken(self) -> None:
+        """Forget a refusal of a frame that was no message."""
+        if self._refusal is not None and self._refusal.get("code") == "broken":
+            self._refusal = None
+
     def raise_refusal(self) -> None:
         """Raise what ended the conversation, if the robot has ended it."""
         if self._refusal is not None:
@@ -175,6 +180,7 @@ class Conversation:
         if kind == wire.HELLO:
             if message["host_nonce"] == self._nonce.hex():
                 bytes.fromhex(message["nonce"])
+                self._refusal = None  # of what came before it
                 self._hear_of_takeover(message)
                 self.hello = {
                     **message,

@@ -97,6 +97,17 @@ def test_a_command_to_a_robot_that_has_begun_anew_is_carried_out_once(line):
     assert [event["event"] for event in line.events()].count("kick") == 2
 
 
+def test_what_was_on_its_way_before_the_new_hello_does_not_refuse_it(line, monkeypatch):
+    with Robot(line, line.token) as robot:
+        robot.lease()
+        late = [robot._talk.beat() for _ in range(3)]
+        line.begin_anew()
+        # To open the host's end takes nothing away that is on its way to the robot.
+        monkeypatch.setattr(line, "open", lambda: line.send(b"".join(late)))
+        robot.kick("membrane")
+        assert robot.drives
+
+
 def test_a_start_that_a_robot_that_has_begun_anew_refuses_is_not_sent_again(line):
     with Robot(line, line.token) as robot:
         robot.lease()
