@@ -192,7 +192,7 @@ class Server(object):
                 if peer is None:
                     continue
                 accepted = True
-            # A serial line of which nothing has come gives no bytes, as one that has come off does.
+            # With nothing to read a serial line gives no bytes, just like one that has come off.
             if (mask & _LOST or (peer.reads and mask & select.EPOLLIN)) and not (
                 peer.read(now) and self._answer_at_once(peer, now)
             ):

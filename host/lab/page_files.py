@@ -59,8 +59,8 @@ def one_module(first: str) -> str:
         first: The module's path in the page's folder.
 
     Returns:
-        The module's text behind those of the others, each of which is a function that is called
-        once and returns what it exports.
+        The text: first the other modules, each as a function that is called once and returns what
+        it exports, and then the module's own.
     """
     newest = max(path.stat().st_mtime_ns for path in PAGE_FOLDER.rglob("*.js"))
     return _one_module(first, newest)

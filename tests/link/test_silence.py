@@ -28,18 +28,24 @@ def whole(log, link):
     ]
 
 
+def recording(robot):
+    """Record a robot, which runs on without this host: the log after a second, and the troubles."""
+    if robot.trusted:
+        robot.set(link_loss="continue")
+    log, troubles = Log(), []
+    robot.on_trouble = troubles.append
+    robot.add_tap(log)
+    robot.wait(1.0)
+    return log, troubles
+
+
 # In virtual time
 
 
 @pytest.mark.parametrize("token", [True, False], ids=["who drives", "who only watches"])
 def test_who_records_dials_again_and_loses_no_tick(link, token):
     with Robot(link, link.token if token else None) as robot:
-        if token:
-            robot.set(link_loss="continue")
-        log, troubles = Log(), []
-        robot.on_trouble = troubles.append
-        robot.add_tap(log)
-        robot.wait(1.0)
+        log, troubles = recording(robot)
         link.forget()
         begin = link.now()
         robot.wait(5.0)
@@ -72,12 +78,7 @@ def line(link, monkeypatch):
 @pytest.mark.parametrize("token", [True, False], ids=["who drives", "who only watches"])
 def test_who_records_over_a_line_says_hello_to_a_robot_that_has_begun_anew(line, token):
     with Robot(line, line.token if token else None) as robot:
-        if token:
-            robot.set(link_loss="continue")
-        log, troubles = Log(), []
-        robot.on_trouble = troubles.append
-        robot.add_tap(log)
-        robot.wait(1.0)
+        log, troubles = recording(robot)
         line.begin_anew()
         robot.wait(5.0)
         robot.remove_tap(log)
