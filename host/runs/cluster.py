@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Generator
 from concurrent.futures import CancelledError
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from queue import Empty, SimpleQueue
 from time import monotonic, sleep
@@ -87,8 +87,9 @@ def compute_on_cluster(
             f"start one: dask scheduler, and dask worker {address}",
         ) from error
     with client:
+        here = computing()
         cell_of = {
-            client.submit(eval, _TASK, _names(simulate, cell, setting), pure=False): cell
+            client.submit(eval, _TASK, _names(simulate, cell, setting, here), pure=False): cell
             for cell in cells
         }
         done: SimpleQueue[Future[Any]] = SimpleQueue()
@@ -125,12 +126,15 @@ def compute_on_cluster(
 
 
 def _names(
-    simulate: Callable[[Cell, Setting], list[Row]], cell: Cell, setting: Setting
+    simulate: Callable[[Cell, Setting], list[Row]],
+    cell: Cell,
+    setting: Setting,
+    here: dict[str, str],
 ) -> dict[str, Any]:
     """What _TASK has names for."""
     from distributed.protocol.pickle import dumps
 
-    return {"work": dumps(partial(simulate, cell, setting)), "computing": computing()}
+    return {"work": dumps(partial(simulate, cell, setting)), "computing": here}
 
 
 def computing() -> dict[str, str]:
@@ -139,6 +143,7 @@ def computing() -> dict[str, str]:
     return {"the sources": own, **{name: _version(name) for name in ("numpy", "mujoco-core")}}
 
 
+@cache
 def _version(package: str) -> str:
     try:
         return version(package)

@@ -14,7 +14,7 @@ import robot as robot_package
 import sim_motor
 from host.errors import NotDone, printable
 from robot import __version__
-from robot.sources import fingerprint
+from robot.sources import fingerprint, times
 
 
 def origin(
@@ -64,11 +64,8 @@ def origin(
 SHOWS_ONLY = ("__main__.py", "cli.py", "commands", "figures", "films", "lab")
 
 
-def _fingerprint() -> str:
-    """The fingerprint of all sources that can change a result, as they are now.
-
-    These are robot/, sim_motor/, and host/ without SHOWS_ONLY.
-    """
+def _places() -> list[str]:
+    """What can change a result: robot/, sim_motor/, and host/ without SHOWS_ONLY."""
     host, robot, motors = (
         Path(package.__path__[0]).resolve() for package in (host_package, robot_package, sim_motor)
     )
@@ -79,11 +76,11 @@ def _fingerprint() -> str:
         and not path.name.startswith(".")
         and (path.is_dir() or path.suffix == ".py")
     )
-    return str(fingerprint(*map(str, (robot, motors, *computing))))
+    return [str(path) for path in (robot, motors, *computing)]
 
 
 # When this module is imported, the program has just begun: later, somebody may change a source.
-_LOADED = _fingerprint()
+_TIMES, _LOADED = times(*_places()), str(fingerprint(*_places()))
 
 
 def sources() -> str:
@@ -100,7 +97,9 @@ def unchanged() -> bool:
 
     If not, it computes with the old code, and with the new code of what it had not loaded.
     """
-    return _fingerprint() == _LOADED
+    places = _places()
+    # A cluster's run asks before each cell, so the files are read only if one has been written.
+    return bool(times(*places) == _TIMES or fingerprint(*places) == _LOADED)
 
 
 def require_unchanged() -> None:

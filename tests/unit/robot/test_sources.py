@@ -1,10 +1,11 @@
 """The fingerprint of sources: what changes it, and what does not."""
 
+import os
 import shutil
 
 import pytest
 
-from robot.sources import fingerprint, keep, of_robot
+from robot.sources import fingerprint, keep, of_robot, times
 
 
 @pytest.fixture
@@ -13,6 +14,8 @@ def room(tmp_path):
     (folder / "inner").mkdir(parents=True)
     (folder / "a.py").write_text("x = 1\n")
     (folder / "inner" / "b.toml").write_text("y = 2\n")
+    for name in ("a.py", "inner/b.toml"):
+        os.utime(str(folder / name), (1, 1))  # long ago: a file system's clock is coarse
     return folder
 
 
@@ -32,10 +35,12 @@ def test_it_is_that_of_a_copy_elsewhere(room, tmp_path):
         lambda room: (room / "a.py").rename(room / "inner" / "a.py"),
     ],
 )
-def test_every_change_of_a_source_changes_it(room, change):
+def test_every_change_of_a_source_changes_it_and_the_times(room, change):
     before = fingerprint(str(room))
+    times_before = times(str(room))
     change(room)
     assert fingerprint(str(room)) != before
+    assert times(str(room)) != times_before
 
 
 def test_what_is_no_source_does_not_change_it(room):

@@ -77,6 +77,32 @@ def test_sources_that_change_later_are_not_those_of_what_was_loaded(copy):
     path.write_bytes(before)
 
 
+def test_sources_are_unchanged_until_what_they_say_is_another(copy):
+    path = copy / "robot" / "kicks.py"
+    before = path.read_bytes()
+    steps = [
+        "",
+        "os.utime(path)",
+        "open(path, 'a').write('# changed')",
+        f"open(path, 'wb').write({before!r})",
+        "open(path + '.py', 'w').close()",
+        "os.remove(path + '.py')",
+    ]
+    asked = "\n".join(f"{step}\nanswers.append(provenance.unchanged())" for step in steps)
+    script = f"""
+import os
+from host.util import provenance
+path, answers = {str(path)!r}, []
+{asked}
+print(answers)
+"""
+    environment = {**os.environ, "PYTHONPATH": str(copy)}
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[True, True, False, True, False, True]\n"
+
+
 def test_the_commit_is_found_without_a_lock_on_the_users_index(tmp_path, monkeypatch):
     """A killed kickctl would leave the lock, and git would refuse every commit."""
 
