@@ -91,8 +91,7 @@ class Keeper:
         if not len(rows):
             return
         self._latest_s = float(rows[-1, 0])
-        for row in rows:
-            self._summary.add(row)
+        self._summary.add(rows)
         self._thin.add(rows)
         for file in self._files:
             file.add(rows)

@@ -135,7 +135,7 @@ class Train(gymnasium.Env[Observation, Action]):
                 body.kick(kick)
                 self._kicks += 1
         try:
-            body.run(self._decision_s, lambda time_s: self._summary.add(body.rows[-1]))
+            body.run(self._decision_s, lambda time_s: self._summary.add(body.rows[-1:]))
         except Unstable as error:
             ended = str(error)
         info = self._info(ended)
@@ -192,7 +192,7 @@ class Train(gymnasium.Env[Observation, Action]):
         columns = self._body.columns
         self._omegas = [name.endswith("_omega_rad_s") for name in columns]
         self._summary = RunningSummary(columns)
-        self._summary.add(self._body.rows[-1])
+        self._summary.add(self._body.rows[-1:])
         self._kicks = 0
 
     def _observe(self) -> Observation:

@@ -7,8 +7,8 @@ Neither the time that a row takes nor the memory grows with the number of rows.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from dataclasses import asdict, dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,7 @@ from sim_motor.bodies.measures import (
 )
 
 
-@dataclass(frozen=True)
-class _Totals:
+class _Totals(NamedTuple):
     """Sums over rows: their number, mean |omega| (rad/s), order parameter, and path (m)."""
 
     rows: int
@@ -52,30 +51,40 @@ class RunningSummary:
         self._peak = self._omega = 0.0
         self._flipped = False
 
-    def add(self, row: Array) -> None:
-        """Take the next row, (columns,)."""
-        moved = course(self._columns, row[None])
-        time_s, centre, omega = float(moved.t_s[0]), moved.centre_m[0], moved.omega[0]
-        last_s, last = self._latest[-1] if self._latest else (time_s, centre)
-        path_m = self._totals.path_m + float(np.linalg.norm(centre - last))
-        before = replace(self._totals, path_m=path_m)
-        self._omega = float(np.abs(omega).mean())
+    def add(self, rows: Array) -> None:
+        """Take the next rows, (rows, columns), of which there is at least one."""
+        moved = course(self._columns, rows)
+        last = self._latest[-1][1] if self._latest else moved.centre_m[0]
+        steps_m = np.linalg.norm(np.diff(moved.centre_m, axis=0, prepend=last[None]), axis=1)
+        self._flipped |= bool((moved.lean_rad > FALLEN_RAD).any())
+        # One by one from here on, and numbers of numpy would take three times as long.
+        each = (moved.t_s, np.abs(moved.omega).mean(axis=1), moved.omega.mean(axis=1))
+        numbers = (column.tolist() for column in (*each, order(moved.omega), steps_m))
+        for centre, *row in zip(moved.centre_m, *numbers, strict=True):
+            self._take(centre, *row)
+
+    def _take(
+        self, centre: Array, time_s: float, size: float, mean: float, ordered: float, step_m: float
+    ) -> None:
+        """Take a row: the centre (m), the time, the wheels' mean |omega| and mean omega (rad/s).
+
+        Then come their order parameter, and how far the centre has moved since the last row.
+        """
+        last_s = self._latest[-1][0] if self._latest else time_s
+        before = self._totals._replace(path_m=self._totals.path_m + step_m)
+        self._omega = size
         self._totals = _Totals(
-            before.rows + 1,
-            before.omega + self._omega,
-            before.order + float(order(omega)),
-            path_m,
+            before.rows + 1, before.omega + size, before.order + ordered, before.path_m
         )
-        if not self._fastest or self._omega > self._peak:
-            self._peak = self._omega
-            self._fastest.append((time_s, self._omega, before))
+        if not self._fastest or size > self._peak:
+            self._peak = size
+            self._fastest.append((time_s, size, before))
             while self._fastest[0][1] < STARTED * self._peak:
                 self._fastest.popleft()
-        self._reversals.add(float(omega.mean()), last_s)
+        self._reversals.add(mean, last_s)
         self._latest.append((time_s, centre))
         while self._latest[0][0] < time_s - STUCK_S:
             self._latest.popleft()
-        self._flipped |= bool(moved.lean_rad[0] > FALLEN_RAD)
 
     def summary(self) -> Summary:
         """The summary of all rows so far. There must be one."""
@@ -139,7 +148,7 @@ class Reversals:
 
     def add(self, mean: float, before_s: float) -> None:
         """Take the wheels' mean omega (rad/s) in the next row, and the time of the last row (s)."""
-        sign, size = float(np.sign(mean)), abs(mean)
+        sign, size = float(mean > 0.0) - float(mean < 0.0), abs(mean)
         if sign != self._now.sign:
             self._now = _Turn(sign, before_s)
         self._now.peak = max(self._now.peak, size)

@@ -34,11 +34,12 @@ def rows(draw):
     return table
 
 
-@given(rows())
-def test_it_is_that_of_all_rows_so_far(rows):
+@given(rows(), st.integers(1, 4))
+def test_it_is_that_of_all_rows_so_far(rows, block):
     running = RunningSummary(COLUMNS)
-    for count, row in enumerate(rows, start=1):
-        running.add(row)
+    for start in range(0, len(rows), block):
+        running.add(rows[start : start + block])
+        count = min(start + block, len(rows))
         found, whole = running.summary(), summary(COLUMNS, rows[:count])
         assert found["started_s"] == whole["started_s"]
         means = {name: value for name, value in whole.items() if value is not None}
@@ -53,7 +54,7 @@ def test_it_keeps_the_rows_of_the_last_seconds_only():
     for number in range(1000):
         row = row.copy()
         row[0], row[1:3] = 0.1 * number, 10.0 * np.sin(0.2 * number) + 0.001 * number
-        running.add(row)
+        running.add(row[None])
     kept = (running._latest, running._fastest)
     assert max(map(len, kept)) < 60
     assert len(running._reversals._turns) == len(running.summary()["reversals"]) + 1
