@@ -105,18 +105,35 @@ class Log:
         self.events.append(event)
         self.places.append(len(self.records))
 
+    def until_now(self) -> Log:
+        """What the log has now. A log that a robot still records into grows at any time.
+
+        Returns:
+            A log that stays as it is.
+        """
+        now = Log()
+        now.info, now.records = self.info, self.records[:]
+        # Records first: an event may be there already whose records are not.
+        places = [place for place in self.places[:] if place <= len(now.records)]
+        now.events, now.places = self.events[: len(places)], places
+        return now
+
+    def _placed(self) -> Iterator[tuple[Event, int]]:
+        # Another thread may have added an event whose place it is about to add.
+        return zip(self.events, self.places, strict=False)
+
     def stream(self) -> Iterator[Event | Record]:
-        """Events and records in the order in which they came.
+        """Events and records in the order in which they came, of what the log has now.
 
         Returns:
             An iterator of dictionaries (events) and Records.
         """
-        done = 0
-        for event, place in zip(self.events, self.places, strict=True):
-            yield from self.records[done:place]
+        now, done = self.until_now(), 0
+        for event, place in zip(now.events, now.places, strict=True):
+            yield from now.records[done:place]
             yield event
             done = place
-        yield from self.records[done:]
+        yield from now.records[done:]
 
     def play(self, tap: Tap) -> None:
         """Feed the whole log to a tap, as the robot's stream would.
@@ -125,14 +142,14 @@ class Log:
             tap: Has take_records(records) and take_event(event).
         """
         need_tap(tap)
-        done = 0
-        for event, place in zip(self.events, self.places, strict=True):
+        now, done = self.until_now(), 0
+        for event, place in zip(now.events, now.places, strict=True):
             if place > done:
-                tap.take_records(self.records[done:place])
+                tap.take_records(now.records[done:place])
             tap.take_event(event)
             done = place
-        if self.records[done:]:
-            tap.take_records(self.records[done:])
+        if now.records[done:]:
+            tap.take_records(now.records[done:])
 
     def column(self, name: str) -> NDArray[Any]:
         """A column of the log as an array.
@@ -167,12 +184,13 @@ class Log:
         return np.fromiter(map(itemgetter(index), self.records), dtype, len(self.records))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """All columns as arrays.
+        """All columns as arrays, equally long.
 
         Returns:
             Arrays by the columns' names, see `column`.
         """
-        return {name: self.column(name) for name in (*NAMES, *SPEEDS)}
+        now = self.until_now()
+        return {name: now.column(name) for name in (*NAMES, *SPEEDS)}
 
     def omega(self, side: str) -> NDArray[np.float64]:
         """Speed of a wheel, forward positive: turn over time since the record before.
@@ -190,10 +208,11 @@ class Log:
 
         if not isinstance(side, str) or side not in WHEELS:
             raise wrong("side", side, "'left' or 'right'")
-        omega = np.full(len(self.records), np.nan)
+        now = self.until_now()
+        omega = np.full(len(now), np.nan)
         if len(omega) > 1:
-            omega[1:] = np.diff(self.column(side + "_phi_rad")) / np.diff(self.column("t_s"))
-        for first in reversed([0, *self.restarts()]):
+            omega[1:] = np.diff(now.column(side + "_phi_rad")) / np.diff(now.column("t_s"))
+        for first in reversed([0, *now.restarts()]):
             if first < len(omega):
                 omega[first] = omega[first + 1] if first + 1 < len(omega) else np.nan
         return omega
@@ -204,11 +223,7 @@ class Log:
         Returns:
             For each restart the index of the first record after it.
         """
-        return [
-            place
-            for event, place in zip(self.events, self.places, strict=True)
-            if event["event"] == "restart"
-        ]
+        return [place for event, place in self._placed() if event["event"] == "restart"]
 
     def missing(self) -> list[tuple[int, int]]:
         """The gaps in the numbers of the ticks.
@@ -228,9 +243,7 @@ class Log:
             (index of the first record of the kick, the kick as a dictionary) of each.
         """
         return [
-            (place, event["kick"])
-            for event, place in zip(self.events, self.places, strict=True)
-            if event["event"] == "kick"
+            (place, event["kick"]) for event, place in self._placed() if event["event"] == "kick"
         ]
 
     @property

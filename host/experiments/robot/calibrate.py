@@ -105,6 +105,7 @@ def _ticks(
     log: Log, marks: Marks, params: dict[str, Any], battery_v: float | None, motor: str
 ) -> list[Tick]:
     """All ticks of the log; their angles are the middles of what the readings stand for."""
+    log = log.until_now()
     starts = np.array([place for place, _ in marks])
     stretches = np.maximum(np.searchsorted(starts, np.arange(len(log)), side="right") - 1, 0)
     left_deg, right_deg = (

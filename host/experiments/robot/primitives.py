@@ -146,6 +146,7 @@ def _round(robot: Robot, log: Log) -> list[Transition]:
 
 def _samples(log: Log) -> list[Sample]:
     """The speeds of the wheels, as means over SHOWN_EVERY ticks, and k, over the round."""
+    log = log.until_now()
     t = log.column("t_s")
     left, right = (log.omega(side) / (2 * pi) for side in WHEELS)
     k = np.full(len(log), K)

@@ -118,6 +118,7 @@ def _relative(log: Log) -> NDArray[np.float64]:
 
 def _slip(log: Log, tick: int) -> Slip:
     """How the wheels settled, and slipped, after the kick that began in this tick."""
+    log = log.until_now()
     t, relative = log.column("t_s"), _relative(log)
     begin_s = float(t[_row_of(log, tick)])
 
@@ -151,6 +152,7 @@ def wrap(angle: float) -> float:
 
 def _ticks(log: Log, mode: str, kicked: list[int]) -> list[Tick]:
     """The ticks around the kicks that begin in these rows of the log."""
+    log = log.until_now()
     t, acts, relative = log.column("t_s"), log.column("kick") > 0, _relative(log)
     begin_s, end_s = t[kicked[0]] - SHOWN_BEFORE_S, t[kicked[-1]] + SHOWN_AFTER_S
     return [

@@ -43,6 +43,7 @@ class Motion(NamedTuple):
 
 def motion_since(log: Log, begin: int = 0) -> Motion:
     """The motion of both wheels since a tick."""
+    log = log.until_now()
     rows = log.column("tick") >= begin
     phi = np.stack([log.column(side + "_phi_rad") for side in WHEELS], axis=1)
     torque = np.stack([log.column(side + "_torque") for side in WHEELS], axis=1)

@@ -88,6 +88,7 @@ def draw(
     Raises:
         ValueError: The log has no ticks, or not that one.
     """
+    log = log.until_now()
     begin = max([0, *log.restarts()])
     if begin >= len(log):
         raise ValueError("there are no ticks in the log to draw")

@@ -20,6 +20,16 @@ def running(ticks, joined=0):
     return rig.log(joined)
 
 
+class Growing(Log):
+    """A log that a robot is recorded into: it has grown whenever somebody has taken a column."""
+
+    def column(self, name):
+        found = super().column(name)
+        last = self.records[-1]
+        self.take_records([last._replace(tick=last.tick + 1, t_s=last.t_s + last.dt_s)])
+        return found
+
+
 def test_the_stream_comes_out_as_it_went_in():
     rig = eventful()
     log = rig.log()
@@ -46,6 +56,36 @@ def test_columns_are_the_channels_and_the_speeds():
     assert arrays["left_duty_pct"].min() < 0
     assert set(arrays) == set(COLUMNS)
     assert log.column("left_omega_rad_s").tolist() == arrays["left_omega_rad_s"].tolist()
+
+
+def test_a_log_that_grows_meanwhile_has_columns_of_one_length():
+    log = Growing()
+    running(20).play(log)
+    assert {len(column) for column in log.arrays().values()} == {20}
+    speeds = log.omega("left")
+    assert len(speeds) == 20
+    log.column("tick")
+    assert len(log) == 21
+    assert log.until_now().omega("left")[:20].tolist() == speeds.tolist()
+
+
+def test_what_a_log_has_now_stays_so():
+    log = eventful().log()
+    before, stream = log.until_now(), list(log.stream())
+    walk = log.stream()
+    begun = [next(walk) for _ in range(3)]
+    log.take_event({"event": "stop", "tick": log.records[-1].tick + 1})
+    log.take_records(log.records[-2:])
+    assert [*begun, *walk] == stream == list(before.stream())
+    assert len(before) == len(log) - 2
+    assert before.info == log.info
+
+
+def test_an_event_is_in_a_log_as_soon_as_its_place_is():
+    log = eventful().log()
+    whole = log.kicks(), log.restarts(), list(log.stream())
+    log.events.append({"event": "kick", "kick": {}})
+    assert (log.kicks(), log.restarts(), list(log.stream())) == whole
 
 
 @pytest.mark.parametrize(
