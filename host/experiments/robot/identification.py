@@ -203,13 +203,7 @@ def identify(
 
     guess = np.array([getattr(start, name) for name in _FITTED])
     fit = least_squares(errors, guess, slopes, bounds=(_LOWEST, _HIGHEST), x_scale=_STEPS)
-    scores = np.stack(
-        [fit.jac[stretches == number].T @ fit.fun[stretches == number] for number in numbers]
-    )
-    inverse = np.linalg.pinv(fit.jac.T @ fit.jac)
-    spare = len(numbers) - len(_FITTED)
-    variance = inverse @ (scores.T @ scores) @ inverse * len(numbers) / spare
-    half = stdtrit(spare, (1 + CONFIDENCE) / 2) * np.sqrt(np.diag(variance))
+    half = half_intervals(fit.jac, fit.fun, stretches)
     low = np.maximum(fit.x - half, _LOWEST).tolist()
     high = np.minimum(fit.x + half, _HIGHEST).tolist()
     intervals = dict(zip(_FITTED, zip(low, high, strict=True), strict=True))
@@ -219,3 +213,28 @@ def identify(
         {name: intervals[name] for name in Traits._fields},
         float(np.sqrt(np.mean(fit.fun**2))),
     )
+
+
+def half_intervals(jacobian: Array, errors: Array, stretches: NDArray[np.int64]) -> Array:
+    """How far each trait may be from what was fitted, with a confidence of 95 %.
+
+    Args:
+        jacobian: effect of each trait on the errors, (ticks, traits).
+        errors: what the fit leaves, (ticks,).
+        stretches: number of the stretch, (ticks,). There are more of them than traits.
+
+    Returns:
+        Half the width of each interval, (traits,). It is infinite for a trait without any effect,
+        as friction below that of rolling alone.
+    """
+    numbers = np.unique(stretches)
+    spare = len(numbers) - jacobian.shape[1]
+    effect = np.linalg.norm(jacobian, axis=0)
+    seen = effect > 0.0
+    half = np.full(len(effect), np.inf)
+    # Each in its own unit, as traits of large effect would drown the others in rounding.
+    influence = np.linalg.pinv(jacobian[:, seen] / effect[seen])
+    moved = [influence[:, rows] @ errors[rows] for rows in (stretches == n for n in numbers)]
+    deviation = np.sqrt(np.sum(np.square(moved), axis=0) * len(numbers) / spare) / effect[seen]
+    half[seen] = stdtrit(spare, (1 + CONFIDENCE) / 2) * deviation
+    return half

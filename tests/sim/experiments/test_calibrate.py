@@ -12,12 +12,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.table import Cell
+from scipy.special import stdtrit
 
 from host.client.robot import Robot, connect
 from host.errors import NotDone, WrongUse
 from host.experiments.robot import calibrate
 from host.experiments.robot.calibrate_rows import drive_of
-from host.experiments.robot.identification import Drive, break_away, identify, middle
+from host.experiments.robot.identification import (
+    Drive,
+    break_away,
+    half_intervals,
+    identify,
+    middle,
+)
 from host.experiments.robot.motor_traits import Traits, constants_of, traits
 from host.figures.robot.calibrate import draw
 from host.link.sim import SimLink
@@ -193,6 +200,41 @@ def test_a_disturbance_that_no_model_knows_widens_the_intervals(odd):
                 for numbers in (rough, odd[0][2].numbers)
             ]
             assert widths[0] > 1.2 * widths[1]
+
+
+def regression(seed):
+    """Effects of three traits on the errors of 20 stretches of 10 ticks, and these errors."""
+    rng = np.random.default_rng(seed)
+    stretches = np.repeat(np.arange(20), 10)
+    errors = rng.normal(size=200) + rng.normal(size=20)[stretches]
+    return rng.normal(size=(200, 3)) * [1e-3, 1.0, 1e3], errors, stretches
+
+
+def test_intervals_are_those_of_a_fit_whose_stretches_are_the_observations():
+    jacobian, errors, stretches = regression(1)
+    inverse = np.linalg.inv(jacobian.T @ jacobian)
+    scores = [jacobian[stretches == n].T @ errors[stretches == n] for n in range(20)]
+    variance = inverse @ sum(np.outer(one, one) for one in scores) @ inverse * 20 / 17
+    expected = 2.1098156 * np.sqrt(np.diag(variance))  # Student's t for 17 degrees of freedom
+    assert half_intervals(jacobian, errors, stretches) == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_trait_that_the_drive_does_not_show_may_have_any_value():
+    """As friction below that of rolling: its interval was of no width, or no number."""
+    jacobian, errors, stretches = regression(2)
+    blind = np.insert(jacobian, 1, 0.0, axis=1)
+    half = half_intervals(blind, errors, stretches)
+    assert half[1] == np.inf
+    others = half_intervals(jacobian, errors, stretches) * stdtrit(16, 0.975) / stdtrit(17, 0.975)
+    assert np.delete(half, 1) == pytest.approx(others * np.sqrt(17 / 16), rel=1e-9)
+
+
+def test_traits_of_the_same_effect_have_intervals_that_are_numbers():
+    jacobian, errors, stretches = regression(3)
+    alike = np.column_stack([jacobian, jacobian[:, 1] * (1 + 1e-15), 1e9 * jacobian[:, 2]])
+    half = half_intervals(alike, errors, stretches)
+    assert np.isfinite(half).all()
+    assert (half > 0.0).all()
 
 
 def test_the_robot_is_left_stopped_with_its_own_parameters():
