@@ -105,13 +105,13 @@ class Log:
         self.events.append(event)
         self.places.append(len(self.records))
 
-    def until_now(self) -> Log:
+    def until_now(self) -> Self:
         """What the log has now. A log that a robot still records into grows at any time.
 
         Returns:
             A log that stays as it is.
         """
-        now = Log()
+        now = type(self)()
         now.info, now.records = self.info, self.records[:]
         # Records first: an event may be there already whose records are not.
         places = [place for place in self.places[:] if place <= len(now.records)]

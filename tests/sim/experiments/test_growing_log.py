@@ -6,19 +6,7 @@ import pytest
 from host.experiments.robot import calibrate, primitives, timeline
 from host.experiments.robot.wall_hits import motion_since
 from host.figures.robot.kick import draw
-from host.logs.log import Log
 from kickctl import connect
-
-
-class Growing(Log):
-    """It has grown whenever somebody has taken a column."""
-
-    def column(self, name):
-        found = super().column(name)
-        for _ in range(30):
-            last = self.records[-1]
-            self.take_records([last._replace(tick=last.tick + 1, t_s=last.t_s + last.dt_s)])
-        return found
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +20,19 @@ def recorded():
 
 
 @pytest.fixture
-def growing(recorded):
-    """The same log, which grows."""
-    log = Growing(recorded[0].info)
-    recorded[0].play(log)
+def growing(recorded, monkeypatch):
+    """The same log. It has grown whenever somebody has taken a column."""
+    log = recorded[0].until_now()
+    column = log.column
+
+    def look(name):
+        found = column(name)
+        for _ in range(30):
+            last = log.records[-1]
+            log.take_records([last._replace(tick=last.tick + 1, t_s=last.t_s + last.dt_s)])
+        return found
+
+    monkeypatch.setattr(log, "column", look)
     return log
 
 
