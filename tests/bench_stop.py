@@ -152,10 +152,12 @@ def _measure(robot: Robot) -> list[float]:
     robot.answer_s = 3600.0
 
     def wait_for_ever():
-        with suppress(KickctlError):
-            robot._exchange(lambda: (-1, b""), "a request that is never sent")
+        with suppress(KickctlError), robot._lock:
+            session = robot._talk.session
+            robot._exchange(lambda: (-1, b""), "a request that is never sent", session)
 
-    threading.Thread(target=wait_for_ever, daemon=True).start()
+    waiting = threading.Thread(target=wait_for_ever, daemon=True)
+    waiting.start()
     time.sleep(0.2)
     times = []
     for _ in range(STOPS):
@@ -163,6 +165,7 @@ def _measure(robot: Robot) -> list[float]:
         robot.stop()
         times.append(time.perf_counter() - begin)
         time.sleep(0.013)
+    assert waiting.is_alive(), "no request waited meanwhile"
     return times
 
 
