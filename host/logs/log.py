@@ -111,11 +111,11 @@ class Log:
         Returns:
             A log that stays as it is.
         """
-        now = type(self)()
-        now.info, now.records = self.info, self.records[:]
-        # Records first: an event may be there already whose records are not.
-        places = [place for place in self.places[:] if place <= len(now.records)]
-        now.events, now.places = self.events[: len(places)], places
+        now, known = type(self)(), len(self.places)
+        now.info, now.records, places = dict(self.info), self.records[:], self.places[:]
+        # Of the events that come just now, those whose records are here.
+        count = known + sum(place <= len(now.records) for place in places[known:])
+        now.events, now.places = self.events[:count], places[:count]
         return now
 
     def _placed(self) -> Iterator[tuple[Event, int]]:

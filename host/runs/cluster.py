@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Generator
 from concurrent.futures import CancelledError
-from functools import cache, partial
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from queue import Empty, SimpleQueue
 from time import monotonic, sleep
@@ -143,7 +143,6 @@ def computing() -> dict[str, str]:
     return {"the sources": own, **{name: _version(name) for name in ("numpy", "mujoco-core")}}
 
 
-@cache
 def _version(package: str) -> str:
     try:
         return version(package)

@@ -95,6 +95,8 @@ _STEPS = np.array([0.005, 0.002, 0.01, 0.2, 0.02, 0.5, 0.5])
 _LOWEST = np.array([0.2, 0.02, 0.0, 0.0, 0.0, 0.0, 0.0])
 _HIGHEST = np.array([20.0, 2.0, 0.9, 60.0, 2.0, 30.0, 20.0])
 _COUNT = radians(1)
+# Sums of traits with less effect than this are not seen; a trait with this share in one is not.
+_LEAST_SIZE, _LEAST_SHARE = 1e-10, 1e-4
 LEAST_STRETCHES = 2 * len(_FITTED)
 
 
@@ -225,16 +227,17 @@ def half_intervals(jacobian: Array, errors: Array, stretches: NDArray[np.int64])
 
     Returns:
         Half the width of each interval, (traits,). It is infinite for a trait without any effect,
-        as friction below that of rolling alone.
+        as friction below that of rolling alone, and for traits whose effects are the same.
     """
     numbers = np.unique(stretches)
     spare = len(numbers) - jacobian.shape[1]
     effect = np.linalg.norm(jacobian, axis=0)
-    seen = effect > 0.0
-    half = np.full(len(effect), np.inf)
     # Each in its own unit, as traits of large effect would drown the others in rounding.
-    influence = np.linalg.pinv(jacobian[:, seen] / effect[seen])
+    unit = np.where(effect > 0.0, effect, 1.0)
+    left, sizes, right = np.linalg.svd(jacobian / unit, full_matrices=False)
+    seen = sizes > _LEAST_SIZE * sizes[0]
+    influence = right[seen].T / sizes[seen] @ left[:, seen].T
     moved = [influence[:, rows] @ errors[rows] for rows in (stretches == n for n in numbers)]
-    deviation = np.sqrt(np.sum(np.square(moved), axis=0) * len(numbers) / spare) / effect[seen]
-    half[seen] = stdtrit(spare, (1 + CONFIDENCE) / 2) * deviation
-    return half
+    deviation = np.sqrt(np.sum(np.square(moved), axis=0) * len(numbers) / spare) / unit
+    half = stdtrit(spare, (1 + CONFIDENCE) / 2) * deviation
+    return np.where((np.abs(right[~seen]) > _LEAST_SHARE).any(axis=0), np.inf, half)

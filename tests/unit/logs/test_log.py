@@ -79,6 +79,27 @@ def test_what_a_log_has_now_stays_so():
     assert before.info == log.info
 
 
+def test_no_event_is_lost_in_a_log_whose_records_were_cut():
+    log = eventful().log()
+    del log.records[:20]
+    events = [item for item in log.stream() if isinstance(item, dict)]
+    assert events == log.events
+
+
+def test_an_event_that_comes_meanwhile_is_there_as_soon_as_its_records_are():
+    class Late(list):
+        """Places, of which the last one comes when they are looked at for the second time."""
+
+        def __getitem__(self, key):
+            self.append(place)
+            return super().__getitem__(key)
+
+    for place, there in ((5, True), (30, False)):
+        log = running(20)
+        log.events, log.places = [{"event": "stop", "tick": place}], Late()
+        assert bool(log.until_now().events) is there
+
+
 def test_what_a_log_has_now_is_a_log_of_the_same_kind():
     log = kickctl.Log()
     running(3).play(log)
