@@ -77,6 +77,7 @@ def compute_on_cluster(
     """
     require_scheduler(address)
     from distributed import Client
+    from distributed.protocol.pickle import dumps
     from distributed.scheduler import KilledWorker
 
     try:
@@ -88,10 +89,10 @@ def compute_on_cluster(
         ) from error
     with client:
         here = computing()
-        cell_of = {
-            client.submit(eval, _TASK, _names(simulate, cell, setting, here), pure=False): cell
-            for cell in cells
-        }
+        cell_of = {}
+        for cell in cells:
+            names = {"work": dumps(partial(simulate, cell, setting)), "computing": here}
+            cell_of[client.submit(eval, _TASK, names, pure=False)] = cell
         done: SimpleQueue[Future[Any]] = SimpleQueue()
         for future in cell_of:
             future.add_done_callback(done.put)
@@ -123,18 +124,6 @@ def compute_on_cluster(
                     " same command again",
                 )
             yield cell_of.pop(future), result
-
-
-def _names(
-    simulate: Callable[[Cell, Setting], list[Row]],
-    cell: Cell,
-    setting: Setting,
-    here: dict[str, str],
-) -> dict[str, Any]:
-    """What _TASK has names for."""
-    from distributed.protocol.pickle import dumps
-
-    return {"work": dumps(partial(simulate, cell, setting)), "computing": here}
 
 
 def computing() -> dict[str, str]:

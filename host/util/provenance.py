@@ -98,7 +98,7 @@ def unchanged() -> bool:
     If not, it computes with the old code, and with the new code of what it had not loaded.
     """
     places = _places()
-    # A cluster's run asks before each cell, so the files are read only if one has been written.
+    # A cluster's worker asks for each cell, so the files are read only if one has been written.
     return bool(times(*places) == _TIMES or fingerprint(*places) == _LOADED)
 
 

@@ -52,7 +52,7 @@ class RunningSummary:
         self._flipped = False
 
     def add(self, rows: Array) -> None:
-        """Take the next rows, (rows, columns), of which there is at least one."""
+        """Take the next rows, (rows, columns); at least one."""
         moved = course(self._columns, rows)
         last = self._latest[-1][1] if self._latest else moved.centre_m[0]
         steps_m = np.linalg.norm(np.diff(moved.centre_m, axis=0, prepend=last[None]), axis=1)

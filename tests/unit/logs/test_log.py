@@ -88,7 +88,7 @@ def test_no_event_is_lost_in_a_log_whose_records_were_cut():
 
 def test_an_event_that_comes_meanwhile_is_there_as_soon_as_its_records_are():
     class Late(list):
-        """Places, of which the last one comes when they are looked at for the second time."""
+        """Places that get one more whenever somebody takes a part of them."""
 
         def __getitem__(self, key):
             self.append(place)
